@@ -1,0 +1,1 @@
+"""Frames from webcams, files, folders, network cameras and simulated webcams."""

@@ -1,0 +1,55 @@
+"""Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
+
+
+class MocapdError(Exception):
+    """Base of all expected errors; `exit_code` is what the command line ends with (sysexits)."""
+
+    exit_code = 70
+
+    def __init__(self, what: str, where: str = "", fix: str = "") -> None:
+        self.what, self.where, self.fix = what, where, fix
+        super().__init__(
+            (f"{where}: " if where else "") + what + (f" -- {fix}" if fix else "")
+        )
+
+
+class InputError(MocapdError):
+    """A file given by the user is missing, damaged or does not fit (66 EX_NOINPUT)."""
+
+    exit_code = 66
+
+
+class ConfigError(MocapdError):
+    """A configuration or calibration value is wrong (78 EX_CONFIG)."""
+
+    exit_code = 78
+
+
+class UnavailableError(MocapdError):
+    """A resource such as a camera, a port or a service is not to be had now (69 EX_UNAVAILABLE)."""
+
+    exit_code = 69
+
+
+class CannotCreateError(MocapdError):
+    """An output file or cache cannot be written (73 EX_CANTCREAT)."""
+
+    exit_code = 73
+
+
+class PermissionDeniedError(MocapdError):
+    """The user lacks a right, such as membership of the group `video` (77 EX_NOPERM)."""
+
+    exit_code = 77
+
+
+class CameraLost(MocapdError):
+    """A camera that was open stopped answering; the capture thread reopens it."""
+
+    exit_code = 69
+
+
+class EndOfStream(MocapdError):
+    """A recorded source has no further frame."""
+
+    exit_code = 0

@@ -1,0 +1,84 @@
+"""Rig files: JSON in the capture format, checked value by value before anything uses them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mocapd.errors import ConfigError, InputError
+from mocapd.types import Camera, Floats, Rig
+
+_RECALIBRATE = "calibrate again, or restore the file"
+
+
+def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) -> Floats:
+    if key not in entry:
+        raise ConfigError(f"the field {key!r} is missing", where, _RECALIBRATE)
+    try:
+        value = np.asarray(entry[key], dtype=float)
+    except (TypeError, ValueError):
+        raise ConfigError(f"{key!r} is not a list of numbers", where, _RECALIBRATE) from None
+    if value.shape != shape:
+        raise ConfigError(f"{key!r} has shape {value.shape}, wanted {shape}", where, _RECALIBRATE)
+    if not np.isfinite(value).all():
+        raise ConfigError(f"{key!r} contains NaN or infinity", where, _RECALIBRATE)
+    return value
+
+
+def camera_from_dict(entry: dict[str, Any], where: str) -> Camera:
+    """One camera of a rig file. Raises ConfigError naming the field."""
+    if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
+        raise ConfigError("a camera without a 'name'", where, _RECALIBRATE)
+    where = f"{where}, camera {entry['name']!r}"
+    size = _array(entry, "size", (2,), where)
+    K = _array(entry, "K", (3, 3), where)
+    R = _array(entry, "R", (3, 3), where)
+    if size.min() < 16 or K[0, 0] <= 0 or K[1, 1] <= 0:
+        raise ConfigError("'size' and the focal lengths in 'K' must be positive", where, _RECALIBRATE)
+    if np.abs(R @ R.T - np.eye(3)).max() > 1e-3 or np.linalg.det(R) < 0:
+        raise ConfigError("'R' is not a rotation matrix", where, _RECALIBRATE)
+    return Camera(
+        name=entry["name"],
+        size_px=(int(size[0]), int(size[1])),
+        K=K,
+        dist=_array(entry, "dist", (5,), where),
+        R=R,
+        t_m=_array(entry, "t", (3,), where),
+    )
+
+
+def read_json(path: Path) -> Any:
+    """A JSON file. Raises InputError naming the file, and the line where it is damaged."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("no such file", str(path), "check the path") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read ({error})", str(path), "check the path and its rights") from None
+    except json.JSONDecodeError as error:
+        raise ConfigError(f"not valid JSON ({error})", str(path), _RECALIBRATE) from None
+
+
+def load_rig(path: Path) -> Rig:
+    """Read a rig file. Raises InputError or ConfigError, naming file, camera and field."""
+    data = read_json(path)
+    entries = data.get("cameras") if isinstance(data, dict) else None
+    if not isinstance(entries, list) or not entries:
+        raise ConfigError("the field 'cameras' is missing or empty", str(path), _RECALIBRATE)
+    rig = Rig(tuple(camera_from_dict(entry, str(path)) for entry in entries))
+    if len(set(rig.names)) != len(rig.names):
+        raise ConfigError("two cameras have one name", str(path), "rename one of them")
+    return rig
+
+
+def camera_to_dict(camera: Camera) -> dict[str, Any]:
+    """The fields of one camera as a rig file holds them."""
+    return {
+        "name": camera.name,
+        "size": list(camera.size_px),
+        "K": camera.K.tolist(),
+        "dist": camera.dist.tolist(),
+        "R": camera.R.tolist(),
+        "t": camera.t_m.tolist(),
+    }

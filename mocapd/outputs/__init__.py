@@ -1,0 +1,1 @@
+"""Bodies out of the process: the wire schema and one sink per protocol."""

@@ -1,0 +1,1 @@
+"""Between cameras and outputs: mailboxes, the bundler, smoothing, the loop, metrics."""

@@ -1,0 +1,1 @@
+"""Simulated webcams: scenario file, world as a pure function of time, rendered frames, ground truth."""

@@ -1,0 +1,1 @@
+"""The tutorial tracker: a looping pose, whatever the cameras show."""

@@ -1,0 +1,133 @@
+"""The data that stages hand to each other: frozen records of arrays. Nothing here computes.
+
+Frames of reference (the only place where axes are defined):
+
+| name | axes | unit |
+|---|---|---|
+| world | right-handed, +Y up, origin on the floor of the play area; at rest a person faces +Z, its left is +X | m |
+| camera | OpenCV: x right, y down, z forward; x_camera = R x_world + t | m |
+| image | x right, y down, pixel centres at integers | px |
+| bone | the world's axes, turned by the bone's global rotation; identity in the T-pose | m |
+
+Quaternions are xyzw with w >= 0. Arrays are read-only by convention after construction.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Ints = NDArray[np.int64]
+Bytes = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """One picture of one camera.
+
+    `t_ns` is the middle of the exposure on CLOCK_MONOTONIC as well as it is known (for webcams:
+    the driver's stamp), not the time of arrival. `seq` counts what the source delivered; gaps are
+    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only.
+    """
+
+    camera: str
+    seq: int
+    t_ns: int
+    pixels: Bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrameSet:
+    """Frames of several cameras that belong together; a camera that has none is absent.
+
+    `t_ns` is the instant the pose is asked for: the time of the rig's first camera that is
+    present. `spread_ns` is the largest distance of a frame's own time from `t_ns`.
+    """
+
+    t_ns: int
+    frames: Mapping[str, Frame]
+    spread_ns: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Camera:
+    """A calibrated camera: lens K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
+
+    name: str
+    size_px: tuple[int, int]  # width, height
+    K: Floats
+    dist: Floats
+    R: Floats
+    t_m: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rig:
+    """The cameras of one calibration, in a fixed order; their names are unique."""
+
+    cameras: tuple[Camera, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(camera.name for camera in self.cameras)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Skeleton:
+    """Bones (VRM 1.0 names), parents (J,) with -1 at the root, and T-pose joint centres rest_m (J,3) [m], floor at y = 0."""
+
+    names: tuple[str, ...]
+    parents: Ints
+    rest_m: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pose:
+    """root_m (3,): the hips joint in the world; quats_xyzw (J,4): global rotations relative to the T-pose."""
+
+    root_m: Floats
+    quats_xyzw: Floats
+
+
+class Tracking(StrEnum):
+    """`live`: evidence in this frame; `coasting`: predicted for a moment; `lost`: no pose is known."""
+
+    LIVE = "live"
+    COASTING = "coasting"
+    LOST = "lost"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyState:
+    """A person at one instant. Lost: `pose` and `joints_m` are None and every confidence is 0.
+
+    joints_m (J,3) [m, world]; confidence (J,) in 0..1, near 0 for a joint without evidence;
+    `cameras`: names of the cameras whose evidence was used.
+    """
+
+    t_ns: int
+    tracking: Tracking
+    tracker: str
+    pose: Pose | None
+    joints_m: Floats | None
+    confidence: Floats
+    cameras: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """What a tracker says of one frame set: the body, and per camera an image of the evidence.
+
+    `evidence[camera]` is an id map (h,w) uint8 over the region `roi_px[camera]` = x0, y0, x1, y1;
+    0 is nothing, 1.. are the tracker's own classes (colour tracker: colour ids). For previews only.
+    `stage_ms`: milliseconds per stage, when the tracker was asked to time itself.
+    """
+
+    body: BodyState
+    evidence: Mapping[str, Bytes] = field(default_factory=dict)
+    roi_px: Mapping[str, tuple[int, int, int, int]] = field(default_factory=dict)
+    notes: Mapping[str, float] = field(default_factory=dict)
