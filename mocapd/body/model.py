@@ -1,0 +1,111 @@
+"""The articulated body as flat arrays for the kernels: surface, skin weights, groups, shape derivatives."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.shape import FACTORS, BodyShape, mean_shape, skeleton_of
+from mocapd.body.shirt import standard_shirt
+from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS
+from mocapd.body.surface import LEGS, mean_surface, shape_derivatives
+from mocapd.types import Floats, Ints
+
+_BONES = 4  # skin weights kept per point
+
+# Rotation groups: the joints that move, and the share of the group's bend that each takes.
+GROUPS: tuple[tuple[str, ...], ...] = (
+    ("hips",),
+    ("spine", "chest", "upperChest"),
+    ("leftShoulder",),
+    ("leftUpperArm",),
+    ("leftLowerArm",),
+    ("rightShoulder",),
+    ("rightUpperArm",),
+    ("rightLowerArm",),
+)
+N_GROUPS = len(GROUPS)
+N_POSE = 3 + 3 * N_GROUPS
+N_SHAPE = len(FACTORS)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyModel:
+    """Mean body of one stature. V vertices, T triangles, B bones per point, N shape factors.
+
+    Triangles of the legs are left out: the shirt's tracker never sees their labels.
+    """
+
+    stature_m: float
+    vertices_m: Floats  # (V,3)
+    bones: NDArray[np.int32]  # (V,B)
+    weights: Floats  # (V,B)
+    triangles: NDArray[np.int32]  # (T,3)
+    colour: NDArray[np.uint8]  # (T,) 0..10
+    patch: NDArray[np.uint8]  # (T,) 0..20
+    triangle_bones: NDArray[np.int32]  # (T,B), of the triangle's centre
+    triangle_weights: Floats  # (T,B)
+    rest_m: Floats  # (J,3)
+    d_vertices: Floats  # (N,V,3)
+    d_rest: Floats  # (N,J,3)
+    parents: Ints  # (J,)
+    group_of_joint: Ints  # (J,), -1: does not move
+    share_of_joint: Floats  # (J,)
+    joint_of_group: Ints  # (G,) the first joint of each group
+
+
+def build_model(stature_m: float) -> BodyModel:
+    """The model of the mean body of this stature."""
+    surface = mean_surface(stature_m)
+    d_vertices, d_rest = shape_derivatives(stature_m)
+    keep = surface.part != LEGS
+    triangles = surface.triangles[keep]
+    used = np.unique(triangles)
+    renumber = np.full(len(surface.vertices_m), -1)
+    renumber[used] = np.arange(len(used))
+    triangles = renumber[triangles].astype(np.int32)
+    bones, weights = _strongest(surface.weights[used])
+    triangle_bones, triangle_weights = _strongest(surface.weights[used][triangles].mean(axis=1))
+    group_of_joint = np.full(N_JOINTS, -1, dtype=np.int64)
+    share = np.zeros(N_JOINTS)
+    for g, names in enumerate(GROUPS):
+        for name in names:
+            group_of_joint[INDEX[name]] = g
+            share[INDEX[name]] = 1.0 / len(names)
+    return BodyModel(
+        stature_m=stature_m,
+        vertices_m=surface.vertices_m[used],
+        bones=bones,
+        weights=weights,
+        triangles=triangles,
+        colour=standard_shirt().colour_of_patch[surface.patch[keep]],
+        patch=surface.patch[keep],
+        triangle_bones=triangle_bones,
+        triangle_weights=triangle_weights,
+        rest_m=skeleton_of(mean_shape(stature_m)).rest_m,
+        d_vertices=d_vertices[:, used],
+        d_rest=d_rest,
+        parents=PARENTS,
+        group_of_joint=group_of_joint,
+        share_of_joint=share,
+        joint_of_group=np.array([INDEX[names[0]] for names in GROUPS]),
+    )
+
+
+def shaped(model: BodyModel, factors: Floats) -> tuple[Floats, Floats]:
+    """T-pose vertices (V,3) and joints (J,3) of a body with these factors: linear in them."""
+    offset = factors - 1.0
+    vertices = model.vertices_m + np.tensordot(offset, model.d_vertices, axes=1)
+    return vertices, model.rest_m + np.tensordot(offset, model.d_rest, axes=1)
+
+
+def shape_of(model: BodyModel, factors: Floats) -> BodyShape:
+    """The body shape of these factors."""
+    return BodyShape(model.stature_m, factors)
+
+
+def _strongest(weights: Floats) -> tuple[NDArray[np.int32], Floats]:
+    """The _BONES largest weights of each row, renormalised."""
+    bones = np.argsort(-weights, axis=1)[:, :_BONES]
+    kept = np.take_along_axis(weights, bones, axis=1)
+    return bones.astype(np.int32), kept / kept.sum(axis=1, keepdims=True)

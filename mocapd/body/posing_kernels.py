@@ -1,0 +1,284 @@
+"""Compiled forward kinematics, skinning, projection and their derivatives.
+
+A pose is local rotations (J,4) and a root position (3,). It is moved by a parameter vector: the
+root's translation, then a rotation vector for each *rotation group*, applied in the parent bone's
+frame. A group is one joint, or several that share a bend (the spine), each taking a share of it.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def quat_multiply(a: Array, b: Array, out: Array) -> None:
+    """out = a * b (xyzw)."""
+    ax, ay, az, aw = a[0], a[1], a[2], a[3]
+    bx, by, bz, bw = b[0], b[1], b[2], b[3]
+    out[0] = aw * bx + ax * bw + ay * bz - az * by
+    out[1] = aw * by - ax * bz + ay * bw + az * bx
+    out[2] = aw * bz + ax * by - ay * bx + az * bw
+    out[3] = aw * bw - ax * bx - ay * by - az * bz
+
+
+@njit(cache=True, nogil=True)
+def quat_exp(x: float, y: float, z: float, out: Array) -> None:
+    """Rotation vector [rad] to a quaternion."""
+    angle = np.sqrt(x * x + y * y + z * z)
+    s = 0.5 - angle * angle / 48.0 if angle < 1e-4 else np.sin(0.5 * angle) / angle
+    out[0], out[1], out[2], out[3] = x * s, y * s, z * s, np.cos(0.5 * angle)
+
+
+@njit(cache=True, nogil=True)
+def quat_log(q: Array, out: Array) -> None:
+    """Quaternion to a rotation vector (3,) [rad] of angle at most pi."""
+    s = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
+    sign = 1.0 if q[3] >= 0.0 else -1.0
+    f = 2.0 * sign if s < 1e-9 else 2.0 * np.arctan2(s, sign * q[3]) / s * sign
+    out[0], out[1], out[2] = q[0] * f, q[1] * f, q[2] * f
+
+
+@njit(cache=True, nogil=True)
+def retract(
+    root: Array,
+    local: Array,
+    step: Array,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    out_root: Array,
+    out_local: Array,
+) -> None:
+    """The pose moved by `step` (3 + 3 G): out may be the input itself."""
+    turn = np.empty(4)
+    result = np.empty(4)
+    for i in range(3):
+        out_root[i] = root[i] + step[i]
+    for j in range(local.shape[0]):
+        g = group_of_joint[j]
+        if g < 0:
+            for i in range(4):
+                out_local[j, i] = local[j, i]
+            continue
+        f = share_of_joint[j]
+        k = 3 + 3 * g
+        quat_exp(f * step[k], f * step[k + 1], f * step[k + 2], turn)
+        quat_multiply(turn, local[j], result)
+        norm = np.sqrt((result * result).sum())
+        for i in range(4):
+            out_local[j, i] = result[i] / norm
+
+
+@njit(cache=True, nogil=True)
+def difference(
+    root_a: Array,
+    local_a: Array,
+    root_b: Array,
+    local_b: Array,
+    joint_of_group: Ints,
+    share_of_joint: Array,
+    out: Array,
+) -> None:
+    """The step (3 + 3 G) that leads from b to a; a shared group is read off its first joint."""
+    conjugate = np.empty(4)
+    turn = np.empty(4)
+    vector = np.empty(3)
+    for i in range(3):
+        out[i] = root_a[i] - root_b[i]
+    for g in range(joint_of_group.shape[0]):
+        j = joint_of_group[g]
+        for i in range(3):
+            conjugate[i] = -local_b[j, i]
+        conjugate[3] = local_b[j, 3]
+        quat_multiply(local_a[j], conjugate, turn)
+        quat_log(turn, vector)
+        for i in range(3):
+            out[3 + 3 * g + i] = vector[i] / share_of_joint[j]
+
+
+@njit(cache=True, nogil=True)
+def forward_kinematics(
+    parents: Ints,
+    rest: Array,
+    root: Array,
+    local: Array,
+    out_R: Array,
+    out_joints: Array,
+    out_global: Array,
+) -> None:
+    """Global rotations as matrices (J,3,3) and quaternions (J,4), and joint centres (J,3)."""
+    for j in range(parents.shape[0]):
+        p = parents[j]
+        if p < 0:
+            for i in range(4):
+                out_global[j, i] = local[j, i]
+            for i in range(3):
+                out_joints[j, i] = root[i]
+        else:
+            quat_multiply(out_global[p], local[j], out_global[j])
+            for i in range(3):
+                out_joints[j, i] = out_joints[p, i]
+                for k in range(3):
+                    out_joints[j, i] += out_R[p, i, k] * (rest[j, k] - rest[p, k])
+        x, y, z, w = out_global[j, 0], out_global[j, 1], out_global[j, 2], out_global[j, 3]
+        out_R[j, 0, 0] = 1 - 2 * (y * y + z * z)
+        out_R[j, 0, 1] = 2 * (x * y - z * w)
+        out_R[j, 0, 2] = 2 * (x * z + y * w)
+        out_R[j, 1, 0] = 2 * (x * y + z * w)
+        out_R[j, 1, 1] = 1 - 2 * (x * x + z * z)
+        out_R[j, 1, 2] = 2 * (y * z - x * w)
+        out_R[j, 2, 0] = 2 * (x * z - y * w)
+        out_R[j, 2, 1] = 2 * (y * z + x * w)
+        out_R[j, 2, 2] = 1 - 2 * (x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
+def skin_and_project(
+    vertices: Array,
+    bones: NDArray[np.int32],
+    weights: Array,
+    rest: Array,
+    R: Array,
+    joints: Array,
+    cam_R: Array,
+    cam_t: Array,
+    K: Array,
+    dist: Array,
+    offset: Array,
+    scale: float,
+    out_xy: Array,
+    out_depth: Array,
+) -> None:
+    """Linear blend skinning and projection of T-pose vertices (V,3) with bones and weights (V,B).
+
+    out_xy (V,2) are pixels of a region: (pixel - offset) * scale, with pixel centres kept at
+    integers when pixels are averaged in blocks; out_depth (V,) [m] along the optical axis.
+    """
+    J = rest.shape[0]
+    # camera-from-T-pose of every bone, so that a vertex costs one blend of 3x4 matrices
+    M = np.empty((J, 3, 4))
+    for j in range(J):
+        for i in range(3):
+            for k in range(3):
+                M[j, i, k] = (
+                    cam_R[i, 0] * R[j, 0, k] + cam_R[i, 1] * R[j, 1, k] + cam_R[i, 2] * R[j, 2, k]
+                )
+        for i in range(3):
+            M[j, i, 3] = cam_t[i]
+            for k in range(3):
+                M[j, i, 3] += cam_R[i, k] * joints[j, k] - M[j, i, k] * rest[j, k]
+    fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
+    for v in range(vertices.shape[0]):
+        X = Y = Z = 0.0
+        vx, vy, vz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
+        for b in range(bones.shape[1]):
+            wt = weights[v, b]
+            if wt == 0.0:
+                continue
+            m = M[bones[v, b]]
+            X += wt * (m[0, 0] * vx + m[0, 1] * vy + m[0, 2] * vz + m[0, 3])
+            Y += wt * (m[1, 0] * vx + m[1, 1] * vy + m[1, 2] * vz + m[1, 3])
+            Z += wt * (m[2, 0] * vx + m[2, 1] * vy + m[2, 2] * vz + m[2, 3])
+        out_depth[v] = Z
+        if Z <= 0.05:
+            out_xy[v, 0] = out_xy[v, 1] = -1e6
+            continue
+        x, y = X / Z, Y / Z
+        r2 = x * x + y * y
+        radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+        yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+        out_xy[v, 0] = (fx * xd + cx - offset[0] + 0.5) * scale - 0.5
+        out_xy[v, 1] = (fy * yd + cy - offset[1] + 0.5) * scale - 0.5
+
+
+@njit(cache=True, nogil=True)
+def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) -> None:
+    """d posed joints / d factor: out (N,J,3) from d_rest (N,J,3); the root does not move."""
+    for n in range(d_rest.shape[0]):
+        for j in range(parents.shape[0]):
+            p = parents[j]
+            for i in range(3):
+                if p < 0:
+                    out[n, j, i] = 0.0
+                else:
+                    value = out[n, p, i]
+                    for k in range(3):
+                        value += R[p, i, k] * (d_rest[n, j, k] - d_rest[n, p, k])
+                    out[n, j, i] = value
+
+
+@njit(cache=True, nogil=True)
+def surface_row(
+    point: Array,
+    point_bones: NDArray[np.int32],
+    point_weights: Array,
+    d_point: Array,
+    g: Array,
+    rest: Array,
+    parents: Ints,
+    joint_of_group: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    d_rest: Array,
+    d_joints: Array,
+    n_shape: int,
+    out: Array,
+) -> None:
+    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + n_shape).
+
+    p is the surface point whose T-pose position is `point`; g (3,) in the world. The columns of
+    rotation group g turn about the axes of the parent bone (geometric Jacobian).
+    """
+    G = joint_of_group.shape[0]
+    for i in range(3):
+        out[i] = g[0] if i == 0 else (g[1] if i == 1 else g[2])
+    for k in range(3, 3 + 3 * G + n_shape):
+        out[k] = 0.0
+    for b in range(point_bones.shape[0]):
+        wt = point_weights[b]
+        if wt == 0.0:
+            continue
+        bone = point_bones[b]
+        dx, dy, dz = point[0] - rest[bone, 0], point[1] - rest[bone, 1], point[2] - rest[bone, 2]
+        Px = joints[bone, 0] + R[bone, 0, 0] * dx + R[bone, 0, 1] * dy + R[bone, 0, 2] * dz
+        Py = joints[bone, 1] + R[bone, 1, 0] * dx + R[bone, 1, 1] * dy + R[bone, 1, 2] * dz
+        Pz = joints[bone, 2] + R[bone, 2, 0] * dx + R[bone, 2, 1] * dy + R[bone, 2, 2] * dz
+        j = bone
+        while j >= 0:
+            group = group_of_joint[j]
+            if group >= 0:
+                f = wt * share_of_joint[j]
+                rx, ry, rz = Px - joints[j, 0], Py - joints[j, 1], Pz - joints[j, 2]
+                # a . (r x g) summed over the group's axes a
+                mx = f * (ry * g[2] - rz * g[1])
+                my = f * (rz * g[0] - rx * g[2])
+                mz = f * (rx * g[1] - ry * g[0])
+                p = parents[j]
+                k = 3 + 3 * group
+                if p < 0:
+                    out[k] += mx
+                    out[k + 1] += my
+                    out[k + 2] += mz
+                else:
+                    for i in range(3):
+                        out[k + i] += R[p, 0, i] * mx + R[p, 1, i] * my + R[p, 2, i] * mz
+            j = parents[j]
+        # g in the bone's frame
+        hx = R[bone, 0, 0] * g[0] + R[bone, 1, 0] * g[1] + R[bone, 2, 0] * g[2]
+        hy = R[bone, 0, 1] * g[0] + R[bone, 1, 1] * g[1] + R[bone, 2, 1] * g[2]
+        hz = R[bone, 0, 2] * g[0] + R[bone, 1, 2] * g[1] + R[bone, 2, 2] * g[2]
+        for n in range(n_shape):
+            out[3 + 3 * G + n] += wt * (
+                hx * (d_point[n, 0] - d_rest[n, bone, 0])
+                + hy * (d_point[n, 1] - d_rest[n, bone, 1])
+                + hz * (d_point[n, 2] - d_rest[n, bone, 2])
+                + g[0] * d_joints[n, bone, 0]
+                + g[1] * d_joints[n, bone, 1]
+                + g[2] * d_joints[n, bone, 2]
+            )
