@@ -8,9 +8,7 @@ class MocapdError(Exception):
 
     def __init__(self, what: str, where: str = "", fix: str = "") -> None:
         self.what, self.where, self.fix = what, where, fix
-        super().__init__(
-            (f"{where}: " if where else "") + what + (f" -- {fix}" if fix else "")
-        )
+        super().__init__((f"{where}: " if where else "") + what + (f" -- {fix}" if fix else ""))
 
 
 class InputError(MocapdError):

@@ -43,6 +43,7 @@ class BodyModel:
     triangles: NDArray[np.int32]  # (T,3)
     colour: NDArray[np.uint8]  # (T,) 0..10
     patch: NDArray[np.uint8]  # (T,) 0..20
+    part: NDArray[np.uint8]  # (T,) TORSO, LEFT_ARM, RIGHT_ARM or HEAD of body.surface
     triangle_bones: NDArray[np.int32]  # (T,B), of the triangle's centre
     triangle_weights: Floats  # (T,B)
     rest_m: Floats  # (J,3)
@@ -80,6 +81,7 @@ def build_model(stature_m: float) -> BodyModel:
         triangles=triangles,
         colour=standard_shirt().colour_of_patch[surface.patch[keep]],
         patch=surface.patch[keep],
+        part=surface.part[keep],
         triangle_bones=triangle_bones,
         triangle_weights=triangle_weights,
         rest_m=skeleton_of(mean_shape(stature_m)).rest_m,

@@ -34,7 +34,8 @@ def undistort(dist: Floats, xy_distorted: Floats, iterations: int = 20) -> Float
         r2 = x * x + y * y
         radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
         tangential = np.stack(
-            [2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y], axis=-1
+            [2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y],
+            axis=-1,
         )
         xy = (xy_distorted - tangential) / radial[..., None]
     return xy
@@ -45,7 +46,8 @@ def project(camera: Camera, world_m: Floats) -> Floats:
     p = to_camera(camera, np.asarray(world_m, dtype=float))
     z = np.where(p[..., 2:] > 1e-6, p[..., 2:], np.nan)
     xy = distort(camera.dist, p[..., :2] / z)
-    return xy * np.array([camera.K[0, 0], camera.K[1, 1]]) + camera.K[:2, 2]
+    pixels: Floats = xy * np.array([camera.K[0, 0], camera.K[1, 1]]) + camera.K[:2, 2]
+    return pixels
 
 
 def normalised(camera: Camera, pixels: Floats) -> Floats:

@@ -17,7 +17,7 @@ def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) 
         raise ConfigError(f"the field {key!r} is missing", where, _RECALIBRATE)
     try:
         value = np.asarray(entry[key], dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ConfigError(f"{key!r} is not a list of numbers", where, _RECALIBRATE) from None
     if value.shape != shape:
         raise ConfigError(f"{key!r} has shape {value.shape}, wanted {shape}", where, _RECALIBRATE)
@@ -26,20 +26,27 @@ def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) 
     return value
 
 
-def camera_from_dict(entry: dict[str, Any], where: str) -> Camera:
+def camera_from_dict(entry: Any, where: str) -> Camera:
     """One camera of a rig file. Raises ConfigError naming the field."""
-    if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
+    name = entry.get("name") if isinstance(entry, dict) else None
+    if not isinstance(name, str) or not name:
         raise ConfigError("a camera without a 'name'", where, _RECALIBRATE)
-    where = f"{where}, camera {entry['name']!r}"
+    where = f"{where}, camera {name!r}"
     size = _array(entry, "size", (2,), where)
     K = _array(entry, "K", (3, 3), where)
     R = _array(entry, "R", (3, 3), where)
     if size.min() < 16 or K[0, 0] <= 0 or K[1, 1] <= 0:
-        raise ConfigError("'size' and the focal lengths in 'K' must be positive", where, _RECALIBRATE)
+        raise ConfigError(
+            "'size' and the focal lengths in 'K' must be positive", where, _RECALIBRATE
+        )
+    if size.max() > 1e5 or (size != np.round(size)).any():
+        raise ConfigError("'size' is not width and height in whole pixels", where, _RECALIBRATE)
+    if K[0, 1] != 0 or K[1, 0] != 0 or not np.array_equal(K[2], (0, 0, 1)):
+        raise ConfigError("'K' is not [fx 0 cx, 0 fy cy, 0 0 1]", where, _RECALIBRATE)
     if np.abs(R @ R.T - np.eye(3)).max() > 1e-3 or np.linalg.det(R) < 0:
         raise ConfigError("'R' is not a rotation matrix", where, _RECALIBRATE)
     return Camera(
-        name=entry["name"],
+        name=name,
         size_px=(int(size[0]), int(size[1])),
         K=K,
         dist=_array(entry, "dist", (5,), where),
@@ -55,8 +62,10 @@ def read_json(path: Path) -> Any:
     except FileNotFoundError:
         raise InputError("no such file", str(path), "check the path") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read ({error})", str(path), "check the path and its rights") from None
-    except json.JSONDecodeError as error:
+        raise InputError(
+            f"cannot be read ({error})", str(path), "check the path and its rights"
+        ) from None
+    except (json.JSONDecodeError, RecursionError) as error:
         raise ConfigError(f"not valid JSON ({error})", str(path), _RECALIBRATE) from None
 
 

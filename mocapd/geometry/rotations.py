@@ -9,8 +9,8 @@ IDENTITY_XYZW = np.array([0.0, 0.0, 0.0, 1.0])
 
 def canonical(q_xyzw: Floats) -> Floats:
     """The same rotations (...,4) with unit norm and w >= 0."""
-    q = q_xyzw / np.linalg.norm(q_xyzw, axis=-1, keepdims=True)
-    return np.where(q[..., 3:] < 0.0, -q, q)
+    q: Floats = q_xyzw / np.linalg.norm(q_xyzw, axis=-1, keepdims=True)
+    return q * np.where(q[..., 3:] < 0.0, -1.0, 1.0)
 
 
 def multiply(a_xyzw: Floats, b_xyzw: Floats) -> Floats:
@@ -30,14 +30,22 @@ def multiply(a_xyzw: Floats, b_xyzw: Floats) -> Floats:
 
 def inverse(q_xyzw: Floats) -> Floats:
     """Conjugate of unit quaternions (...,4)."""
-    return np.asarray(q_xyzw) * np.array([-1.0, -1.0, -1.0, 1.0])
+    conjugate: Floats = np.asarray(q_xyzw) * np.array([-1.0, -1.0, -1.0, 1.0])
+    return conjugate
 
 
 def rotate(q_xyzw: Floats, v: Floats) -> Floats:
     """Vectors v (...,3) turned by q (...,4)."""
     u, w = q_xyzw[..., :3], q_xyzw[..., 3:]
-    t = 2.0 * np.cross(u, v)
-    return v + w * t + np.cross(u, t)
+    t = 2.0 * _cross(u, v)
+    return v + w * t + _cross(u, t)
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """np.cross for (...,3), without its overhead, which is several times this at 22 bones."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
 
 def exp(rotvec_rad: Floats) -> Floats:
@@ -55,9 +63,11 @@ def log(q_xyzw: Floats) -> Floats:
     """Quaternions (...,4) to rotation vectors (...,3) [rad], angle in [0, pi]."""
     q = canonical(q_xyzw)
     s = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
-    small = s < 1e-5
+    small = s < 1e-8  # below, the quotient is 2/w to rounding, and s may have underflowed
     scale = np.where(
-        small, 2.0 / q[..., 3:].clip(1e-9), 2.0 * np.arctan2(s, q[..., 3:]) / np.where(small, 1.0, s)
+        small,
+        2.0 / q[..., 3:].clip(1e-9),
+        2.0 * np.arctan2(s, q[..., 3:]) / np.where(small, 1.0, s),
     )
     return q[..., :3] * scale
 
@@ -97,7 +107,8 @@ def from_matrix(R: Floats) -> Floats:
 
 def angle_rad(a_xyzw: Floats, b_xyzw: Floats) -> Floats:
     """Angle between rotations (...,) [rad]."""
-    return np.linalg.norm(log(multiply(a_xyzw, inverse(b_xyzw))), axis=-1)
+    angle: Floats = np.linalg.norm(log(multiply(a_xyzw, inverse(b_xyzw))), axis=-1)
+    return angle
 
 
 def slerp(a_xyzw: Floats, b_xyzw: Floats, u: float | Floats) -> Floats:

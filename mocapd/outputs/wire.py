@@ -1,28 +1,108 @@
-"""The wire schema `mocapd.Skeleton.v1`: what a subscriber decodes."""
+"""The wire schema `mocapd.Skeleton.v1`: what a subscriber decodes.
+
+A msgpack map (or the same as JSON), self-describing, so that any language reads it. Within v1 fields
+are only added: a decoder skips fields it does not know. Frame of reference: the world of
+`mocapd.types` (right-handed, +Y up, metres, a person at rest faces +Z), quaternions xyzw.
+"""
+
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
+
+from mocapd.errors import InputError
+
+SCHEMA = "mocapd.Skeleton.v1"
+MSGPACK_MIME = "application/msgpack"
+JSON_MIME = "application/json"
+MSGPACK = f"{MSGPACK_MIME};{SCHEMA}"
+JSON = f"{JSON_MIME};{SCHEMA}"
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
 
 
 class Joint(msgspec.Struct, frozen=True, gc=False):
-    """One bone: `p` position [m, world], `r` global and `l` local rotation (xyzw), `c` confidence 0..1."""
+    """One bone. Keys are single letters because they are sent once per bone and frame."""
 
-    p: tuple[float, float, float]
-    r: tuple[float, float, float, float]
-    l: tuple[float, float, float, float]  # noqa: E741 (the wire's short key)
-    c: float
+    p: Annotated[Vector, Meta(description="position of the joint in the world [m], x y z")]
+    r: Annotated[
+        Quaternion, Meta(description="global rotation relative to the T-pose, x y z w, w >= 0")
+    ]
+    l: Annotated[  # noqa: E741 (the wire's short key)
+        Quaternion, Meta(description="rotation relative to the parent bone, x y z w, w >= 0")
+    ]
+    c: Annotated[float, Meta(description="confidence 0..1, near 0 where there is no evidence")]
 
 
 class SkeletonFrame(msgspec.Struct, frozen=True):
     """One person at one instant, as sent. Lost: `joints` is empty."""
 
-    schema: str
-    instance: str
-    person: int
-    seq: int
-    capture_monotonic_ns: int
-    capture_unix_ns: int
-    publish_monotonic_ns: int
-    tracker: str
-    tracking: str
-    cameras: tuple[str, ...]
-    joints: dict[str, Joint]
+    schema: Annotated[str, Meta(description=f"always `{SCHEMA}`")]
+    instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
+    person: Annotated[int, Meta(description="number of the person, as in the key")]
+    seq: Annotated[int, Meta(description="counts the frames made; a gap is a frame not received")]
+    capture_monotonic_ns: Annotated[
+        int, Meta(description="middle of the exposure, CLOCK_MONOTONIC of the sender [ns]")
+    ]
+    capture_unix_ns: Annotated[int, Meta(description="the same instant, Unix time [ns]")]
+    publish_monotonic_ns: Annotated[
+        int, Meta(description="when the frame was handed to the outputs, CLOCK_MONOTONIC [ns]")
+    ]
+    tracker: Annotated[str, Meta(description="which tracker: `colour`, `flex`, `hull`, `canned`")]
+    tracking: Annotated[str, Meta(description="`live`, `coasting` (predicted) or `lost`")]
+    cameras: Annotated[tuple[str, ...], Meta(description="cameras whose evidence was used")]
+    joints: Annotated[
+        dict[str, Joint], Meta(description="by VRM 1.0 bone name; empty when tracking is `lost`")
+    ]
+
+
+_msgpack_decoder = msgspec.msgpack.Decoder(SkeletonFrame)
+_json_decoder = msgspec.json.Decoder(SkeletonFrame)
+
+
+def encode_msgpack(frame: SkeletonFrame) -> bytes:
+    """The frame as a msgpack map; its encoding string is `MSGPACK`."""
+    return msgspec.msgpack.encode(frame)
+
+
+def encode_json(frame: SkeletonFrame) -> bytes:
+    """The frame as JSON, for eyes and debugging; its encoding string is `JSON`."""
+    return msgspec.json.encode(frame)
+
+
+def decode(payload: bytes, encoding: str = MSGPACK) -> SkeletonFrame:
+    """A payload back to a frame; fields of later additions to v1 are skipped.
+
+    `encoding` is what came with it, `<mime>;<schema>`. Raises InputError for a damaged payload, an
+    encoding that is neither msgpack nor JSON, or another schema version.
+    """
+    mime, _, schema = encoding.partition(";")
+    if schema and schema != SCHEMA:
+        raise _other_schema(schema)
+    try:
+        if mime == MSGPACK_MIME:
+            frame = _msgpack_decoder.decode(payload)
+        elif mime == JSON_MIME:
+            frame = _json_decoder.decode(payload)
+        else:
+            raise InputError(
+                f"encoding {encoding!r} is not known", "wire", f"send {MSGPACK!r} or {JSON!r}"
+            )
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"a payload of {len(payload)} bytes is no {SCHEMA}: {error}",
+            "wire",
+            "look for another program that publishes on this key",
+        ) from error
+    if frame.schema != SCHEMA:
+        raise _other_schema(frame.schema)
+    return frame
+
+
+def _other_schema(schema: str) -> InputError:
+    return InputError(
+        f"the sender speaks {schema!r}, this program reads {SCHEMA!r}",
+        "wire",
+        "bring daemon and client to the same version of mocapd",
+    )

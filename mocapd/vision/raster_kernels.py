@@ -28,6 +28,19 @@ def rasterise(
         for x in range(w):
             zbuffer[y, x] = np.float32(1e9)
             triangle_at[y, x] = NOTHING
+    draw(xy, depth, triangles, zbuffer, triangle_at)
+
+
+@njit(cache=True, nogil=True)
+def draw(
+    xy: Array,
+    depth: Array,
+    triangles: NDArray[np.int32],
+    zbuffer: NDArray[np.float32],
+    triangle_at: NDArray[np.int32],
+) -> None:
+    """As `rasterise`, over what the buffers already hold."""
+    h, w = triangle_at.shape
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
         za, zb, zc = depth[a], depth[b], depth[c]

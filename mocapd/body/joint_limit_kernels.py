@@ -1,0 +1,93 @@
+"""Compiled angles of the rotation groups against their limits, with derivatives."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def limit_residuals(
+    local: Array,
+    joint_of_group: Ints,
+    share_of_joint: Array,
+    axis_of_group: Ints,
+    lower: Array,
+    upper: Array,
+    residual: Array,
+    derivative: Array,
+) -> None:
+    """How far each group is beyond its limits: residual (G,3) [rad], 0 inside.
+
+    local (J,4) xyzw; lower, upper (G,3) [rad] along x y z of the parent bone: the component
+    `axis_of_group` is the twist about the bone, the two others are the swing's rotation vector
+    (rotation = swing * twist, the swing last). derivative (G,3,3): d residual[g, i] / d step[g, k]
+    for the solver's step, a rotation vector in the parent's frame of which each joint of the group
+    takes its share. A group with axis -1 has no limits.
+    """
+    d = np.empty(4)
+    c = np.empty(3)
+    dc = np.empty((3, 3))
+    for g in range(joint_of_group.shape[0]):
+        for i in range(3):
+            residual[g, i] = 0.0
+            for k in range(3):
+                derivative[g, i, k] = 0.0
+        a = axis_of_group[g]
+        if a < 0:
+            continue
+        j = joint_of_group[g]
+        share = share_of_joint[j]
+        b, e = (a + 1) % 3, (a + 2) % 3  # the axes after the twist axis, in cyclic order
+        w = local[j, 3]
+        sign = 1.0 if w >= 0.0 else -1.0
+        w *= sign
+        qa, qb, qe = sign * local[j, a], sign * local[j, b], sign * local[j, e]
+        n2 = max(qa * qa + w * w, 1e-12)
+        n = np.sqrt(n2)
+        m2 = qb * qb + qe * qe
+        m = np.sqrt(m2)
+        # swing = q * twist^-1; its vector part is (p, r) / n, its angle 2 atan2(m, n)
+        p = qb * w - qa * qe
+        r = qa * qb + qe * w
+        if m < 1e-5:
+            f, df = 2.0 + m2 / 3.0, 2.0 / 3.0
+        else:
+            angle = 2.0 * np.arctan2(m, n)
+            f = angle / m
+            df = (2.0 / max(n, 1e-6) - f) / m2  # (d f / d m) / m
+        c[a] = 2.0 * np.arctan2(qa, w)
+        c[b] = f * p / n
+        c[e] = f * r / n
+        for k in range(3):
+            # dq = step * q / 2 for a unit step about axis k (relative order a, b, e)
+            if k == 0:
+                d[0], d[1], d[2], d[3] = w, -qe, qb, -qa
+            elif k == 1:
+                d[0], d[1], d[2], d[3] = qe, w, -qa, -qb
+            else:
+                d[0], d[1], d[2], d[3] = -qb, qa, w, -qe
+            for i in range(4):
+                d[i] *= 0.5
+            axis = a if k == 0 else (b if k == 1 else e)
+            dc[a, axis] = 2.0 * (w * d[0] - qa * d[3]) / n2
+            dn = (qa * d[0] + w * d[3]) / n
+            dp = d[1] * w + qb * d[3] - d[0] * qe - qa * d[2]
+            dr = d[0] * qb + qa * d[1] + d[2] * w + qe * d[3]
+            dfk = df * (qb * d[1] + qe * d[2])
+            dc[b, axis] = dfk * p / n + f * (dp - p * dn / n) / n
+            dc[e, axis] = dfk * r / n + f * (dr - r * dn / n) / n
+        for i in range(3):
+            # angles of the whole group; a joint's share of the step undoes the division
+            over = c[i] / share - upper[g, i]
+            under = c[i] / share - lower[g, i]
+            if over > 0.0:
+                residual[g, i] = over
+            elif under < 0.0:
+                residual[g, i] = under
+            else:
+                continue
+            for k in range(3):
+                derivative[g, i, k] = dc[i, k]

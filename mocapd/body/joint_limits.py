@@ -1,0 +1,115 @@
+"""How far the joints of an upper body go, and a soft limit for solvers.
+
+Angles are taken from the T-pose (palms down, the pit of the elbow forwards) in the frame of the
+parent bone, split into a twist about the bone and a swing. Positive senses, left side (the right is
+its mirror image): about x inward rotation and pronation, about -y forwards, about z upwards. Spine:
+about x flexion, about y a turn to the left, about z a lean to the right.
+
+Sources, degrees, adult men unless said otherwise:
+- Boone & Azen 1979 (J. Bone Joint Surg. 61-A:756): shoulder horizontal flexion 141 and extension 45,
+  abduction 184, inward rotation 69, outward rotation 104; elbow flexion 143, extension 1; forearm
+  pronation 76, supination 82 (standard deviations 3 to 9).
+- AAOS 1965, Joint Motion: thoracolumbar flexion 80, extension 25, lateral bending 35, rotation 45;
+  the shoulder crosses the body by about 30 beyond hanging (adduction 45 to 50 with the arm in front).
+- Ludewig et al. 2009 (J. Bone Joint Surg. 91-A:378) and Kapandji, Physiology of the Joints vol. 1:
+  the collar bone rises 30 to 45, sinks 5 to 10, goes 25 forwards and 25 backwards, turns about 30.
+Two standard deviations are added, because a person may be looser than the mean. The upper arm's
+range includes what the collar bone gives, as trackers divide the motion between both differently.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.joint_limit_kernels import limit_residuals
+from mocapd.body.model import GROUPS
+from mocapd.body.skeleton import INDEX
+from mocapd.geometry import rotations
+from mocapd.types import Floats, Ints
+
+X, Y = 0, 1
+
+# left side: twist axis, then (least, greatest) about x, y, z [deg]
+_LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
+    "spine": (Y, ((-30.0, 85.0), (-50.0, 50.0), (-40.0, 40.0))),
+    "Shoulder": (X, ((-30.0, 30.0), (-30.0, 30.0), (-15.0, 45.0))),
+    # swing: 153 forwards and 58 backwards across the horizontal, 105 up, 105 down. The twist is
+    # wider than the 104 + 69 measured in abduction: its neutral point moves with the swing (Codman),
+    # and a hand behind the head or the back takes it to these ends
+    "UpperArm": (X, ((-140.0, 130.0), (-153.0, 58.0), (-105.0, 105.0))),
+    # flexion is about -y when the pit of the elbow looks forwards in the T-pose; skeletons differ in
+    # that neutral twist of the upper arm by up to 45 degrees, which tilts the hinge towards z
+    "LowerArm": (X, ((-90.0, 90.0), (-155.0, 7.0), (-25.0, 75.0))),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointLimits:
+    """Limits of the G rotation groups of mocapd.body.model; axis -1: free (the root).
+
+    lower_rad, upper_rad (G,3): about x y z of the parent bone, twist at `axis`, swing elsewhere.
+    joint (G,): the joint that a group's angle is read from; share (J,): its share of the angle.
+    """
+
+    axis: Ints  # (G,)
+    joint: Ints  # (G,)
+    share: Floats  # (J,)
+    lower_rad: Floats  # (G,3)
+    upper_rad: Floats  # (G,3)
+
+
+def standard_limits() -> JointLimits:
+    """The limits of an adult, in the order of GROUPS."""
+    axis = np.full(len(GROUPS), -1)
+    share = np.ones(len(INDEX))
+    lower, upper = np.full((len(GROUPS), 3), -np.inf), np.full((len(GROUPS), 3), np.inf)
+    for g, names in enumerate(GROUPS):
+        for name in names:
+            share[INDEX[name]] = 1.0 / len(names)
+        first = names[0]
+        bone = first.removeprefix("left").removeprefix("right")
+        if bone not in _LIMITS_DEG:
+            continue
+        axis[g], ranges = _LIMITS_DEG[bone]
+        low, high = np.radians(np.array(ranges)).T
+        if first.startswith("right"):  # mirrored in x = 0: turns about y and z change their sign
+            low, high = (
+                np.array([low[0], -high[1], -high[2]]),
+                np.array([high[0], -low[1], -low[2]]),
+            )
+        lower[g], upper[g] = low, high
+    joint = np.array([INDEX[names[0]] for names in GROUPS])
+    return JointLimits(axis, joint, share, lower, upper)
+
+
+def soft_limit(limits: JointLimits, local_xyzw: Floats) -> tuple[float, Floats, Floats]:
+    """Half the squared excess [rad^2], the excess (G,3) [rad], and its derivative (G,3,3).
+
+    The derivative is by a step of the group's rotation vector in the parent's frame, as
+    `posing_kernels.retract` applies it; solvers call the kernel itself.
+    """
+    G = len(limits.axis)
+    residual, derivative = np.zeros((G, 3)), np.zeros((G, 3, 3))
+    limit_residuals(
+        np.asarray(local_xyzw, dtype=float), limits.joint, limits.share,
+        limits.axis, limits.lower_rad, limits.upper_rad, residual, derivative,
+    )  # fmt: skip
+    return 0.5 * float((residual**2).sum()), residual, derivative
+
+
+def swing_twist(q_xyzw: Floats, axis: int) -> Floats:
+    """Angles (...,3) [rad] of rotations (...,4): the twist at `axis`, the swing's vector elsewhere."""
+    q = rotations.canonical(np.asarray(q_xyzw, dtype=float))
+    twist = np.zeros_like(q)
+    twist[..., axis], twist[..., 3] = q[..., axis], np.maximum(q[..., 3], 1e-12)
+    twist = rotations.canonical(twist)
+    angles = rotations.log(rotations.multiply(q, rotations.inverse(twist)))
+    angles[..., axis] = rotations.log(twist)[..., axis]
+    return angles
+
+
+def from_swing_twist(angles_rad: Floats, axis: int) -> Floats:
+    """The inverse of `swing_twist`: rotations (...,4)."""
+    swing, twist = np.array(angles_rad, dtype=float), np.zeros_like(angles_rad)
+    swing[..., axis], twist[..., axis] = 0.0, angles_rad[..., axis]
+    return rotations.canonical(rotations.multiply(rotations.exp(swing), rotations.exp(twist)))

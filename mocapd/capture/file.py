@@ -1,0 +1,181 @@
+"""A video file as a camera: at its own pace when played live, as fast as it decodes offline."""
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+
+from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.pace import Pace
+from mocapd.capture.pixels import frozen_pixels
+from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
+from mocapd.types import Frame
+
+_MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
+
+
+@dataclass(frozen=True, slots=True)
+class VideoInfo:
+    """What a video file says of itself; `frames` is 0 where the format does not tell."""
+
+    size_px: tuple[int, int]  # width, height
+    fps_hz: float
+    frames: int
+
+
+def probe_video(path: Path) -> VideoInfo:
+    """Size, rate and length of a video. Raises InputError when it is missing, damaged or empty."""
+    capture = _open(path)
+    try:
+        if not capture.grab():
+            raise InputError(
+                "the video holds no frame that can be decoded", str(path), "record it again"
+            )
+        return _info(capture)
+    finally:
+        capture.release()
+
+
+def _open(path: Path) -> cv2.VideoCapture:
+    if not path.is_file():
+        raise InputError("no such video file", str(path), "check the path")
+    # One decoding thread: the library's pool costs more than it gives at these sizes.
+    capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
+    if not capture.isOpened():
+        capture.release()
+        raise InputError(
+            "not a video, or damaged: its header cannot be read",
+            str(path),
+            "check that the recording was closed properly, or convert it with ffmpeg",
+        )
+    return capture
+
+
+def _info(capture: cv2.VideoCapture) -> VideoInfo:
+    size = (int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)))
+    fps_hz = capture.get(cv2.CAP_PROP_FPS)
+    return VideoInfo(
+        size,
+        fps_hz if 0 < fps_hz < 1000 else 30.0,
+        max(0, int(capture.get(cv2.CAP_PROP_FRAME_COUNT))),
+    )
+
+
+class FileSource:
+    """Frame f of the file has time start + f / fps + offset, whatever the file's own stamps say.
+
+    `fps_hz` None takes the file's rate. `size_px` (width, height), when given, must be the
+    video's. `pace` is shared by files that belong together; None reads offline, from time 0. Live,
+    a reader that falls behind by more than a frame skips to the frame that is due, as a webcam
+    would: `seq` is the index in the file, so the gap shows.
+    """
+
+    recorded = True
+
+    def __init__(
+        self,
+        name: str,
+        path: Path,
+        fps_hz: float | None = None,
+        time_offset_s: float = 0.0,
+        pace: Pace | None = None,
+        size_px: tuple[int, int] | None = None,
+    ) -> None:
+        self.name = name
+        self.path = path
+        self._asked_fps_hz = fps_hz
+        self._offset_ns = round(time_offset_s * NS_PER_S)
+        self._pace = pace if pace is not None else Pace(live=False)
+        self._size_px = size_px
+        self._fps_hz = self._file_fps_hz = fps_hz or 30.0
+        self._frames = 0  # as the file announces them; 0 where it does not
+        self._index = -1  # of the newest frame
+        self._file_ms = 0.0  # its time by the file's own stamp
+        self.torn = 0
+        self._capture: GuardedCapture | None = None
+        self._closed = threading.Event()
+
+    def open(self) -> None:
+        """Raises InputError (missing, damaged) or ConfigError (another size than its calibration)."""
+        self.close()
+        info = probe_video(self.path)
+        if self._size_px is not None and info.size_px != self._size_px:
+            raise size_error(str(self.path), self.name, info.size_px, self._size_px)
+        self._fps_hz = self._asked_fps_hz or info.fps_hz
+        self._frames = info.frames
+        self._file_fps_hz = info.fps_hz
+        self._index = -1
+        self._closed.clear()
+        self._capture = GuardedCapture(_open(self.path))
+
+    def read(self) -> Frame:
+        """The next frame, or the one that is due. Raises EndOfStream with the count of frames.
+
+        A frame that does not decode is left out and counted in `torn`; those after it keep their
+        index and time.
+        """
+        guarded = self._capture
+        if guarded is None:
+            raise CameraLost("not open", self.name, "call open first")
+        with guarded as capture:
+            if guarded.closing:
+                raise CameraLost("closed", self.name)
+            self._grab(capture)
+            if self._pace.live:
+                while monotonic_ns() > self._due_ns(self._index + 1):
+                    self._grab(capture)
+                wait_ns = self._due_ns(self._index) - monotonic_ns()
+                if self._closed.wait(max(0, wait_ns) / NS_PER_S):
+                    raise CameraLost("closed while reading", self.name)
+            _, pixels = capture.retrieve()
+        return Frame(self.name, self._index, self._due_ns(self._index), frozen_pixels(pixels))
+
+    def close(self) -> None:
+        """Wakes a waiting `read`, which then raises CameraLost."""
+        self._closed.set()
+        if self._capture is not None:
+            self._capture.close()
+
+    def _due_ns(self, index: int) -> int:
+        return self._pace.start_ns() + round(index * NS_PER_S / self._fps_hz) + self._offset_ns
+
+    def _grab(self, capture: cv2.VideoCapture) -> None:
+        """Step to the next frame that decodes. Damaged ones show as a gap in the file's own time."""
+        for _ in range(_MOST_MISSES):
+            if capture.grab():
+                file_ms = capture.get(cv2.CAP_PROP_POS_MSEC)
+                gap = round((file_ms - self._file_ms) * 1e-3 * self._file_fps_hz)
+                step = max(1, gap) if self._index >= 0 else 1
+                self.torn += step - 1
+                self._index += step
+                self._file_ms = file_ms
+                return
+            if self._index + 1 >= self._frames:
+                break
+        raise self._end()
+
+    def _end(self) -> EndOfStream:
+        came = self._index + 1
+        if came + 1 < self._frames:  # one frame too many is the rounding of some headers
+            return EndOfStream(
+                f"ended after {came} of the {self._frames} frames it announces",
+                str(self.path),
+                "the file is cut short or damaged there; what came before was used",
+            )
+        return EndOfStream(f"ended after all of its {came} frames", str(self.path))
+
+
+def size_error(
+    where: str, camera: str, got_px: tuple[int, int], want_px: tuple[int, int]
+) -> ConfigError:
+    """The error of a picture that does not fit the calibration, naming both sizes."""
+    return ConfigError(
+        f"the pictures are {got_px[0]}x{got_px[1]}, but camera {camera!r} was calibrated at "
+        f"{want_px[0]}x{want_px[1]}",
+        where,
+        f"record or set the camera to {want_px[0]}x{want_px[1]}, or calibrate it again",
+    )

@@ -1,0 +1,204 @@
+"""A folder in the capture format: rig.json, camN.mp4, subject.json, scribble/, model/."""
+
+import logging
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from mocapd.capture.file import FileSource, probe_video, size_error
+from mocapd.capture.pace import Pace
+from mocapd.errors import ConfigError, EndOfStream, InputError
+from mocapd.geometry.rig_file import load_rig, read_json
+from mocapd.types import Frame, FrameSet, Rig
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class StrokedImage:
+    """An image and a user's strokes on it (PNG: 0 none, 1..10 the colour id)."""
+
+    image: Path
+    strokes: Path
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedCamera:
+    """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble` is None when there is none."""
+
+    name: str
+    video: Path
+    size_px: tuple[int, int]  # width, height
+    fps_hz: float
+    time_offset_s: float
+    frames: int
+    scribble: StrokedImage | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaptureFolder:
+    """A recorded session; `cameras` in the rig's order. `stature_m` is None where no subject is given.
+
+    `model`: images of the shirt in neutral light with strokes, for the offline colour model.
+    """
+
+    path: Path
+    rig: Rig
+    cameras: tuple[RecordedCamera, ...]
+    stature_m: float | None
+    model: tuple[StrokedImage, ...]
+
+    @property
+    def fps_hz(self) -> float:
+        """The common rate of the cameras."""
+        return self.cameras[0].fps_hz
+
+
+def load_folder(path: Path) -> CaptureFolder:
+    """Read and check a capture folder; every video is opened once.
+
+    Raises InputError (something is missing or damaged) or ConfigError (a value is wrong, a video's
+    size is not that of its calibration, or the cameras' rates differ).
+    """
+    if not path.is_dir():
+        raise InputError("no such capture folder", str(path), "check the path")
+    rig_path = path / "rig.json"
+    rig = load_rig(rig_path)
+    entries = read_json(rig_path)["cameras"]
+    cameras = tuple(
+        _camera(path, entry, camera.size_px)
+        for entry, camera in zip(entries, rig.cameras, strict=True)
+    )
+    rates = sorted({camera.fps_hz for camera in cameras})
+    if len(rates) > 1:
+        raise ConfigError(
+            f"the cameras run at different rates ({rates} Hz)",
+            str(rig_path),
+            "frames of one index must belong together: convert the videos to one rate",
+        )
+    return CaptureFolder(
+        path, rig, cameras, _stature_m(path / "subject.json"), _model(path / "model")
+    )
+
+
+def _number(entry: dict[str, Any], key: str, default: float, where: str) -> float:
+    value = entry.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ConfigError(f"{key!r} must be a number, is {value!r}", where, "correct the file")
+    return float(value)
+
+
+def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> RecordedCamera:
+    name: str = entry["name"]
+    where = f"{folder / 'rig.json'}, camera {name!r}"
+    file = entry.get("file", f"{name}.mp4")
+    if not isinstance(file, str):
+        raise ConfigError(f"'file' must be a file name, is {file!r}", where, "correct the file")
+    video = folder / file
+    info = probe_video(video)
+    if info.size_px != size_px:
+        raise size_error(str(video), name, info.size_px, size_px)
+    fps_hz = _number(entry, "fps", info.fps_hz, where)
+    if fps_hz <= 0:
+        raise ConfigError(f"'fps' must be above 0, is {fps_hz:g}", where, "correct the file")
+    return RecordedCamera(
+        name=name,
+        video=video,
+        size_px=size_px,
+        fps_hz=fps_hz,
+        time_offset_s=_number(entry, "time_offset_s", 0.0, where),
+        frames=info.frames,
+        scribble=_stroked(folder / "scribble" / f"{name}.png"),
+    )
+
+
+def _stature_m(path: Path) -> float | None:
+    if not path.exists():
+        return None
+    fix = 'write the person\'s height, as {"stature_m": 1.72}'
+    subject = read_json(path)
+    if not isinstance(subject, dict) or "stature_m" not in subject:
+        raise ConfigError("the field 'stature_m' is missing", str(path), fix)
+    stature_m = _number(subject, "stature_m", 0.0, str(path))
+    if not 0.5 < stature_m < 2.6:
+        raise ConfigError(f"'stature_m' is {stature_m:g}, not a height in metres", str(path), fix)
+    return stature_m
+
+
+def _stroked(image: Path) -> StrokedImage | None:
+    """The image and its `_strokes.png`; None without an image. Raises InputError for one alone."""
+    if not image.exists():
+        return None
+    strokes = image.with_name(f"{image.stem}_strokes.png")
+    if not strokes.exists():
+        raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
+    return StrokedImage(image, strokes)
+
+
+def _model(folder: Path) -> tuple[StrokedImage, ...]:
+    images = sorted(one for one in folder.glob("*.png") if "_" not in one.stem)
+    pairs = (_stroked(image) for image in images)
+    return tuple(pair for pair in pairs if pair is not None)
+
+
+def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -> FileSource:
+    """The source of one camera, under its own name if no other is given.
+
+    A live `pace` is shared by the cameras of a folder, so that they stay in step.
+    """
+    return FileSource(
+        name or camera.name,
+        camera.video,
+        camera.fps_hz,
+        camera.time_offset_s,
+        pace=pace,
+        size_px=camera.size_px,
+    )
+
+
+def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
+    """Frame f of every camera, for f = 0, 1, ...: every frame, from time 0, as fast as they decode.
+
+    Each frame carries its own time f / fps + time_offset_s; a camera that ended early is absent.
+    """
+    pace = Pace(live=False)
+    return sources_in_step([folder_source(camera, pace) for camera in folder.cameras])
+
+
+def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
+    """The same for any offline video sources, as videos without a rig; closes them at the end.
+
+    A frame that does not decode is absent from its set; the frames after it keep their index.
+    """
+    with ExitStack() as opened:
+        for source in sources:
+            opened.callback(source.close)
+            source.open()
+        running = list(sources)
+        ahead: dict[str, Frame] = {}  # per camera its next whole frame, not yet due
+        for index in count():
+            for source in tuple(running):
+                if source.name in ahead:
+                    continue
+                try:
+                    ahead[source.name] = source.read()
+                except EndOfStream as end:
+                    running.remove(source)
+                    if end.fix:  # it ended before its time
+                        _LOG.warning("%s", end)
+            if not ahead:
+                return
+            due = [s.name for s in sources if s.name in ahead and ahead[s.name].seq == index]
+            if due:
+                yield as_set({name: ahead.pop(name) for name in due})
+
+
+def as_set(frames: dict[str, Frame]) -> FrameSet:
+    """Frames in the rig's order as a set: its time is that of the first camera that is present."""
+    t_ns = next(iter(frames.values())).t_ns
+    spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
+    return FrameSet(t_ns, frames, spread_ns)

@@ -1,0 +1,53 @@
+"""A cv2.VideoCapture that one thread reads and any thread may ask to close.
+
+Releasing a VideoCapture while another thread is inside `grab` crashes or blocks for as long as
+the grab does. Here `close` never waits: when a reader is inside, the reader releases on its way
+out.
+"""
+
+import threading
+from types import TracebackType
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+
+
+class GuardedCapture:
+    """Holds an opened VideoCapture; `with guarded as capture:` gives it to the one reading thread."""
+
+    def __init__(self, capture: cv2.VideoCapture) -> None:
+        self._capture = capture
+        self._inside = threading.Lock()
+        self._closing = False
+
+    @property
+    def closing(self) -> bool:
+        """Whether `close` was called."""
+        return self._closing
+
+    def close(self) -> None:
+        """Release now, or as soon as the reader is out. Never blocks; may be called twice."""
+        self._closing = True
+        self._release_if_free()
+
+    def _release_if_free(self) -> None:
+        if self._inside.acquire(blocking=False):
+            try:
+                self._capture.release()
+            finally:
+                self._inside.release()
+
+    def __enter__(self) -> cv2.VideoCapture:
+        self._inside.acquire()
+        return self._capture
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._inside.release()
+        if self._closing:  # asked for while we were inside
+            self._release_if_free()

@@ -1,0 +1,91 @@
+"""Which webcam is which: by USB port path and vid:pid:serial, never by /dev number.
+
+/dev/videoN changes with the order of plugging, and identical webcams share one by-id link. The
+port path (`1-3.2`: bus 1, socket 3, hub socket 2; what sysfs and pyusb's `port_numbers` say) tells
+twins apart; vid:pid:serial tells a camera that was moved to another socket.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mocapd.errors import ConfigError, UnavailableError
+
+PREFIX = "usb:"
+_PORT_PATH = re.compile(r"\d+-\d+(\.\d+)*")
+_HEX4 = re.compile(r"[0-9a-f]{4}")
+
+
+@dataclass(frozen=True, slots=True)
+class WebcamIdentity:
+    """`port_path` as in sysfs; `vid`, `pid` four hex digits; `serial` empty when the camera has none."""
+
+    port_path: str
+    vid: str
+    pid: str
+    serial: str = ""
+
+    def __str__(self) -> str:
+        """The form that goes into a configuration, such as `usb:1-3:046d:0825:5F2A11B0`."""
+        return f"{PREFIX}{self.port_path}:{self.vid}:{self.pid}:{self.serial}"
+
+    @property
+    def model(self) -> tuple[str, str, str]:
+        """What does not change with the socket: vid, pid, serial."""
+        return (self.vid, self.pid, self.serial)
+
+
+def parse_identity(text: str) -> WebcamIdentity:
+    """The identity written as `usb:PORT:VID:PID:SERIAL`; SERIAL may be empty, and may hold colons.
+
+    Raises ConfigError naming the part that is wrong.
+    """
+    fix = "write usb:PORT:VID:PID:SERIAL as `mocapd cameras` prints it, e.g. usb:1-3:046d:0825:"
+    parts = text.removeprefix(PREFIX).split(":", 3)
+    if not text.startswith(PREFIX) or len(parts) < 3:
+        raise ConfigError(f"{text!r} is not a webcam identity", "", fix)
+    port_path, vid, pid = parts[0], parts[1].lower(), parts[2].lower()
+    if not _PORT_PATH.fullmatch(port_path):
+        raise ConfigError(f"{port_path!r} is not a USB port path such as 1-3.2", text, fix)
+    for what, value in (("vendor", vid), ("product", pid)):
+        if not _HEX4.fullmatch(value):
+            raise ConfigError(f"{value!r} is not a {what} id of four hex digits", text, fix)
+    return WebcamIdentity(port_path, vid, pid, parts[3] if len(parts) == 4 else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """Which of the webcams that are present was meant, and whether it sits in another socket now."""
+
+    identity: WebcamIdentity
+    moved: bool
+
+
+def match_identity(
+    wanted: WebcamIdentity,
+    present: Sequence[WebcamIdentity],
+    others: Sequence[WebcamIdentity] = (),
+) -> Match:
+    """Find `wanted` among the webcams that are `present`.
+
+    The same model in the same socket is it. Else a single one of the same vid:pid:serial that no
+    other configured camera (`others`) owns is taken for the same camera, moved. Twins of which
+    more than one could be meant are refused: guessing would swap two calibrations.
+    Raises UnavailableError when it is absent or ambiguous.
+    """
+    if wanted in present:
+        return Match(wanted, moved=False)
+    owned = set(others)
+    moved = [one for one in present if one.model == wanted.model and one not in owned]
+    if len(moved) == 1:
+        return Match(moved[0], moved=True)
+    if moved:
+        ports = ", ".join(one.port_path for one in moved)
+        raise UnavailableError(
+            f"{len(moved)} webcams with the same vid:pid:serial are in other sockets ({ports})",
+            str(wanted),
+            f"plug it into port {wanted.port_path} again, or name the one meant in the config",
+        )
+    raise UnavailableError(
+        "this webcam is not plugged in", str(wanted), f"plug it in (port {wanted.port_path})"
+    )

@@ -1,0 +1,36 @@
+"""The measured rate of a stream of frames, over a sliding window of its own time stamps."""
+
+from collections import deque
+
+from mocapd.clock import NS_PER_S
+
+
+class RateMeter:
+    """Frames per second over the last `window_s` [s]. Not thread-safe."""
+
+    def __init__(self, window_s: float = 2.0) -> None:
+        self._window_ns = round(window_s * NS_PER_S)
+        self._times_ns: deque[int] = deque()
+
+    def clear(self) -> None:
+        """Forget the past: after a reopening the gap is no low rate."""
+        self._times_ns.clear()
+
+    def add(self, t_ns: int) -> None:
+        """A frame of time `t_ns` [ns] came."""
+        self._times_ns.append(t_ns)
+        while t_ns - self._times_ns[0] > self._window_ns:
+            self._times_ns.popleft()
+
+    @property
+    def full(self) -> bool:
+        """Whether the window is filled far enough (three quarters) for the rate to be judged."""
+        return self._span_ns() >= 0.75 * self._window_ns
+
+    def rate_hz(self) -> float:
+        """The mean rate in the window [Hz]; 0 before the second frame."""
+        span_ns = self._span_ns()
+        return (len(self._times_ns) - 1) * NS_PER_S / span_ns if span_ns > 0 else 0.0
+
+    def _span_ns(self) -> int:
+        return self._times_ns[-1] - self._times_ns[0] if self._times_ns else 0

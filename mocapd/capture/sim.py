@@ -1,0 +1,90 @@
+"""A simulated webcam: plays a scenario's film at its own pace, with the scenario's faults."""
+
+import threading
+
+import cv2
+import numpy as np
+
+from mocapd.clock import monotonic_ns, nanoseconds, seconds
+from mocapd.errors import CameraLost, ConfigError, InputError
+from mocapd.sim.film import Film
+from mocapd.types import Frame
+
+
+class SimSource:
+    """One camera of a film as an ordinary `Source`.
+
+    Frame n is exposed at epoch_ns + n / fps + the camera's clock offset; with one epoch for all of
+    them, the cameras of a scenario show one world without further coordination. As with a webcam
+    that buffers a single frame, a reader that is late gets the newest one, and `seq` shows the gap;
+    so do frames that the scenario drops. `t_ns` is the middle of the exposure; a frame is handed
+    out when its exposure ends. Decoding happens in `read`.
+    """
+
+    recorded = False
+
+    def __init__(self, film: Film, camera: str, epoch_ns: int = 0) -> None:
+        specs = {spec.name: (i, spec) for i, spec in enumerate(film.scenario.cameras)}
+        if camera not in specs:
+            raise ConfigError(
+                f"the scenario {film.scenario.name!r} has no camera {camera!r}",
+                "camera",
+                f"use one of {sorted(specs)}",
+            )
+        self.name = camera
+        index, self._spec = specs[camera]
+        self._jpegs = film.frames[camera]
+        self._fps_hz = film.scenario.fps_hz
+        self._seed = (film.scenario.seed, 7, index)
+        self._epoch_ns = epoch_ns
+        self._closed = threading.Event()
+        self._next: int | None = None
+        self._first = 0
+
+    def open(self) -> None:
+        """Switch on; the next frame to be exposed is number 0."""
+        self._closed.clear()
+        self._next = None
+
+    def read(self) -> Frame:
+        """The next frame, when its exposure ends. Raises CameraLost once closed."""
+        n = self._due(monotonic_ns())
+        if self._next is None:
+            n = self._first = self._next = max(n + 1, 0)
+        n = max(n, self._next)
+        while self.drops(n):
+            n += 1
+        self._next = n + 1
+        wait_ns = self._ready_ns(n) - monotonic_ns()
+        if self._closed.wait(seconds(max(wait_ns, 0))):
+            raise CameraLost("the simulated camera was closed", self.name, "open it again")
+        jpeg = np.frombuffer(self._jpegs[n % len(self._jpegs)], dtype=np.uint8)
+        pixels = cv2.imdecode(jpeg, cv2.IMREAD_COLOR)
+        if pixels is None:
+            raise InputError("a frame of the film is damaged", self.name, "delete the cache")
+        picture = np.asarray(pixels, dtype=np.uint8)
+        picture.flags.writeable = False
+        return Frame(self.name, n - self._first, self.exposure_ns(n), picture)
+
+    def close(self) -> None:
+        """Switch off and wake a blocked `read`."""
+        self._closed.set()
+
+    def exposure_ns(self, n: int) -> int:
+        """Middle of the exposure of frame n [ns, CLOCK_MONOTONIC]."""
+        return (
+            self._epoch_ns + nanoseconds(n / self._fps_hz) + nanoseconds(self._spec.clock_offset_s)
+        )
+
+    def drops(self, n: int) -> bool:
+        """Whether frame n never arrives; follows from the scenario's seed alone."""
+        if self._spec.dropped <= 0.0:
+            return False
+        return bool(np.random.default_rng([*self._seed, n]).uniform() < self._spec.dropped)
+
+    def _ready_ns(self, n: int) -> int:
+        return self.exposure_ns(n) + nanoseconds(0.5 * self._spec.shutter_s)
+
+    def _due(self, now_ns: int) -> int:
+        """The last frame whose exposure has ended by now."""
+        return int((now_ns - self._ready_ns(0)) * self._fps_hz // 1_000_000_000)

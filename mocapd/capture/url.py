@@ -1,0 +1,102 @@
+"""A network camera: an RTSP or HTTP URL through OpenCV's FFmpeg."""
+
+from urllib.parse import urlsplit, urlunsplit
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+
+from mocapd.capture.file import size_error
+from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.pixels import frozen_pixels
+from mocapd.clock import monotonic_ns
+from mocapd.errors import CameraLost, UnavailableError
+from mocapd.types import Frame
+
+SCHEMES = ("rtsp", "rtsps", "http", "https")
+
+
+def without_password(url: str) -> str:
+    """The URL as it may be shown and logged."""
+    parts = urlsplit(url)
+    if parts.password is None:
+        return url
+    host = parts.netloc.rpartition("@")[2]
+    return urlunsplit(parts._replace(netloc=f"{parts.username}:***@{host}"))
+
+
+class UrlSource:
+    """Frames are stamped on arrival: the network's delay is not known, so give wired cameras the preference.
+
+    `size_px` (width, height), when given, must be what the camera sends.
+    """
+
+    recorded = False
+
+    def __init__(
+        self,
+        name: str,
+        url: str,
+        size_px: tuple[int, int] | None = None,
+        open_timeout_s: float = 3.0,
+        read_timeout_s: float = 1.0,
+    ) -> None:
+        self.name = name
+        self._url = url
+        self._shown = without_password(url)
+        self._size_px = size_px
+        self._timeouts_ms = (round(1e3 * open_timeout_s), round(1e3 * read_timeout_s))
+        self._seq = 0
+        self._capture: GuardedCapture | None = None
+
+    def open(self) -> None:
+        """Raises UnavailableError, or ConfigError for another size than its calibration."""
+        self.close()
+        open_ms, read_ms = self._timeouts_ms
+        capture = cv2.VideoCapture(
+            self._url,
+            cv2.CAP_FFMPEG,
+            [
+                cv2.CAP_PROP_OPEN_TIMEOUT_MSEC,
+                open_ms,
+                cv2.CAP_PROP_READ_TIMEOUT_MSEC,
+                read_ms,
+                cv2.CAP_PROP_N_THREADS,
+                1,
+            ],
+        )
+        if not capture.isOpened():
+            capture.release()
+            raise UnavailableError(
+                f"the network camera does not answer within {open_ms / 1e3:g} s, or sends no video",
+                self._shown,
+                "check that it is on, and the address, user and password",
+            )
+        size_px = (
+            int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)),
+            int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)),
+        )
+        if self._size_px is not None and size_px != self._size_px:
+            capture.release()
+            raise size_error(self._shown, self.name, size_px, self._size_px)
+        self._capture = GuardedCapture(capture)
+
+    def read(self) -> Frame:
+        """Raises CameraLost when nothing came within the read timeout, or the stream ended."""
+        guarded = self._capture
+        if guarded is None:
+            raise CameraLost("not open", self.name, "call open first")
+        with guarded as capture:
+            grabbed = not guarded.closing and capture.grab()
+            t_ns = monotonic_ns()
+            good, pixels = capture.retrieve() if grabbed else (False, None)
+        if not good or pixels is None:
+            self.close()
+            raise CameraLost("the network camera stopped sending", self._shown, "check its network")
+        seq, self._seq = self._seq, self._seq + 1
+        return Frame(self.name, seq, t_ns, frozen_pixels(pixels))
+
+    def close(self) -> None:
+        """Let go; a blocked `read` ends after its timeout at the latest."""
+        if self._capture is not None:
+            self._capture.close()

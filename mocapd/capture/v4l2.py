@@ -1,0 +1,223 @@
+"""A webcam through OpenCV and V4L2, opened by identity and let go at the first failure."""
+
+import logging
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import mocapd.capture.environment as environment  # isort: skip  before cv2
+
+import cv2
+from cv2.typing import MatLike
+
+from mocapd.capture.controls import ControlResult, Controls, HasProperties, apply_controls
+from mocapd.capture.file import size_error
+from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.identity import WebcamIdentity
+from mocapd.capture.node_access import check_usable, opened_node
+from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.webcams import DEV, SYSFS, find_webcam
+from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.errors import CameraLost, UnavailableError
+from mocapd.types import Bytes, Frame
+
+_LOG = logging.getLogger(__name__)
+_OLDEST_STAMP_NS = 5 * NS_PER_S  # a driver's stamp older than this is of another clock
+_TORN_LIMIT_NS = 2 * NS_PER_S  # without one whole frame: the cable or the hub is bad
+_MJPG = "MJPG"
+_YUYV = "YUYV"
+
+
+@dataclass(frozen=True, slots=True)
+class WebcamSettings:
+    """What to ask of a webcam. `size_px` (width, height) must be got: the calibration belongs to it."""
+
+    size_px: tuple[int, int] = (640, 480)
+    fps_hz: float = 30.0
+    controls: Controls = field(default_factory=Controls)
+
+
+@dataclass(frozen=True, slots=True)
+class Negotiated:
+    """What the webcam says after opening; everything is read back, nothing assumed."""
+
+    node: Path
+    moved: bool  # found by vid:pid:serial in another socket than configured
+    fourcc: str
+    size_px: tuple[int, int]
+    fps_hz: float
+    buffers: int
+    controls: tuple[ControlResult, ...]
+
+
+class V4l2Source:
+    """One webcam, named by its USB identity or (what is not on USB) by its node.
+
+    `others`: identities of the other configured webcams, which are never taken for this one.
+    `torn` counts frames that came damaged and were left out; each is a gap in `seq`.
+    """
+
+    recorded = False
+
+    def __init__(
+        self,
+        name: str,
+        where: WebcamIdentity | Path,
+        settings: WebcamSettings | None = None,
+        others: tuple[WebcamIdentity, ...] = (),
+        sysfs: Path = SYSFS,
+        dev: Path = DEV,
+    ) -> None:
+        self.name = name
+        self.torn = 0
+        self.negotiated: Negotiated | None = None
+        self._where = where
+        self._settings = settings if settings is not None else WebcamSettings()
+        self._others = others
+        self._sysfs, self._dev = sysfs, dev
+        self._seq = 0
+        self._capture: GuardedCapture | None = None
+
+    def open(self) -> None:
+        """Find the webcam, open it and set it up.
+
+        Raises UnavailableError (absent, busy, metadata node), PermissionDeniedError, or ConfigError
+        when it does not deliver the size of its calibration.
+        """
+        self.close()
+        node, moved = self._resolve()
+        with opened_node(node) as fd:  # OpenCV only says "no": ask for the reason first
+            check_usable(node, fd)
+        with ExitStack() as undo:
+            capture = cv2.VideoCapture(str(node), cv2.CAP_V4L2)
+            undo.callback(capture.release)
+            if not capture.isOpened():
+                raise UnavailableError("OpenCV cannot open it", str(node), "see `mocapd cameras`")
+            self.negotiated = negotiate(capture, self._settings, self.name, node, moved)
+            undo.pop_all()
+        self._warn(self.negotiated)
+        self._capture = GuardedCapture(capture)
+
+    def read(self) -> Frame:
+        """The next whole frame; damaged ones are counted and skipped.
+
+        Raises CameraLost when the webcam was unplugged, stalls, or sends only damage; it is let go
+        of by then, so that the same node can come back.
+        """
+        guarded = self._capture
+        if guarded is None or self.negotiated is None:
+            raise CameraLost("not open", self.name, "call open first")
+        began_ns = monotonic_ns()
+        while True:
+            with guarded as capture:
+                if guarded.closing or not capture.grab():
+                    break
+                grabbed_ns = monotonic_ns()
+                t_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
+                good, raw = capture.retrieve()
+            seq, self._seq = self._seq, self._seq + 1
+            pixels = decode(raw, self.negotiated.fourcc, self.negotiated.size_px) if good else None
+            if pixels is not None:
+                return Frame(self.name, seq, t_ns, pixels)
+            self.torn += 1
+            if grabbed_ns - began_ns > _TORN_LIMIT_NS:
+                self.close()
+                raise CameraLost(
+                    "only damaged frames arrive", str(self.negotiated.node), "check cable and hub"
+                )
+        self.close()
+        waited_s = (monotonic_ns() - began_ns) / NS_PER_S
+        where = f"{self.name} ({self._where})"
+        if waited_s > 0.5:
+            raise CameraLost(f"sent nothing for {waited_s:.1f} s", where, "unplug and replug it")
+        raise CameraLost("was unplugged", where, "plug it in again")
+
+    def close(self) -> None:
+        """Let go; a blocked `read` ends after the stall timeout of `environment` at the latest."""
+        if self._capture is not None:
+            self._capture.close()
+
+    def _resolve(self) -> tuple[Path, bool]:
+        if isinstance(self._where, Path):
+            return self._where, False
+        match, node = find_webcam(self._where, self._others, self._sysfs, self._dev)
+        return node, match.moved
+
+    def _warn(self, got: Negotiated) -> None:
+        if environment.CV2_CAME_FIRST:
+            _LOG.warning("%s: cv2 was imported before mocapd: a stall takes 10 s to see", self.name)
+        if got.moved:
+            _LOG.warning("%s: found in another USB port than configured (%s)", self.name, got.node)
+        if got.fourcc != _MJPG:
+            _LOG.warning("%s: has no MJPG, uses %s: expect low rates", self.name, got.fourcc)
+        if abs(got.fps_hz - self._settings.fps_hz) > 0.5:
+            _LOG.warning(
+                "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
+            )
+        for one in got.controls:
+            if not one.applied:
+                _LOG.warning("%s: %s is %g, asked for %g", self.name, one.name, one.got, one.asked)
+
+
+def negotiate(
+    capture: HasProperties, asked: WebcamSettings, name: str, node: Path, moved: bool
+) -> Negotiated:
+    """Set format, size, rate, buffers and controls, and read all of it back.
+
+    Raises UnavailableError (unplugged meanwhile, no usable format) or ConfigError (another size).
+    """
+    # In this order: the format decides which sizes there are, the size which rates. Left alone
+    # OpenCV takes YUYV, which fills the bus at a third of the rate.
+    capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*_MJPG))
+    capture.set(cv2.CAP_PROP_FRAME_WIDTH, asked.size_px[0])
+    capture.set(cv2.CAP_PROP_FRAME_HEIGHT, asked.size_px[1])
+    capture.set(cv2.CAP_PROP_FPS, asked.fps_hz)
+    capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)  # of 4, four would be stale after a pause
+    capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)  # we decode: OpenCV hides torn frames
+    controls = apply_controls(capture, asked.controls)
+    code, width, height = (
+        int(capture.get(number))
+        for number in (cv2.CAP_PROP_FOURCC, cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
+    )
+    if min(code, width, height) < 0:  # what a dead handle says of everything
+        raise UnavailableError("was unplugged while it was opened", str(node), "plug it in again")
+    if (width, height) != asked.size_px:
+        raise size_error(str(node), name, (width, height), asked.size_px)
+    fourcc = code.to_bytes(4, "little").decode("latin-1")
+    if fourcc not in (_MJPG, _YUYV):
+        raise UnavailableError(
+            f"delivers {fourcc!r}, neither MJPG nor YUYV", str(node), "use another camera"
+        )
+    return Negotiated(
+        node=node,
+        moved=moved,
+        fourcc=fourcc,
+        size_px=(width, height),
+        fps_hz=capture.get(cv2.CAP_PROP_FPS),
+        buffers=int(capture.get(cv2.CAP_PROP_BUFFERSIZE)),
+        controls=controls,
+    )
+
+
+def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
+    """A buffer of the driver as BGR (height, width, 3), read-only; None when it is torn.
+
+    MJPG: a JPEG file, of which a cut one is refused here, not half decoded. YUYV: two bytes a pixel.
+    """
+    width, height = size_px
+    if fourcc == _YUYV:
+        if raw.size != width * height * 2:
+            return None
+        return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
+    if raw.size == 0:
+        return None
+    decoded = cv2.imdecode(raw.reshape(-1), cv2.IMREAD_COLOR)
+    if decoded is None or decoded.shape != (height, width, 3):
+        return None
+    return frozen_pixels(decoded)
+
+
+def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int:
+    """The driver's time of capture, if it is of CLOCK_MONOTONIC and not absurd; else of the grab."""
+    t_ns = round(driver_ms * 1e6)
+    return t_ns if 0 <= grabbed_ns - t_ns < _OLDEST_STAMP_NS else grabbed_ns

@@ -1,0 +1,17 @@
+"""The commands, one file each. The files import what is heavy only when their command runs."""
+
+import typer
+
+from mocapd.cli import cameras, check_config, demo, run, track, version, watch
+
+app = typer.Typer(
+    name="mocapd",
+    help="Webcams in, a body pose out, over Zenoh and OSC.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (run, demo, track, watch, cameras, check_config, version):
+    command.add_to(app)

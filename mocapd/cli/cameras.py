@@ -1,0 +1,66 @@
+"""`mocapd cameras`"""
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from mocapd.capture.listing import CameraInfo
+    from mocapd.capture.v4l2_ioctl import PixelFormat
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("cameras")(cameras)
+
+
+def cameras(
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a camera.")] = False,
+) -> None:
+    """List the webcams: node, name, vid:pid:serial, USB port, formats; why one cannot be used.
+
+    The `source` of a camera goes into the config.
+
+    Example: mocapd cameras
+    """
+    from mocapd.capture.listing import list_cameras
+
+    found = list_cameras()
+    for info in found:
+        print(json.dumps(_as_dict(info)) if as_json else _as_text(info))
+    if not found and not as_json:
+        typer.echo("mocapd: no webcam found -- plug one in, or see `mocapd demo`", err=True)
+
+
+def _as_dict(info: "CameraInfo") -> dict[str, object]:
+    return {
+        "node": str(info.node) if info.node else None,
+        "name": info.name,
+        "usb_id": info.usb_id,
+        "port": info.port_path,
+        "source": info.spec,
+        "formats": [_format(one) for one in info.formats],
+        "usable": info.usable,
+        "problem": info.problem,
+        "fix": info.fix,
+        "note": info.note,
+    }
+
+
+def _as_text(info: "CameraInfo") -> str:
+    lines = [f"{info.node or '(no node)'}  {info.name}"]
+    if info.usb_id:
+        lines.append(f"usb     {info.usb_id} in port {info.port_path}")
+    lines.append(f"source  {info.spec}")
+    lines += [f"format  {_format(one)}" for one in info.formats]
+    if info.problem:
+        lines.append(f"cannot be used: {info.problem} -- {info.fix}")
+    if info.note:
+        lines.append(f"note    {info.note}")
+    return "\n    ".join(lines)
+
+
+def _format(one: "PixelFormat") -> str:
+    rates = "/".join(f"{rate:g}" for rate in one.rates_hz)
+    return f"{one.fourcc} {one.size_px[0]}x{one.size_px[1]}" + (f" {rates} Hz" if rates else "")

@@ -1,0 +1,44 @@
+"""`mocapd demo`"""
+
+import shlex
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.run import run_with
+
+if TYPE_CHECKING:
+    from mocapd.config_sections import Config
+
+SCENARIO = "sim:living_room"
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("demo")(demo)
+
+
+def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
+    """Run on two simulated webcams: a person in the shirt in a furnished room.
+
+    One of its two coloured lamps goes out in each loop. Publishes on Zenoh and OSC on 127.0.0.1.
+
+    Example: mocapd demo
+    """
+    effective = effective_config(config, settings, capture=SCENARIO).config
+    raise typer.Exit(run_with(effective, f"in a second terminal: {watch_command(effective)}"))
+
+
+def watch_command(config: "Config") -> str:
+    """The command line that shows the stream of this configuration, to be pasted anywhere."""
+    beside = Path(sys.executable).parent / "mocapd"
+    on_path = shutil.which("mocapd")
+    name = "mocapd" if on_path and Path(on_path) == beside else str(beside)
+    words = [name, "watch"]
+    if config.zenoh.port != type(config.zenoh)().port:
+        words += ["--set", f"zenoh.port={config.zenoh.port}"]
+    return shlex.join(words)

@@ -1,0 +1,76 @@
+"""The options that commands share, and what they mean for the configuration."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mocapd.errors import ConfigError
+
+if TYPE_CHECKING:
+    from mocapd.config import Effective
+
+ConfigOption = Annotated[
+    Path | None,
+    typer.Option("--config", help="Config file to read instead of the usual one.", metavar="FILE"),
+]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", help="Set one config key, e.g. --set zenoh.port=7448.", metavar="KEY=VALUE"
+    ),
+]
+CameraOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--camera",
+        help="A camera, instead of those of the config; repeat it. See `mocapd cameras`.",
+        metavar="ID=SOURCE",
+    ),
+]
+
+
+def effective_config(
+    config: Path | None,
+    settings: list[str] | None,
+    cameras: list[str] | None = None,
+    capture: str | None = None,
+    **flags: str | None,
+) -> "Effective":
+    """The configuration with these flags on top; `flags` are keys with `__` for the dot.
+
+    `capture`: a folder or scenario, whose cameras are taken, all of them.
+    """
+    from mocapd.config import load_config
+
+    given: dict[str, str] = {}
+    for text in settings or ():
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise ConfigError(f"--set {text}", "command line", "write --set KEY=VALUE")
+        given[key.strip()] = value.strip()
+    if capture is not None:
+        from mocapd.session import cameras_of
+
+        given["camera"] = _camera_list([(one.id, one.source) for one in cameras_of(capture)])
+    if cameras:
+        given["camera"] = _camera_list([_camera(text) for text in cameras])
+    given |= {key.replace("__", "."): value for key, value in flags.items() if value is not None}
+    return load_config(given, config)
+
+
+def _camera(text: str) -> tuple[str, str]:
+    name, equals, source = text.partition("=")
+    if not equals or not name or not source:
+        raise ConfigError(f"--camera {text}", "command line", "write --camera ID=SOURCE")
+    return name, source
+
+
+def _camera_list(cameras: list[tuple[str, str]]) -> str:
+    """As TOML, which is what a flag's text is."""
+    entries = (f"{{id = {_quoted(name)}, source = {_quoted(source)}}}" for name, source in cameras)
+    return f"[{', '.join(entries)}]"
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -1,0 +1,65 @@
+"""`mocapd run`"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
+
+if TYPE_CHECKING:
+    from mocapd.config_sections import Config
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("run")(run)
+
+
+def run(
+    config: ConfigOption = None,
+    settings: SetOption = None,
+    cameras: CameraOption = None,
+    capture: Annotated[
+        str | None,
+        typer.Option(help="All cameras of a capture folder, or of sim:SCENARIO.", metavar="FOLDER"),
+    ] = None,
+    rig: Annotated[Path | None, typer.Option(help="The rig file: the calibration.")] = None,
+    tracker: Annotated[str | None, typer.Option(help="Which tracker.")] = None,
+    instance: Annotated[str | None, typer.Option(help="This daemon's name in the keys.")] = None,
+) -> None:
+    """Run the daemon in the foreground.
+
+    Ends with SIGTERM (exit code 0), Ctrl-C (130), or when every recording has ended.
+
+    Example: mocapd run --rig rig.json --camera left=/dev/video0 --camera right=/dev/video2
+    """
+    effective = effective_config(
+        config,
+        settings,
+        cameras,
+        capture,
+        rig=None if rig is None else str(rig),
+        tracker__name=tracker,
+        instance=instance,
+    ).config
+    raise typer.Exit(run_with(effective))
+
+
+def run_with(config: "Config", hint: str = "") -> int:
+    """Run with this configuration until it ends; the exit code. `hint` is logged once it runs."""
+    from mocapd.cli.caches import use_cache_dir
+    from mocapd.cli.logs import set_up_logs
+
+    set_up_logs(config.log_level)
+    use_cache_dir(config.cache_dir)
+
+    from mocapd.cli.progress import ProgressBars
+    from mocapd.cli.running import Signals, run_daemon
+    from mocapd.daemon import Daemon
+    from mocapd.session import open_session
+
+    signals = Signals()
+    with ProgressBars() as progress:
+        session = open_session(config, progress)
+    return run_daemon(Daemon(config, session), signals, hint)

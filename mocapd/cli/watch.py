@@ -1,0 +1,77 @@
+"""`mocapd watch`"""
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+
+if TYPE_CHECKING:
+    from mocapd.client import Body
+    from mocapd.config_sections import ZenohSection
+
+SHOWN = ("head", "leftHand", "rightHand", "hips")
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("watch")(watch)
+
+
+def watch(
+    config: ConfigOption = None,
+    settings: SetOption = None,
+    endpoint: Annotated[
+        str | None,
+        typer.Option(help="Zenoh endpoint of the daemon [default: that of the config]"),
+    ] = None,
+    instance: Annotated[str, typer.Option(help="Name of the daemon; *: any.")] = "*",
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a frame.")] = False,
+    count: Annotated[
+        int, typer.Option("--count", min=0, help="Stop after so many frames; 0: never.")
+    ] = 0,
+    timeout_s: Annotated[
+        float, typer.Option("--timeout", min=0.0, help="How long to look for a daemon [s].")
+    ] = 5.0,
+) -> None:
+    """Subscribe to a running daemon and print its frames, the newest each time.
+
+    Example: mocapd watch --json | head -n 1
+    """
+    from mocapd import client
+
+    zenoh = effective_config(config, settings).config.zenoh
+    bodies = client.stream(
+        endpoint or _endpoint(zenoh), instance=instance, connect_timeout_s=timeout_s
+    )
+    for number, body in enumerate(bodies, start=1):
+        print(_as_json(body) if as_json else _as_text(body), flush=True)
+        if number == count:
+            return
+
+
+def _endpoint(zenoh: "ZenohSection") -> str:
+    """Where a daemon of this configuration can be reached from this machine."""
+    from mocapd.outputs.zenoh_config import listen_endpoints
+
+    return zenoh.connect[0] if zenoh.connect else listen_endpoints(zenoh)[0]
+
+
+def _as_json(body: "Body") -> str:
+    import msgspec
+
+    return json.dumps(msgspec.to_builtins(body.frame))
+
+
+def _as_text(body: "Body") -> str:
+    frame = body.frame
+    line = (
+        f"{frame.instance} #{frame.seq} {frame.tracker} {body.tracking:<8} "
+        f"{1e3 * body.latency_s:5.1f} ms  {'+'.join(frame.cameras)}"
+    )
+    for name in SHOWN:
+        if name in body:
+            x, y, z = body[name].position_m
+            line += f"  {name} {x:+.2f} {y:+.2f} {z:+.2f}"
+    return line

@@ -1,0 +1,275 @@
+"""What a Python game imports: the newest body pose of a running mocapd.
+
+    for body in mocapd.client.stream():
+        if body.tracked:
+            print(body["leftHand"].position_m)
+
+Newest wins: a program slower than the daemon skips frames and never falls behind. Positions in
+metres, right-handed, +Y up, the floor at y = 0, a person at rest faces +Z with the left hand
+towards +X; rotations xyzw.
+"""
+
+import asyncio
+import atexit
+import json
+import time
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Self
+
+import zenoh
+
+from mocapd.errors import UnavailableError
+from mocapd.outputs import keys, wire
+from mocapd.outputs.zenoh_config import client_config
+
+ENDPOINT = "tcp/127.0.0.1:7447"
+RETRY_S = 0.2  # pause between two attempts to connect [s]
+ATTEMPT_S = 1.0  # how long one attempt may take [s]
+POLL_S = 0.002  # how often `Client.wait` looks [s]
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One bone: position in the world [m], rotation relative to the T-pose and to its parent bone.
+
+    `confidence` 0..1 is near 0 for a joint that no camera sees.
+    """
+
+    position_m: tuple[float, float, float]
+    rotation_xyzw: tuple[float, float, float, float]
+    local_rotation_xyzw: tuple[float, float, float, float]
+    confidence: float
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A person at one instant: `body["leftHand"]` is a Joint, by VRM 1.0 bone name.
+
+    `frame` is the message as it was sent. While `tracked` is false there are no joints.
+    """
+
+    frame: wire.SkeletonFrame
+
+    @property
+    def tracked(self) -> bool:
+        """Whether a pose is known, seen or predicted for a moment."""
+        return bool(self.frame.joints)
+
+    @property
+    def tracking(self) -> str:
+        """`live`, `coasting` or `lost`."""
+        return self.frame.tracking
+
+    @property
+    def seq(self) -> int:
+        """Number of the frame; a gap is frames this program was too slow for."""
+        return self.frame.seq
+
+    @property
+    def joints(self) -> Mapping[str, Joint]:
+        """All joints by name."""
+        return {name: self[name] for name in self.frame.joints}
+
+    @property
+    def latency_s(self) -> float:
+        """From the middle of the exposure until the daemon published [s]."""
+        return (self.frame.publish_monotonic_ns - self.frame.capture_monotonic_ns) * 1e-9
+
+    @property
+    def age_s(self) -> float:
+        """From the middle of the exposure until now [s]; on two machines as good as their clocks."""
+        return (time.time_ns() - self.frame.capture_unix_ns) * 1e-9
+
+    def __getitem__(self, name: str) -> Joint:
+        """Raises KeyError for a bone that the frame has not, as every bone while not tracked."""
+        joint = self.frame.joints[name]
+        return Joint(joint.p, joint.r, joint.l, joint.c)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.frame.joints
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.frame.joints)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """Where the daemon is and what to listen to.
+
+    endpoint: Zenoh endpoint of the daemon, or of the router it joined
+    instance: name of the daemon; `*`: any
+    person: number of the person
+    connect_timeout_s: how long to try to find a daemon [s]; None: for ever
+    tls_root_ca: PEM file, for a `tls/` endpoint
+    user, password: for a daemon with a password file
+    """
+
+    endpoint: str = ENDPOINT
+    instance: str = keys.ANY
+    person: int = 0
+    connect_timeout_s: float | None = 2.0
+    tls_root_ca: str = ""
+    user: str = ""
+    password: str = ""
+
+    @property
+    def key(self) -> str:
+        """The key of the frames."""
+        return keys.skeleton(self.instance, self.person)
+
+
+class Client:
+    """A connection that keeps the newest body; for game loops that ask once per picture.
+
+    The connection comes back by itself when the daemon restarts. Any thread may call `close`, one
+    thread at a time the rest.
+    """
+
+    def __init__(self, link: Link | None = None) -> None:
+        """Connect. Raises UnavailableError when no mocapd is found in time."""
+        link = link or Link()
+        self._opened = ExitStack()
+        session = self._opened.enter_context(_connect(link))
+        self._subscriber = self._opened.enter_context(
+            session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
+        )
+        # a thread left waiting in Zenoh would abort the interpreter's exit
+        atexit.register(self.close)
+
+    def poll(self) -> Body | None:
+        """The newest body that was not fetched yet; None: nothing new. Never waits."""
+        sample = self._subscriber.try_recv()
+        return None if sample is None else _body(sample)
+
+    def wait(self, timeout_s: float) -> Body | None:
+        """The next body, waiting up to `timeout_s` [s]; None: none came."""
+        deadline_s = time.monotonic() + timeout_s
+        while (body := self.poll()) is None and time.monotonic() < deadline_s:
+            time.sleep(POLL_S)
+        return body
+
+    def __iter__(self) -> Iterator[Body]:
+        """Every newest body, waiting for ever: also while the daemon restarts."""
+        for sample in self._subscriber:
+            yield _body(sample)
+
+    def close(self) -> None:
+        """Disconnect; may be called twice. Ends an iteration under way in another thread."""
+        atexit.unregister(self.close)
+        self._opened.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def stream(
+    endpoint: str = ENDPOINT,
+    *,
+    instance: str = keys.ANY,
+    person: int = 0,
+    connect_timeout_s: float | None = 2.0,
+) -> Iterator[Body]:
+    """Bodies as they come, the newest each time; waits while the daemon restarts.
+
+    Raises UnavailableError when no mocapd is found within `connect_timeout_s` [s] (None: waits),
+    InputError when what arrives is no frame of this version. For TLS see `Client` and `Link`.
+    """
+    with Client(Link(endpoint, instance, person, connect_timeout_s)) as client:
+        yield from client
+
+
+async def astream(
+    endpoint: str = ENDPOINT,
+    *,
+    instance: str = keys.ANY,
+    person: int = 0,
+    connect_timeout_s: float | None = 2.0,
+) -> AsyncIterator[Body]:
+    """As `stream`, for asyncio: `async for body in astream()`."""
+    link = Link(endpoint, instance, person, connect_timeout_s)
+    loop = asyncio.get_running_loop()
+    newest: asyncio.Queue[zenoh.Sample] = asyncio.Queue(maxsize=1)
+
+    def keep(sample: zenoh.Sample) -> None:
+        if newest.full():
+            newest.get_nowait()
+        newest.put_nowait(sample)
+
+    def arrived(sample: zenoh.Sample) -> None:  # on Zenoh's thread
+        loop.call_soon_threadsafe(keep, sample)
+
+    # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
+    handler = zenoh.handlers.Callback(arrived, indirect=False)
+    with await _aconnect(link) as session, session.declare_subscriber(link.key, handler):
+        while True:
+            yield _body(await newest.get())
+
+
+def _body(sample: zenoh.Sample) -> Body:
+    return Body(wire.decode(sample.payload.to_bytes(), str(sample.encoding)))
+
+
+def _connect(link: Link) -> zenoh.Session:
+    """A session on which a mocapd is alive, tried until the link's time is over."""
+    started_s = time.monotonic()
+    while True:
+        try:
+            return _attempt(link)
+        except UnavailableError:
+            if _is_over(link, started_s):
+                raise
+        time.sleep(RETRY_S)
+
+
+async def _aconnect(link: Link) -> zenoh.Session:
+    """As `_connect`; between two attempts it can be cancelled."""
+    started_s = time.monotonic()
+    while True:
+        try:
+            return await asyncio.to_thread(_attempt, link)
+        except UnavailableError:
+            if _is_over(link, started_s):
+                raise
+        await asyncio.sleep(RETRY_S)
+
+
+def _is_over(link: Link, started_s: float) -> bool:
+    limit_s = link.connect_timeout_s
+    return limit_s is not None and time.monotonic() - started_s + RETRY_S > limit_s
+
+
+def _attempt(link: Link) -> zenoh.Session:
+    limit_s = link.connect_timeout_s
+    config = client_config(
+        link.endpoint,
+        timeout_s=ATTEMPT_S if limit_s is None else min(ATTEMPT_S, limit_s),
+        tls_root_ca=link.tls_root_ca,
+        user=link.user,
+        password=link.password,
+    )
+    try:
+        session = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
+    except zenoh.ZError as error:
+        raise UnavailableError(
+            f"no mocapd at {link.endpoint}",
+            fix="start `mocapd run` or pass endpoint="
+            # a refused login looks like silence to Zenoh
+            + ("; check tls_root_ca, user and password too" if _has_secrets(link) else ""),
+        ) from error
+    token = keys.alive(link.instance)
+    if any(reply.ok for reply in session.liveliness().get(token, timeout=ATTEMPT_S)):
+        return session
+    with session:
+        raise UnavailableError(
+            f"no mocapd at {link.endpoint}: a Zenoh node answers, but without {token}",
+            fix="start `mocapd run` (zenoh.connect joins that node) or pass endpoint= or instance=",
+        )
+
+
+def _has_secrets(link: Link) -> bool:
+    return bool(link.tls_root_ca or link.user) or not link.endpoint.startswith("tcp/")

@@ -1,0 +1,232 @@
+"""The keys of a tree of frozen dataclasses: their types, limits and defaults, read from the fields.
+
+A section is a frozen dataclass; a field is a key, or another section, or a list of sections. Limits
+are `msgspec.Meta` in `Annotated`, or the section's own `__post_init__`. The words for the user are
+in the Meta, or a line `name: words` of the section's docstring.
+"""
+
+import difflib
+import inspect
+import re
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import msgspec
+from msgspec import Meta
+
+from mocapd.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """One key. `default_text` replaces a default that differs from machine to machine."""
+
+    path: str
+    type: Any
+    default: Any
+    help: str
+    default_text: str
+
+    @property
+    def wants_text(self) -> bool:
+        """Whether a value in a flag or a variable is text and needs no quotes."""
+        bare = _bare(self.type)
+        return bare in (str, Path) or get_origin(bare) is Literal
+
+
+def keys_of(section: Any, prefix: str = "") -> Iterator[Key]:
+    """Every key of a section and of the sections in it, in the order of the fields."""
+    hints = get_type_hints(section, include_extras=True)
+    words = _docstring_words(section)
+    for field in fields(section):
+        annotation, path = hints[field.name], prefix + field.name
+        if is_dataclass(annotation):
+            yield from keys_of(annotation, f"{path}.")
+            continue
+        default = MISSING
+        if field.default is not MISSING:
+            default = field.default
+        elif field.default_factory is not MISSING:
+            default = field.default_factory()
+        meta = _meta(annotation)
+        text = str((meta.extra or {}).get("default", ""))
+        help_text = meta.description or words.get(field.name, "")
+        yield Key(path, annotation, default, help_text, text)
+
+
+def entry_keys(key: Key) -> Iterator[Key]:
+    """For a key that is a list of sections, the keys of an entry, their paths after `[[key]]`."""
+    item = _item_section(key.type)
+    if item is not None:
+        yield from keys_of(item, f"[[{key.path}]] ")
+
+
+def build(section: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
+    """The section from the values of its keys by path; what is absent keeps its default."""
+    hints = get_type_hints(section, include_extras=True)
+    chosen = {}
+    for field in fields(section):
+        path = prefix + field.name
+        if is_dataclass(hints[field.name]):
+            chosen[field.name] = build(hints[field.name], values, f"{path}.")
+        elif path in values:
+            chosen[field.name] = values[path]
+    return section(**chosen)
+
+
+def converted(annotation: Any, value: Any, path: str, where: Callable[[str], str]) -> Any:
+    """The value as the key's type. `where` tells the place of a key's path, such as `file:line`.
+
+    Raises ConfigError with place, path, value and what it may be.
+    """
+    item = _item_section(annotation)
+    if item is not None:
+        return _converted_list(item, value, path, where)
+    try:
+        return msgspec.convert(value, annotation, dec_hook=_path)
+    except (msgspec.ValidationError, ValueError):
+        raise ConfigError(
+            f"{path} = {shown(value)} does not do",
+            where(path),
+            f"give {path} {described(annotation)}",
+        ) from None
+
+
+def _converted_list(
+    item: Any, value: Any, path: str, where: Callable[[str], str]
+) -> tuple[Any, ...]:
+    if not isinstance(value, list) or not all(isinstance(entry, dict) for entry in value):
+        raise ConfigError(
+            f"{path} is not a list of sections", where(path), f"write it as [[{path}]]"
+        )
+    known = {key.path: key for key in keys_of(item)}
+    required = [f.name for f in fields(item) if f.default is f.default_factory is MISSING]
+    out = []
+    for i, entry in enumerate(value):
+        here, flat = f"{path}[{i}]", dict(leaves(entry))
+        for name in flat:
+            if name not in known:
+                raise unknown_key(f"{here}.{name}", name, known, where(f"{here}.{name}"))
+        for name in required:
+            if name not in flat:
+                raise ConfigError(
+                    f"{here} has no {name!r}", where(here), f'add {name} = "..." to that section'
+                )
+        chosen = {
+            name: converted(known[name].type, raw, f"{here}.{name}", where)
+            for name, raw in flat.items()
+        }
+        out.append(build(item, chosen))
+    return tuple(out)
+
+
+def leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(path, value) of everything that is not a table; lists of tables are values."""
+    for name, value in data.items():
+        if isinstance(value, dict):
+            yield from leaves(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name, value
+
+
+def unknown_key(path: str, name: str, known: Mapping[str, Any], where: str) -> ConfigError:
+    """The error of a key that does not exist, with the nearest one that does."""
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    fix = f"did you mean {near[0]!r}?" if near else "`mocapd check-config` lists every key"
+    return ConfigError(f"unknown key {path!r}", where, fix)
+
+
+def shown(value: Any) -> str:
+    """A value as TOML writes it, as near as a message needs."""
+    if value is None or value is MISSING:
+        return '""'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str | Path):
+        return '"' + str(value) + '"'
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(shown(v) for v in value) + "]"
+    if is_dataclass(value):
+        pairs = ((f.name, getattr(value, f.name), f.default) for f in fields(value))
+        return "{" + ", ".join(f"{n} = {shown(v)}" for n, v, d in pairs if v != d) + "}"
+    return str(value)
+
+
+def described(annotation: Any) -> str:
+    """What a key may be, in words: "a whole number from 1 to 65535"."""
+    meta, bare = _meta(annotation), _bare(annotation)
+    if get_origin(bare) is Literal:
+        return "one of " + ", ".join(shown(choice) for choice in get_args(bare))
+    if get_origin(bare) is tuple:
+        args = get_args(bare)
+        if args[-1] is Ellipsis:
+            return f"a list, each of it {described(args[0])}"
+        return f"a list of {len(args)}, each of it {described(args[0])}"
+    words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+    words[Path] = "the path of a file or folder"
+    return words.get(bare, str(bare)) + _limits(meta)
+
+
+def _limits(meta: Meta) -> str:
+    low = meta.ge if meta.ge is not None else meta.gt
+    high = meta.le if meta.le is not None else meta.lt
+    if low is not None and high is not None:
+        return f" from {low} to {high}"
+    if low is not None:
+        return f", {low} or more" if meta.ge is not None else f" above {low}"
+    if high is not None:
+        return f", at most {high}"
+    if meta.pattern is not None:
+        return f" that matches {meta.pattern}"
+    return ""
+
+
+def _docstring_words(section: Any) -> dict[str, str]:
+    """The lines `name: words` or `name, name: words` of the docstrings, with their continuations."""
+    found: dict[str, str] = {}
+    for kind in reversed(section.__mro__[:-1]):
+        current: list[str] = []
+        for line in inspect.cleandoc(kind.__doc__ or "").splitlines():
+            head = re.fullmatch(r"([a-z]\w*(?:, [a-z]\w*)*): (.+)", line)
+            if head:
+                current = head[1].split(", ")
+                found |= dict.fromkeys(current, head[2])
+            elif line.startswith(" "):
+                found |= {name: f"{found[name]} {line.strip()}" for name in current}
+            else:
+                current = []
+    return found
+
+
+def _item_section(annotation: Any) -> Any:
+    """The section of which the key is a list, or None."""
+    bare = _bare(annotation)
+    args = get_args(bare)
+    return args[0] if get_origin(bare) is tuple and args and is_dataclass(args[0]) else None
+
+
+def _meta(annotation: Any) -> Meta:
+    if get_origin(annotation) is Annotated:
+        for extra in annotation.__metadata__:
+            if isinstance(extra, Meta):
+                return extra
+    return Meta()
+
+
+def _bare(annotation: Any) -> Any:
+    """The type without Annotated and without `| None`."""
+    if get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    if get_origin(annotation) in (Union, types.UnionType):
+        annotation = next(a for a in get_args(annotation) if a is not types.NoneType)
+        return _bare(annotation)
+    return annotation
+
+
+def _path(kind: type, value: Any) -> Any:
+    if kind is Path and isinstance(value, str):
+        return Path(value)
+    raise ValueError(kind)

@@ -1,0 +1,96 @@
+"""Track a recorded capture: every frame in order, as fast as the tracker goes; and the track's file."""
+
+import os
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.clock import seconds
+from mocapd.errors import CannotCreateError
+from mocapd.trackers.base import Tracker
+from mocapd.types import Floats, FrameSet
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecordedTrack:
+    """F frames of J joints; frames in which nobody was tracked are absent.
+
+    times_s (F,): since the capture's start [s]; joints_m (F,J,3) [m, world]; global_xyzw (F,J,4):
+    rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,).
+    """
+
+    times_s: Floats
+    joint_names: tuple[str, ...]
+    joints_m: Floats
+    global_xyzw: Floats
+    confidence: Floats
+    tracker: NDArray[np.str_]
+
+
+def track_all(
+    tracker: Tracker, frames: Iterable[FrameSet], on_frame: Callable[[int], None]
+) -> RecordedTrack:
+    """Step the tracker through all frame sets; `on_frame` is told how many are done."""
+    names = tracker.skeleton.names
+    times, joints, quats, confidence, by = [], [], [], [], []
+    for done, one in enumerate(frames, start=1):
+        body = tracker.step(one).body
+        if body.pose is not None and body.joints_m is not None:
+            times.append(seconds(body.t_ns))
+            joints.append(body.joints_m)
+            quats.append(body.pose.quats_xyzw)
+            confidence.append(body.confidence)
+            by.append(body.tracker)
+        on_frame(done)
+    n, j = len(times), len(names)
+    return RecordedTrack(
+        np.array(times),
+        names,
+        np.array(joints).reshape(n, j, 3),
+        np.array(quats).reshape(n, j, 4),
+        np.array(confidence).reshape(n, j),
+        np.array(by, dtype=np.str_),
+    )
+
+
+def check_writable(path: Path) -> None:
+    """Before a long run, that its result can be kept. Raises CannotCreateError."""
+    try:
+        descriptor, name = tempfile.mkstemp(dir=path.absolute().parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise CannotCreateError(
+            f"cannot be written ({error.strerror})", str(path), "choose another place with --out"
+        ) from None
+    os.close(descriptor)
+    Path(name).unlink()
+
+
+def write_track(path: Path, track: RecordedTrack) -> None:
+    """Write the npz that score_track.py reads, whole or not at all. Raises CannotCreateError.
+
+    The same track gives the same bytes.
+    """
+    check_writable(path)
+    # the name ends in .npz, else numpy appends it
+    partial = path.with_name(f".{path.name}.{os.getpid()}.npz")
+    try:
+        np.savez_compressed(
+            partial,
+            times=track.times_s,
+            joint_names=np.array(track.joint_names),
+            joints=track.joints_m,
+            global_quats=track.global_xyzw,
+            confidence=track.confidence,
+            tracker=track.tracker,
+        )
+        partial.replace(path)
+    except OSError as error:
+        raise CannotCreateError(
+            f"cannot be written ({error.strerror})", str(path), "make room or choose another place"
+        ) from None
+    finally:
+        partial.unlink(missing_ok=True)

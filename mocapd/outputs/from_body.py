@@ -1,0 +1,53 @@
+"""From the tracker's body to the frame that is sent; on the latency path."""
+
+from mocapd.body.skeleton import local_from_global
+from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame
+from mocapd.types import BodyState, Skeleton, Tracking
+
+
+def skeleton_frame(
+    body: BodyState,
+    skeleton: Skeleton,
+    *,
+    instance: str,
+    seq: int,
+    publish_monotonic_ns: int,
+    unix_from_monotonic_ns: int,
+    person: int = 0,
+) -> SkeletonFrame:
+    """The body as sent; lost: no joints. A pure function: the caller reads the clock.
+
+    `unix_from_monotonic_ns` is `mocapd.clock.unix_from_monotonic_ns()`; `publish_monotonic_ns` now.
+    """
+    return SkeletonFrame(
+        schema=SCHEMA,
+        instance=instance,
+        person=person,
+        seq=seq,
+        capture_monotonic_ns=body.t_ns,
+        capture_unix_ns=body.t_ns + unix_from_monotonic_ns,
+        publish_monotonic_ns=publish_monotonic_ns,
+        tracker=body.tracker,
+        tracking=body.tracking.value,
+        cameras=body.cameras,
+        joints=_joints(body, skeleton),
+    )
+
+
+def _joints(body: BodyState, skeleton: Skeleton) -> dict[str, Joint]:
+    if body.tracking is Tracking.LOST or body.pose is None or body.joints_m is None:
+        return {}
+    local_xyzw = local_from_global(skeleton, body.pose.quats_xyzw)
+    # plain floats: msgspec encodes no numpy scalars, and tolist() makes them all in one go
+    columns = zip(
+        skeleton.names,
+        body.joints_m.tolist(),
+        body.pose.quats_xyzw.tolist(),
+        local_xyzw.tolist(),
+        body.confidence.tolist(),
+        strict=True,
+    )
+    return {
+        name: Joint(tuple(p_m), tuple(r_xyzw), tuple(l_xyzw), c)
+        for name, p_m, r_xyzw, l_xyzw, c in columns
+    }

@@ -1,0 +1,50 @@
+"""The Zenoh keys of mocapd: `mocapd/v1/<instance>/...`, one function per key."""
+
+import re
+import socket
+
+ROOT = "mocapd/v1"
+ANY = "*"  # in place of a name: every one of them
+
+
+def chunk(name: str) -> str:
+    """A name as one chunk of a key: what Zenoh gives a meaning to (`/ * $ ? # @`) becomes `_`.
+
+    Names of letters, digits, `_`, `.` and `-` stay as they are; an empty name becomes `_`.
+    """
+    return re.sub(r"[^\w.\-]", "_", name, flags=re.ASCII) or "_"
+
+
+def default_instance() -> str:
+    """The name of a daemon that was given none: the machine's."""
+    return chunk(socket.gethostname())
+
+
+def skeleton(instance: str, person: int | str) -> str:
+    """Frames of one person."""
+    return f"{ROOT}/{instance}/skeleton/{person}"
+
+
+def health(instance: str) -> str:
+    """State: `messages.Health`."""
+    return f"{ROOT}/{instance}/health"
+
+
+def camera_status(instance: str, camera: str) -> str:
+    """State: `messages.CameraStatus`; the camera's name as a chunk."""
+    return f"{ROOT}/{instance}/camera/{camera if camera == ANY else chunk(camera)}/status"
+
+
+def calibration(instance: str) -> str:
+    """State: `messages.CalibrationInfo`."""
+    return f"{ROOT}/{instance}/calibration"
+
+
+def schema(instance: str, name: str) -> str:
+    """The JSON schema of one message."""
+    return f"{ROOT}/{instance}/schema/{name}"
+
+
+def alive(instance: str) -> str:
+    """The liveliness token, there while the daemon runs."""
+    return f"{ROOT}/{instance}/alive"

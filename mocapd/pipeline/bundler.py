@@ -1,0 +1,237 @@
+"""Pairs the frames of free-running cameras by their time of capture. Pure: no thread, no clock.
+
+The rule. A set is built around one frame, the anchor: that of the rig's first camera that takes
+part. Another camera's frame belongs to it when the two are at most half a period apart. With equal
+rates exactly one frame of each camera does, so nothing waits longer than that frame needs, and the
+spread stays within half a period. Two cameras half a period apart would change partners with every
+jitter; so an established pairing is kept until it exceeds half a period by `hysteresis_periods`.
+
+The wait. Each camera's period and delay (arrival minus capture) are learned, so the bundler knows
+when the next frame of each should arrive. A set goes out the moment its last expected frame
+arrives, or without the missing one at that frame's expected arrival plus `slack_periods`. A camera
+that failed `patience` sets in a row is not waited for until it returns.
+
+Two clocks. Frames carry capture times; waiting happens on arrival times, `now_ns`. Live callers
+give both; for recordings fed in order of capture `now_ns` is left out and is the newest capture.
+"""
+
+import heapq
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from mocapd.clock import nanoseconds
+from mocapd.errors import ConfigError
+from mocapd.pipeline.camera_queue import CameraQueue
+from mocapd.types import Frame, FrameSet
+
+
+@dataclass(frozen=True, slots=True)
+class BundlerParams:
+    """How long to wait for whom. Periods are those learned from the cameras themselves.
+
+    period_s: assumed of a camera until two of its frames were seen [s].
+    slack_periods: how late a frame may be before its set goes without it [periods].
+    longest_wait_periods: no set waits longer than this after its first frame arrived [periods];
+        a camera whose delay exceeds the others' by more is never paired (its `late` count tells).
+    hysteresis_periods: by how much an established pairing may exceed half a period [periods].
+    patience: sets in a row a camera may miss before nobody waits for it any more.
+    """
+
+    period_s: float = 1.0 / 30.0
+    slack_periods: float = 0.5
+    longest_wait_periods: float = 1.5
+    hysteresis_periods: float = 0.15
+    patience: int = 2
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.period_s) and self.period_s > 0.0):
+            raise ConfigError(f"the period is {self.period_s} s", "bundler.period_s", "above 0")
+        for name in ("slack_periods", "longest_wait_periods", "hysteresis_periods"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise ConfigError(f"{value} periods", f"bundler.{name}", "give 0 or more")
+        if self.patience < 1:
+            raise ConfigError(f"{self.patience} sets", "bundler.patience", "give 1 or more")
+
+
+@dataclass(frozen=True, slots=True)
+class CameraCounts:
+    """One camera's frames. received = used + late + waiting in the bundler, always.
+
+    late: discarded, because their set had gone or the time ran backwards within the camera;
+    lost: never delivered (gaps in `seq`), not part of received.
+    """
+
+    received: int
+    used: int
+    late: int
+    lost: int
+
+
+class Bundler:
+    """Turns frames into frame sets: times strictly increase, and no frame is used twice."""
+
+    def __init__(self, camera_names: Iterable[str], params: BundlerParams | None = None) -> None:
+        self._params = params or BundlerParams()
+        period_ns = nanoseconds(self._params.period_s)
+        # in rig order, which is the order of precedence among anchors
+        self._cameras = {name: CameraQueue(name, period_ns) for name in camera_names}
+        if not self._cameras:
+            raise ConfigError("no camera is named", "bundler", "give at least one camera")
+        self._now_ns: int | None = None
+        self._deadline_ns: int | None = None
+        self._last_ns = 0  # of the last set: its time, its members' names, its anchor
+        self._last_names: frozenset[str] = frozenset()
+        self._last_anchor: CameraQueue | None = None
+
+    def add(self, frame: Frame, now_ns: int | None = None) -> tuple[FrameSet, ...]:
+        """Take a frame; the sets that are complete by it, oldest first: most often none or one.
+
+        `now_ns`: its arrival on any steady clock; leave out (always) for recordings. Raises
+        KeyError for a camera that was not named.
+        """
+        camera = self._cameras[frame.camera]
+        now_ns = self._advance(frame.t_ns if now_ns is None else now_ns)
+        camera.accept(frame, now_ns)
+        return self._drain(now_ns)
+
+    def flush(self, now_ns: int) -> tuple[FrameSet, ...]:
+        """The sets whose waiting time is over at `now_ns`, oldest first."""
+        return self._drain(self._advance(now_ns))
+
+    def finish(self) -> tuple[FrameSet, ...]:
+        """The sets still waiting, oldest first: nothing more will come."""
+        return self._drain(None)
+
+    @property
+    def deadline_ns(self) -> int | None:
+        """When to call `flush` unless a frame comes first; None: nothing is waiting."""
+        return self._deadline_ns
+
+    def counts(self) -> dict[str, CameraCounts]:
+        """What became of each camera's frames so far."""
+        return {
+            name: CameraCounts(camera.received, camera.used, camera.late, camera.lost)
+            for name, camera in self._cameras.items()
+        }
+
+    def delays_ns(self) -> dict[str, int]:
+        """Each camera's usual time from capture to arrival [ns]; 0 before its first frame."""
+        return {name: camera.delay_ns for name, camera in self._cameras.items()}
+
+    def _advance(self, now_ns: int) -> int:
+        self._now_ns = now_ns if self._now_ns is None else max(self._now_ns, now_ns)
+        return self._now_ns
+
+    def _drain(self, now_ns: int | None) -> tuple[FrameSet, ...]:
+        sets = []
+        while members := self._next_members(now_ns):
+            sets.append(self._emit(members))
+        return tuple(sets)
+
+    def _next_members(self, now_ns: int | None) -> list[CameraQueue]:
+        """The cameras, anchor first, whose oldest frames form the next set; none while it waits.
+
+        It is the set of the oldest frame at hand. In rig order each camera's frame, at hand or
+        awaited, claims the free ones within its reach, until the oldest is claimed.
+        """
+        self._deadline_ns = None
+        self._discard_late()
+        free = [camera for camera in self._cameras.values() if camera.frames]
+        if not free:
+            return []
+        oldest = min(free, key=lambda camera: camera.head_ns)
+        for camera in self._cameras.values():
+            until_ns = None
+            if camera in free:
+                at_ns = camera.head_ns
+            else:
+                at_ns = camera.expected_ns(oldest.head_ns)
+                until_ns = self._wait_until(camera, at_ns, oldest, now_ns)
+                if until_ns is None:
+                    continue
+            claimed = [c for c in free if self._reaches(camera, at_ns, c, c.head_ns)]
+            if oldest not in claimed:
+                free = [c for c in free if c not in claimed]
+            elif until_ns is not None:
+                self._deadline_ns = until_ns
+                return []
+            else:
+                self._deadline_ns = self._members_deadline(camera, oldest, now_ns)
+                return claimed if self._deadline_ns is None else []
+        raise AssertionError("the oldest frame claims itself")
+
+    def _members_deadline(
+        self, anchor: CameraQueue, oldest: CameraQueue, now_ns: int | None
+    ) -> int | None:
+        """Until when the set of this anchor waits for further members; None: it is complete."""
+        waits = []
+        for camera in self._cameras.values():
+            at_ns = camera.expected_ns(anchor.head_ns)
+            until_ns = self._wait_until(camera, at_ns, oldest, now_ns)
+            if until_ns is not None and self._reaches(anchor, anchor.head_ns, camera, at_ns):
+                waits.append(until_ns)
+        return max(waits, default=None)
+
+    def _wait_until(
+        self, camera: CameraQueue, expected_ns: int, oldest: CameraQueue, now_ns: int | None
+    ) -> int | None:
+        """Until when to wait for a frame of this capture time; None: not, or no longer."""
+        if now_ns is None or camera.frames or camera.missed >= self._params.patience:
+            return None
+        slack_ns = round(self._params.slack_periods * oldest.period_ns)
+        longest_ns = round(self._params.longest_wait_periods * oldest.period_ns)
+        until_ns = oldest.head_arrival_ns + longest_ns
+        if camera.seen:
+            until_ns = min(until_ns, expected_ns + camera.delay_ns + slack_ns)
+        return until_ns if now_ns < until_ns else None
+
+    def _reaches(self, anchor: CameraQueue, anchor_ns: int, other: CameraQueue, ns: int) -> bool:
+        """Whether a frame of `other` taken at `ns` belongs to the anchor's taken at `anchor_ns`."""
+        if other is anchor:
+            return ns == anchor_ns
+        offset_ns = ns - anchor_ns
+        reach_periods = 0.5
+        if anchor is self._last_anchor and offset_ns * other.offset_ns > 0:
+            reach_periods += self._params.hysteresis_periods
+        return abs(offset_ns) <= reach_periods * min(anchor.period_ns, other.period_ns)
+
+    def _discard_late(self) -> None:
+        """Drop the frames whose set has gone out already."""
+        anchor, last_ns = self._last_anchor, self._last_ns
+        if anchor is None:
+            return
+        for camera in self._cameras.values():
+            absent = camera.name not in self._last_names
+            while camera.frames and (
+                camera.head_ns <= last_ns
+                or (absent and self._reaches(anchor, last_ns, camera, camera.head_ns))
+            ):
+                camera.discard()
+
+    def _emit(self, members: list[CameraQueue]) -> FrameSet:
+        anchor = members[0]
+        t_ns = anchor.head_ns
+        for camera in self._cameras.values():
+            if camera in members:
+                camera.offset_ns = camera.head_ns - t_ns
+                continue
+            expected_ns = camera.expected_ns(t_ns)
+            if not camera.frames and self._reaches(anchor, t_ns, camera, expected_ns):
+                camera.missed += 1
+            camera.offset_ns = 0
+        frames = {camera.name: camera.use() for camera in members}
+        spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
+        self._last_ns, self._last_names, self._last_anchor = t_ns, frozenset(frames), anchor
+        return FrameSet(t_ns, frames, spread_ns)
+
+
+def bundle_recorded(
+    streams: Mapping[str, Iterable[Frame]], params: BundlerParams | None = None
+) -> Iterator[FrameSet]:
+    """The frame sets of recordings, each stream in order of capture; every frame, as fast as read."""
+    bundler = Bundler(streams, params)
+    for frame in heapq.merge(*streams.values(), key=lambda frame: frame.t_ns):
+        yield from bundler.add(frame)
+    yield from bundler.finish()

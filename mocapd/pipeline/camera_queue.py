@@ -1,0 +1,82 @@
+"""One camera's frames at hand, and what its past says of when the next one comes."""
+
+from collections import deque
+
+from mocapd.clock import NS_PER_S
+from mocapd.types import Frame
+
+_REMEMBERED = 8  # intervals and delays; the median of so many forgives three outliers
+_LONGEST_PERIOD_NS = NS_PER_S  # a longer interval is an outage, not a rate
+
+
+class CameraQueue:
+    """Frames in order of capture, the learned period and delay [ns], and the counts."""
+
+    def __init__(self, name: str, period_ns: int) -> None:
+        self.name = name
+        self.frames: deque[tuple[Frame, int]] = deque()  # with arrival [ns]
+        self.received = self.used = self.late = self.lost = 0
+        self.missed = 0  # sets in a row that went without this camera after waiting for it
+        self.offset_ns = 0  # from the last set's anchor; 0 when not in that set
+        self.period_ns = period_ns
+        self.delay_ns = 0
+        self._newest: tuple[int, int] | None = None  # seq and capture time
+        self._periods: deque[int] = deque(maxlen=_REMEMBERED)
+        self._delays: deque[int] = deque(maxlen=_REMEMBERED)
+
+    @property
+    def seen(self) -> bool:
+        """Whether any frame came yet, so that something is learned."""
+        return self._newest is not None
+
+    @property
+    def head_ns(self) -> int:
+        """Capture time of the oldest frame at hand."""
+        return self.frames[0][0].t_ns
+
+    @property
+    def head_arrival_ns(self) -> int:
+        """When the oldest frame at hand arrived."""
+        return self.frames[0][1]
+
+    def accept(self, frame: Frame, arrival_ns: int) -> None:
+        """Queue a frame and learn from it. One not newer than its predecessor counts as late."""
+        self.received += 1
+        self.missed = 0
+        if self._newest is not None:
+            seq, t_ns = self._newest
+            if frame.t_ns <= t_ns:
+                self.late += 1
+                return
+            # seq starts again when a camera is reopened: then nothing is known of the gap
+            self.lost += max(0, frame.seq - seq - 1)
+            period_ns = (frame.t_ns - t_ns) // max(1, frame.seq - seq)
+            if 0 < period_ns <= _LONGEST_PERIOD_NS:
+                self._periods.append(period_ns)
+                self.period_ns = _median(self._periods)
+        self._delays.append(arrival_ns - frame.t_ns)
+        self.delay_ns = _median(self._delays)
+        self._newest = frame.seq, frame.t_ns
+        self.frames.append((frame, arrival_ns))
+
+    def use(self) -> Frame:
+        """Take the oldest frame."""
+        self.used += 1
+        return self.frames.popleft()[0]
+
+    def discard(self) -> None:
+        """Drop the oldest frame as late."""
+        self.late += 1
+        self.frames.popleft()
+
+    def expected_ns(self, near_ns: int) -> int:
+        """The capture time, nearest to `near_ns`, of a frame still to come."""
+        if self._newest is None:
+            return near_ns  # nothing known: it may come any moment
+        newest_ns = self._newest[1]
+        steps = round((near_ns - newest_ns) / self.period_ns)
+        return newest_ns + max(1, steps) * self.period_ns
+
+
+def _median(values: deque[int]) -> int:
+    return sorted(values)[len(values) // 2]

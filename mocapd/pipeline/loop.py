@@ -1,0 +1,90 @@
+"""The pipeline's thread: newest frame set -> tracker -> smoother -> outputs."""
+
+import threading
+from collections.abc import Callable
+
+from mocapd.clock import monotonic_ns
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.idle_collection import IdleCollection
+from mocapd.pipeline.metrics import Metrics, MetricsRecorder
+from mocapd.pipeline.smoothing import Smoother
+from mocapd.trackers.base import Tracker
+from mocapd.types import BodyState, FrameSet, Skeleton
+
+Publish = Callable[[BodyState, Skeleton, FrameSet], None]
+OnDeath = Callable[[BaseException], None]
+
+LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should stop [s]
+
+
+class PipelineLoop:
+    """Runs one tracker on whatever the collector holds, until stopped.
+
+    `publish` is called in the pipeline's thread for each body, also while `lost`, and must not
+    block. `on_death` is called in that thread with whatever ends it unexpectedly, which is then
+    raised again; being stopped is no death.
+    """
+
+    def __init__(
+        self,
+        collector: FrameCollector,
+        tracker: Tracker,
+        smoother: Smoother,
+        publish: Publish,
+        on_death: OnDeath,
+        stopping: threading.Event | None = None,
+    ) -> None:
+        self._collector = collector
+        self._tracker = tracker
+        self._smoother = smoother
+        self._publish = publish
+        self._on_death = on_death
+        self._stopping = stopping if stopping is not None else threading.Event()
+        self._recorder = MetricsRecorder()
+        # A daemon thread: a kernel that hangs must not keep the process from ending.
+        self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
+
+    def start(self) -> None:
+        """Begin; returns at once. Warm the tracker's kernels before, or the first frames wait."""
+        self._thread.start()
+
+    def let_go(self) -> None:
+        """First pass of stopping: wakes the thread; never blocks."""
+        self._stopping.set()
+        self._collector.close()
+
+    def stop(self, timeout_s: float = 1.0) -> bool:
+        """Wake and join. False when a step still runs after `timeout_s` [s]."""
+        self.let_go()
+        if self._thread.ident is not None:
+            self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    def metrics(self) -> Metrics:
+        """A snapshot, at any time from any thread."""
+        return self._recorder.snapshot(self._collector.counts(), monotonic_ns())
+
+    def _run(self) -> None:
+        try:
+            with IdleCollection() as garbage:
+                self._loop(garbage)
+        except BaseException as error:
+            self._on_death(error)
+            raise
+
+    def _loop(self, garbage: IdleCollection) -> None:
+        while not self._stopping.is_set() and not self._collector.closed:
+            frames = self._collector.get(LOOK_UP_S)
+            if frames is not None:
+                self._one(frames)
+            if self._collector.idle:
+                garbage.idle(monotonic_ns())
+
+    def _one(self, frames: FrameSet) -> None:
+        start_ns = monotonic_ns()
+        track = self._tracker.step(frames)
+        step_ns = monotonic_ns() - start_ns
+        self._smoother.skeleton = self._tracker.skeleton
+        body = self._smoother.step(track.body)
+        self._publish(body, self._tracker.skeleton, frames)
+        self._recorder.published(frames, body, step_ns, monotonic_ns())

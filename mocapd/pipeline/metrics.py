@@ -1,0 +1,89 @@
+"""How the pipeline does, for the status line and the health message."""
+
+import threading
+from dataclasses import dataclass
+
+from mocapd.clock import NS_PER_S
+from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.collector import CollectorCounts
+from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
+from mocapd.types import BodyState, FrameSet, Tracking
+
+
+@dataclass(frozen=True, slots=True)
+class CameraMetrics:
+    """rate_hz: frames that arrive [Hz]; delay_ms: arrival minus capture (median) [ms]."""
+
+    rate_hz: float
+    delay_ms: float
+    counts: CameraCounts
+
+
+@dataclass(frozen=True, slots=True)
+class Metrics:
+    """A snapshot. Percentiles are over the last 300 frame sets (10 s at 30 Hz).
+
+    rate_hz: bodies published per second over the last 2 s; latency_ms: capture (the set's `t_ns`)
+    to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
+    published: bodies since the start; sets_dropped: displaced by newer ones while the tracker was
+    busy.
+    """
+
+    rate_hz: float
+    published: int
+    sets_made: int
+    sets_dropped: int
+    latency_ms: Percentiles
+    step_ms: Percentiles
+    spread_ms: Percentiles
+    tracking: Tracking
+    tracker: str
+    cameras: dict[str, CameraMetrics]
+
+
+class MetricsRecorder:
+    """Written by the pipeline's thread, read by any; the lock is held for appends and copies only."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._rate = RollingRate()
+        self._latency_ms = RollingPercentiles()
+        self._step_ms = RollingPercentiles()
+        self._spread_ms = RollingPercentiles()
+        self._published = 0
+        self._tracking = Tracking.LOST
+        self._tracker = ""
+
+    def published(self, frames: FrameSet, body: BodyState, step_ns: int, now_ns: int) -> None:
+        """A body went out at `now_ns`, after a tracker's step of `step_ns`."""
+        per_ms = NS_PER_S // 1000
+        with self._lock:
+            self._rate.add(now_ns)
+            self._latency_ms.add((now_ns - frames.t_ns) / per_ms)
+            self._step_ms.add(step_ns / per_ms)
+            self._spread_ms.add(frames.spread_ns / per_ms)
+            self._published += 1
+            self._tracking, self._tracker = body.tracking, body.tracker
+
+    def snapshot(self, collected: CollectorCounts, now_ns: int) -> Metrics:
+        """The figures now, with the collector's counts."""
+        with self._lock:
+            rate_hz = self._rate.rate_hz(now_ns)
+            latency, step = self._latency_ms.samples(), self._step_ms.samples()
+            spread, published = self._spread_ms.samples(), self._published
+            tracking, tracker = self._tracking, self._tracker
+        return Metrics(
+            rate_hz=rate_hz,
+            published=published,
+            sets_made=collected.sets,
+            sets_dropped=collected.dropped,
+            latency_ms=percentiles(latency),
+            step_ms=percentiles(step),
+            spread_ms=percentiles(spread),
+            tracking=tracking,
+            tracker=tracker,
+            cameras={
+                name: CameraMetrics(collected.rates_hz[name], collected.delays_ms[name], counts)
+                for name, counts in collected.cameras.items()
+            },
+        )

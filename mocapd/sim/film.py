@@ -1,0 +1,156 @@
+"""One loop of a scenario, rendered beforehand to JPEG, so that playing it costs next to nothing."""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import msgspec
+import numpy as np
+
+import mocapd.body
+import mocapd.sim
+from mocapd.assets import asset_path
+from mocapd.errors import CannotCreateError
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.scenario import Scenario
+from mocapd.sim.setup import SimSetup, setup_of
+from mocapd.sim.strokes import LabelledImage
+from mocapd.sim.world import World, rig_of
+from mocapd.types import Bytes
+
+Progress = Callable[[int, int], None]  # frames done, frames in all
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Film:
+    """frames[camera]: the JPEG files of one loop; frame i shows world frame first + i, and repeats."""
+
+    scenario: Scenario
+    first: int
+    frames: Mapping[str, tuple[bytes, ...]]
+    setup: SimSetup
+
+
+class _FilmFile(msgspec.Struct, frozen=True):
+    """On disk, as msgpack. Pictures of the set-up are PNG: pixels, strokes."""
+
+    key: str
+    first: int
+    frames: dict[str, list[bytes]]
+    scribbles: dict[str, tuple[bytes, bytes]]
+    model: list[tuple[bytes, bytes]]
+
+
+def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
+    """The film of a scenario, from the cache or rendered now (about 20 s for 12 s of two cameras).
+
+    A stale, damaged or half-written cache file is rendered anew. Raises CannotCreateError when the
+    cache cannot be written.
+    """
+    key = film_key(scenario)
+    path = cache_dir / f"sim-{scenario.name}-{key[:16]}.film"
+    stored = _read(path, key)
+    if stored is None:
+        stored = _render(scenario, key, progress)
+        _write(path, stored)
+    setup = SimSetup(
+        rig=rig_of(scenario),
+        stature_m=scenario.body.stature_m,
+        scribbles={name: _labelled(pair) for name, pair in stored.scribbles.items()},
+        model=tuple(_labelled(pair) for pair in stored.model),
+    )
+    frames = {name: tuple(jpegs) for name, jpegs in stored.frames.items()}
+    return Film(scenario, stored.first, frames, setup)
+
+
+def film_key(scenario: Scenario) -> str:
+    """A hash of everything the pictures follow from: the scenario, and the code and assets that draw."""
+    digest = hashlib.sha256(msgspec.json.encode(scenario))
+    for package in (mocapd.sim, mocapd.body):
+        for folder in package.__path__:
+            for source in sorted(Path(folder).glob("*.py")):
+                digest.update(source.read_bytes())
+    for asset in ("shirt_standard_v1.json", "body_proportions.json"):
+        digest.update(asset_path(asset).read_bytes())
+    return digest.hexdigest()
+
+
+def first_frame(scenario: Scenario) -> int:
+    """The first world frame in which every camera sees the person."""
+    earliest = min(camera.clock_offset_s for camera in scenario.cameras)
+    return max(0, int(np.ceil((scenario.person_appears_s - earliest) * scenario.fps_hz - 1e-9)))
+
+
+def encode_jpeg(pixels: Bytes, quality: int) -> bytes:
+    """A JPEG file of pixels (H,W,3) BGR."""
+    _, data = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return bytes(data)
+
+
+def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFile:
+    renderers = camera_renderers(World(scenario))
+    n = round(scenario.loop_s * scenario.fps_hz)
+    first = first_frame(scenario)
+    frames: dict[str, list[bytes]] = {r.camera.name: [] for r in renderers}
+    for i in range(n):
+        for k, renderer in enumerate(renderers):
+            pixels = renderer.frame(first + i)
+            frames[renderer.camera.name].append(encode_jpeg(pixels, scenario.jpeg_quality))
+            if progress is not None:
+                progress(i * len(renderers) + k + 1, n * len(renderers))
+    setup = setup_of(scenario, renderers)
+    return _FilmFile(
+        key=key,
+        first=first,
+        frames=frames,
+        scribbles={name: _png_pair(image) for name, image in setup.scribbles.items()},
+        model=[_png_pair(image) for image in setup.model],
+    )
+
+
+def _png_pair(image: LabelledImage) -> tuple[bytes, bytes]:
+    pair = [bytes(cv2.imencode(".png", array)[1]) for array in (image.pixels, image.strokes)]
+    return pair[0], pair[1]
+
+
+def _labelled(pair: tuple[bytes, bytes]) -> LabelledImage:
+    pixels, strokes = (
+        np.asarray(cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags), dtype=np.uint8)
+        for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
+    )
+    return LabelledImage(pixels, strokes)
+
+
+def _read(path: Path, key: str) -> _FilmFile | None:
+    """The stored film, or None when there is none that fits."""
+    try:
+        stored = msgspec.msgpack.decode(path.read_bytes(), type=_FilmFile)
+    except (OSError, msgspec.DecodeError):
+        return None
+    return stored if stored.key == key else None
+
+
+def _write(path: Path, film: _FilmFile) -> None:
+    """Atomically: a reader sees the whole file or none."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".film-")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(msgspec.msgpack.encode(film))
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).replace(path)
+        except OSError:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise CannotCreateError(
+            f"the simulator's cache cannot be written ({error})",
+            str(path),
+            "free space there or choose another cache directory",
+        ) from None

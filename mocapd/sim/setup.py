@@ -1,0 +1,79 @@
+"""What a user's calibration of the simulated rig would give: cameras, stature, labelled pictures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from mocapd.sim.figure import build_figure
+from mocapd.sim.lamps import studio_lamps
+from mocapd.sim.renderer import CameraRenderer, Set, camera_renderers
+from mocapd.sim.room import backdrop
+from mocapd.sim.scenario import CameraSpec, Keyframe, Motion, Scenario, load_scenario
+from mocapd.sim.strokes import LabelledImage, scribble
+from mocapd.sim.world import World, rig_of
+from mocapd.types import Rig
+
+# How the user poses for the pictures of the shirt: pose, yaw [deg]
+MODEL_POSES = (
+    ("t_pose", 0.0), ("relaxed", 0.0), ("t_pose", 180.0), ("goalpost", 35.0), ("relaxed", 150.0),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimSetup:
+    """The rig, the stature the user typed in, per camera one labelled picture in the scenario's own
+    light, and the labelled pictures of the shirt in neutral light."""
+
+    rig: Rig
+    stature_m: float
+    scribbles: Mapping[str, LabelledImage]
+    model: tuple[LabelledImage, ...]
+
+
+def sim_setup(scenario_path: Path) -> SimSetup:
+    """Calibrate on a scenario file. Raises InputError or ConfigError."""
+    scenario = load_scenario(scenario_path)
+    return setup_of(scenario, camera_renderers(World(scenario)))
+
+
+def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:
+    """The same with the scenario's cameras at hand."""
+    return SimSetup(
+        rig=rig_of(scenario),
+        stature_m=scenario.body.stature_m,
+        scribbles={r.camera.name: scribble_picture(scenario, r) for r in renderers},
+        model=model_pictures(scenario),
+    )
+
+
+def scribble_picture(scenario: Scenario, renderer: CameraRenderer) -> LabelledImage:
+    """The picture of one camera at `scribble_s`, with strokes."""
+    state = World(scenario).at(scenario.scribble_s)
+    pixels = renderer.picture((state.pose, state.pose), state.light_levels, noise_key=-1)
+    patch, _ = renderer.labels(state.pose)
+    return LabelledImage(pixels, scribble(patch, np.random.default_rng([scenario.seed, 5])))
+
+
+def model_pictures(scenario: Scenario) -> tuple[LabelledImage, ...]:
+    """The person before a grey backdrop in neutral light, with strokes."""
+    camera = CameraSpec(
+        name="studio", position_m=(0.0, 1.30, 3.1), look_at_m=(0.0, 1.12, 0.0), vignetting=0.0
+    )
+    out: list[LabelledImage] = []
+    renderer: CameraRenderer | None = None
+    stage = Set(backdrop(), studio_lamps(), np.zeros(3))
+    for i, (pose, yaw_deg) in enumerate(MODEL_POSES):
+        motion = Motion(keyframes=[Keyframe(t_s=0.0, pose=pose, yaw_deg=yaw_deg)], sway_deg=0.0)
+        world = World(msgspec.structs.replace(scenario, cameras=[camera], motion=motion))
+        if renderer is None:
+            figure = build_figure(world.shape, scenario.clothes, scenario.seed)
+            renderer = CameraRenderer(world, figure, stage, 0, samples=1)
+        at_rest = world.at(0.0).pose
+        pixels = renderer.picture((at_rest, at_rest), np.ones(2), noise_key=i)
+        patch, _ = renderer.labels(at_rest)
+        rng = np.random.default_rng([scenario.seed, 6, i])
+        out.append(LabelledImage(pixels, scribble(patch, rng)))
+    return tuple(out)

@@ -1,0 +1,55 @@
+"""A user's sloppy strokes on a picture, made from the exact labels."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.body.shirt import N_PATCHES, standard_shirt
+from mocapd.types import Bytes
+
+_MARGIN_PX = 2  # users stay off the borders, more or less
+_LEAST_PX = 40  # patches smaller than this are left out
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LabelledImage:
+    """pixels (H,W,3) BGR and a user's strokes (H,W): 0 nothing, 1..10 colour id."""
+
+    pixels: Bytes
+    strokes: Bytes
+
+
+def scribble(patch: Bytes, rng: np.random.Generator) -> Bytes:
+    """Strokes (H,W) of colour ids over the patches (H,W) 0..20 that can be seen: a zigzag in each."""
+    out = np.zeros_like(patch)
+    colour_of = standard_shirt().colour_of_patch
+    kernel = np.ones((2 * _MARGIN_PX + 1, 2 * _MARGIN_PX + 1), dtype=np.uint8)
+    for index in range(1, N_PATCHES + 1):
+        inside = cv2.erode((patch == index).astype(np.uint8), kernel)
+        y, x = np.nonzero(inside)
+        if len(x) < _LEAST_PX:
+            continue
+        corners = _zigzag(np.stack([x, y], axis=-1), rng)
+        drawn = np.zeros_like(patch)
+        cv2.polylines(drawn, [corners], False, 1, thickness=3)
+        out[(drawn > 0) & (inside > 0)] = colour_of[index]
+    # the hand slips a pixel
+    slip = rng.integers(-1, 2, size=2)
+    return np.roll(out, (int(slip[0]), int(slip[1])), axis=(0, 1))
+
+
+def _zigzag(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A few of the points (N,2) x, y, ordered along the region's long side: (M,2) int32."""
+    centre = points.mean(axis=0)
+    _, _, axes = np.linalg.svd(points - centre, full_matrices=False)
+    along, across = (points - centre) @ axes[0], (points - centre) @ axes[1]
+    stops = np.quantile(along, np.linspace(0.08, 0.92, int(rng.integers(5, 8))))
+    corners = []
+    for i, stop in enumerate(stops):
+        near = np.flatnonzero(np.abs(along - stop) <= max(1.5, 0.05 * np.ptp(along)))
+        side = across[near] * (1 if i % 2 else -1)
+        # not to the very edge: somewhere in the outer half of this side
+        choice = near[np.argsort(side)[int(rng.uniform(0.7, 0.95) * (len(near) - 1))]]
+        corners.append(points[choice])
+    return np.array(corners, dtype=np.int32)

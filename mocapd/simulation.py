@@ -1,0 +1,81 @@
+"""Simulated webcams, `sim:SCENARIO#CAMERA`: the film they show and what their rig tells a tracker."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mocapd.assets import asset_path
+from mocapd.camera_inputs import CameraInput, in_rig_order
+from mocapd.capture.sim import SimSource
+from mocapd.clock import monotonic_ns
+from mocapd.config_sections import CameraSection
+from mocapd.errors import InputError
+from mocapd.sim.film import Film, load_film
+from mocapd.sim.scenario import load_scenario
+from mocapd.sim.setup import SimSetup
+from mocapd.sim.strokes import LabelledImage
+from mocapd.tracker_setup import Progress
+from mocapd.trackers.registry import StrokedPicture, TrackerInputs
+
+SIM = "sim:"
+
+
+def scenario_path(source: str) -> Path:
+    """The file of `sim:NAME`, one of calib/scenarios, or of `sim:FILE.toml`; `#CAMERA` is ignored.
+
+    Raises InputError for a name that does not exist.
+    """
+    name = source.removeprefix(SIM).partition("#")[0]
+    if name.endswith(".toml"):
+        return Path(name)
+    folder = asset_path("scenarios")
+    path = folder / f"{name}.toml"
+    if not path.is_file():
+        known = ", ".join(sorted(one.stem for one in folder.glob("*.toml")))
+        raise InputError(
+            f"there is no scenario {name!r}", source, f"one of {known}, or a .toml file"
+        )
+    return path
+
+
+def camera_names(source: str) -> tuple[str, ...]:
+    """The cameras of a scenario. Raises InputError or ConfigError."""
+    return tuple(camera.name for camera in load_scenario(scenario_path(source)).cameras)
+
+
+def open_film(source: str, cache_dir: Path, progress: Progress) -> Film:
+    """The scenario's film, rendered when it is not in the cache. Raises MocapdError."""
+    return load_film(
+        load_scenario(scenario_path(source)),
+        cache_dir,
+        lambda done, total: progress("rendering the simulated webcams", done, total),
+    )
+
+
+def simulated_inputs(cameras: Sequence[CameraSection], film: Film) -> tuple[CameraInput, ...]:
+    """Webcams that show one film; they share its beginning. Raises ConfigError."""
+    rig = film.setup.rig
+    sizes = {camera.name: camera.size_px for camera in rig.cameras}
+    epoch_ns = monotonic_ns()
+    return tuple(
+        CameraInput(
+            SimSource(film, camera.id, epoch_ns),
+            camera.source,
+            sizes[camera.id],
+            film.scenario.fps_hz,
+        )
+        for camera in in_rig_order(cameras, rig)
+    )
+
+
+def inputs_of_simulation(setup: SimSetup) -> TrackerInputs:
+    """What a user's calibration of the simulated rig would tell."""
+    return TrackerInputs(
+        rig=setup.rig,
+        stature_m=setup.stature_m,
+        model=tuple(_labelled(image) for image in setup.model),
+        white_balance={name: _labelled(image) for name, image in setup.scribbles.items()},
+    )
+
+
+def _labelled(image: LabelledImage) -> StrokedPicture:
+    return StrokedPicture(image.pixels, image.strokes)

@@ -1,0 +1,115 @@
+"""The one place where a tracker is built, and what it may know of rig, wearer and light is read."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mocapd.body.shirt import N_COLOURS, standard_shirt
+from mocapd.capture.folder import CaptureFolder, StrokedImage
+from mocapd.config_sections import CameraSection, TrackerSection
+from mocapd.errors import ConfigError, InputError
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import StrokedPicture, TrackerInputs, build
+from mocapd.types import Bytes, Rig
+
+Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
+
+_PAINT = "paint the colours of the shirt again"
+
+
+def build_tracker(name: str, inputs: TrackerInputs) -> Tracker:
+    """The tracker of this name, ready to step. Raises ConfigError naming what it lacks."""
+    return build(name, inputs)
+
+
+def inputs_of_capture(
+    folder: CaptureFolder, stature_m: float, variant: str = "full"
+) -> TrackerInputs:
+    """What a capture folder tells; `stature_m` is for folders that do not say."""
+    return TrackerInputs(
+        rig=folder.rig,
+        stature_m=folder.stature_m or stature_m,
+        model=read_model(folder.model),
+        white_balance={
+            c.name: read_stroked(c.scribble) for c in folder.cameras if c.scribble is not None
+        },
+        variant=variant,
+    )
+
+
+def inputs_of_config(
+    tracker: TrackerSection, cameras: tuple[CameraSection, ...], rig: Rig | None
+) -> TrackerInputs:
+    """What the configuration tells."""
+    folder = tracker.colour_model
+    return TrackerInputs(
+        rig=rig,
+        stature_m=tracker.stature_m,
+        model=read_model(stroked_folder(folder)) if folder else (),
+        white_balance={
+            c.id: read_stroked(stroked_image(c.white_balance)) for c in cameras if c.white_balance
+        },
+    )
+
+
+def stroked_image(image: Path) -> StrokedImage:
+    """An image with its `_strokes.png` beside it. Raises InputError when one is missing."""
+    strokes = image.with_name(f"{image.stem}_strokes.png")
+    for path in (image, strokes):
+        if not path.is_file():
+            raise InputError("no such file", str(path), _PAINT)
+    return StrokedImage(image, strokes)
+
+
+def stroked_folder(folder: Path) -> tuple[StrokedImage, ...]:
+    """Every image of a folder with its strokes. Raises InputError when there is none."""
+    images = sorted(path for path in folder.glob("*.png") if not path.stem.endswith("_strokes"))
+    if not images:
+        raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
+    return tuple(stroked_image(image) for image in images)
+
+
+def read_model(images: tuple[StrokedImage, ...]) -> tuple[StrokedPicture, ...]:
+    """The images of the shirt. Raises ConfigError when a colour has no stroke on any of them."""
+    pictures = tuple(read_stroked(image) for image in images)
+    if pictures:
+        painted = np.unique(np.concatenate([np.unique(p.strokes) for p in pictures]))
+        missing = sorted(set(range(1, N_COLOURS + 1)) - set(painted.tolist()))
+        if missing:
+            names = ", ".join(f"{i} ({standard_shirt().colour_names[i - 1]})" for i in missing)
+            raise ConfigError(
+                f"no stroke of colour {names} on any image",
+                str(images[0].strokes.parent),
+                "paint it where the shirt shows it",
+            )
+    return pictures
+
+
+def read_stroked(image: StrokedImage) -> StrokedPicture:
+    """Read both pictures. Raises InputError or ConfigError naming the file."""
+    pixels = _picture(image.image, cv2.IMREAD_COLOR)
+    strokes = _picture(image.strokes, cv2.IMREAD_UNCHANGED)
+    if strokes.shape != pixels.shape[:2]:
+        raise ConfigError(
+            f"has shape {strokes.shape}, its image {pixels.shape[:2]}", str(image.strokes), _PAINT
+        )
+    if strokes.max() > N_COLOURS:
+        raise ConfigError(
+            f"holds the colour id {strokes.max()}, ids go to {N_COLOURS}",
+            str(image.strokes),
+            _PAINT,
+        )
+    return StrokedPicture(pixels, strokes)
+
+
+def _picture(path: Path, flags: int) -> Bytes:
+    try:
+        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", str(path), _PAINT) from None
+    picture = cv2.imdecode(data, flags) if data.size else None
+    if picture is None:
+        raise InputError("is damaged or no picture", str(path), _PAINT)
+    return np.asarray(picture, dtype=np.uint8)

@@ -1,0 +1,152 @@
+"""When an arm does not agree with the pictures: other poses of it are tried, the best is kept.
+
+A tracked arm can slip into a pose that looks right to one camera. Candidates are its mirror images
+in depth along each camera's view (the two poses of a segment that project alike, Sminchisescu and
+Triggs 2003), and a low-discrepancy cloud about the present pose and about rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scipy.stats import qmc
+
+from mocapd.body.joint_limits import from_swing_twist, standard_limits
+from mocapd.body.model import BodyModel, shaped
+from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.geometry import rotations
+from mocapd.trackers.colour.arm_kernels import score_arms
+from mocapd.trackers.colour.fitting import Fitter, MotionState, View
+from mocapd.types import Floats, Ints
+
+SIDES = ("left", "right")
+_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arm:
+    """One arm of the body model: its chain of joints (collar, upper, lower, hand) and surface samples (S,...)."""
+
+    side: str
+    chain: Ints
+    sample: Ints  # triangles of the samples
+    corners: NDArray[np.int32]  # (S,3) their vertices
+    link: Ints  # (S,2) two bones, as places in `chain`
+    weights: Floats  # (S,2)
+    colour: NDArray[np.uint8]
+    others: Ints  # all triangles but this arm's
+
+
+def arm_of(model: BodyModel, side: str) -> Arm:
+    """Cut one arm out of the body model; every third triangle of its sleeve is a sample."""
+    mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
+    chain = np.array([INDEX[side + bone] for bone in ("Shoulder", "UpperArm", "LowerArm", "Hand")])
+    sample = np.flatnonzero(mine & (model.colour > 0))[::3]
+    bones, weights = model.triangle_bones[sample, :2], model.triangle_weights[sample, :2]
+    place = np.zeros(int(model.parents.size), dtype=np.int64)
+    place[chain] = np.arange(len(chain))
+    weights = np.where(np.isin(bones, chain), weights, 0.0)
+    return Arm(
+        side, chain, sample, model.triangles[sample], place[bones],
+        weights / weights.sum(axis=1, keepdims=True), model.colour[sample], np.flatnonzero(~mine),
+    )  # fmt: skip
+
+
+def agreement(side: str, visible: Floats, matched: Floats, unexplained: Floats) -> float:
+    """0..1: share of the arm's patches that the pictures confirm (per-patch counts of a fit)."""
+    p = _PATCHES[side]
+    return float(matched[p].sum() / (visible[p].sum() + unexplained[p].sum() + 1.0))
+
+
+def candidates(
+    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], cloud: Floats, library: Floats
+) -> Floats:
+    """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose.
+
+    cloud (C,6): rotation vectors to turn upper arm and forearm by; library (L,3,4): poses to try as they are.
+    """
+    joints, globals_ = fitter.joints(state)
+    collar, upper, lower, hand = arm.chain
+    present = state.local_xyzw[[collar, upper, lower]]
+    out = [present]
+    a, b = joints[lower] - joints[upper], joints[hand] - joints[lower]
+    for view in views:
+        camera = fitter.cameras[view.index]
+        ray = joints[lower] + camera.R.T @ camera.t_m
+        ray = ray / np.linalg.norm(ray)
+        a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
+        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip)):
+            q_upper = rotations.multiply(_shortest(a, new_a), globals_[upper])
+            q_lower = rotations.multiply(_shortest(b, new_b), globals_[lower])
+            local = present.copy()
+            local[1] = rotations.multiply(rotations.inverse(globals_[collar]), q_upper)
+            local[2] = rotations.multiply(rotations.inverse(q_upper), q_lower)
+            out.append(local)
+    turned = np.repeat(present[None], len(cloud), axis=0)
+    turned[:, 1] = rotations.multiply(rotations.exp(cloud[:, :3]), turned[:, 1])
+    turned[:, 2] = rotations.multiply(rotations.exp(cloud[:, 3:]), turned[:, 2])
+    return np.concatenate([np.array(out), turned, library])
+
+
+def _shortest(a: Floats, b: Floats) -> Floats:
+    """The smallest rotation (4,) that turns direction a into direction b."""
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    w = 1.0 + a @ b
+    if w < 1e-6:
+        axis = np.cross(a, [1.0, 0.0, 0.0] if abs(a[0]) < 0.9 else [0.0, 1.0, 0.0])
+        return np.append(axis / np.linalg.norm(axis), 0.0)
+    return rotations.canonical(np.append(np.cross(a, b), w))
+
+
+def best_arm_poses(
+    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hypotheses: Floats, keep: int
+) -> list[MotionState]:
+    """The `keep` best of the hypotheses, as states, best first."""
+    model = fitter.model
+    vertices, rest = shaped(model, state.factors)
+    corners = vertices[arm.corners]
+    points = corners.mean(axis=1)
+    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    normals /= area[:, None]
+    scores = np.zeros(len(hypotheses))
+    for view in views:
+        base = fitter.render_parts(view.index, state, view.dt_s, view.roi, arm.others)
+        camera, factor = fitter.cameras[view.index], fitter.factors[view.index]
+        score_arms(
+            hypotheses, arm.chain, model.parents, rest, base.R, base.joints, base.quats,
+            points, normals, arm.link, arm.weights, arm.colour, area,
+            camera.R, camera.t_m, camera.K, camera.dist,
+            np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,
+            base.zbuffer, view.ids, view.softness, scores,
+        )  # fmt: skip
+    out: list[MotionState] = []
+    for n in np.argsort(-scores, kind="stable"):
+        if n == 0 or len(out) == keep:
+            break  # none below the present pose is worth a try
+        local = state.local_xyzw.copy()
+        local[arm.chain[:3]] = hypotheses[n]
+        # a hypothesis close to one already kept would end where that one ends
+        if any(
+            np.abs((local[arm.chain[1:3]] * kept.local_xyzw[arm.chain[1:3]]).sum(axis=1)).min() > 0.985
+            for kept in out
+        ):
+            continue
+        out.append(replace(state, local_xyzw=local))
+    return out
+
+
+def arm_library(size: int, side: str) -> Floats:
+    """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
+    limits = standard_limits()
+    first = 3 if side == "left" else 6  # rotation groups of body.model: upper arm, forearm
+    u = qmc.Halton(6, scramble=False).random(size + 1)[1:]
+    out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
+    for place, group, span in ((1, first, slice(0, 3)), (2, first + 1, slice(3, 6))):
+        lower, upper = limits.lower_rad[group], limits.upper_rad[group]
+        angles = lower + (upper - lower) * u[:, span]
+        out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
+    return out

@@ -1,0 +1,231 @@
+"""The pose database on disk: made once, then mapped into memory.
+
+Layout: MAGIC, the length of the header (8 bytes, little-endian), a JSON header (version, content hash,
+checksum, and per array name, type, shape and offset), then the arrays, each from a multiple of 64 bytes
+on. Written beside its place, flushed to the disk and renamed, so that it is whole or absent.
+"""
+
+import json
+import os
+import tempfile
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.errors import CannotCreateError
+from mocapd.trackers.colour.database import (
+    VERSION,
+    DatabaseParams,
+    MapChunks,
+    PoseDatabase,
+    Progress,
+    build_database,
+    content_hash,
+)
+from mocapd.trackers.colour.idmap_index import IdMapIndex, Projection
+
+FILE_NAME = "pose_database.bin"
+_MAGIC = b"mocapd pose database\n"
+_ALIGNMENT = 64
+_BLOCK = 1 << 20
+
+
+class _UnusableError(Exception):
+    """Why a file cannot be used; becomes the `reason` of Loaded."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loaded:
+    """The database, and how it came: `built` anew because of `reason` ("" when read from the file).
+
+    `warning` is a line for the user, or "": the cache could not be written, so the next start builds
+    again.
+    """
+
+    database: PoseDatabase
+    built: bool
+    reason: str = ""
+    warning: str = ""
+
+
+def load_or_build(
+    cache_dir: Path,
+    params: DatabaseParams | None = None,
+    progress: Progress = lambda _: None,
+    map_chunks: MapChunks = map,
+    must_cache: bool = False,
+) -> Loaded:
+    """The database of `params` from `cache_dir`; built and written there when it is missing or stale.
+
+    progress(0..1) is called while building only. Raises CannotCreateError when the cache cannot be
+    written and `must_cache`; otherwise the database stays in memory and `warning` says so.
+    """
+    params = params or DatabaseParams()
+    path = cache_dir / FILE_NAME
+    wanted = content_hash(params)
+    try:
+        return Loaded(_read(path, wanted), built=False)
+    except _UnusableError as error:
+        reason = str(error)
+    if must_cache:
+        _check_writable(cache_dir)
+    database = build_database(params, progress, map_chunks)
+    try:
+        write_database(path, database, wanted)
+    except CannotCreateError as error:
+        if must_cache:
+            raise
+        return Loaded(database, built=True, reason=reason, warning=str(error))
+    # mapped pages can be given back to the system, the built arrays cannot
+    return Loaded(_read(path, wanted), built=True, reason=reason)
+
+
+def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
+    """Write the file as a whole or not at all. Raises CannotCreateError."""
+    arrays = _arrays(database)
+    entries: list[dict[str, Any]] = []
+    offset, checksum = 0, 0
+    for name, array in arrays.items():
+        offset += -offset % _ALIGNMENT
+        entries.append(
+            {"name": name, "dtype": array.dtype.str, "shape": array.shape, "offset": offset}
+        )
+        offset += array.nbytes
+        checksum = zlib.crc32(memoryview(array).cast("B"), checksum)
+    header = json.dumps(
+        {
+            "version": VERSION, "content": digest, "crc32": checksum, "size": offset,
+            "arrays": entries,
+        }
+    ).encode()  # fmt: skip
+    head = _MAGIC + len(header).to_bytes(8, "little") + header
+    head += b"\0" * (-len(head) % _ALIGNMENT)
+    _check_writable(path.parent)
+    try:
+        with tempfile.NamedTemporaryFile(
+            dir=path.parent, prefix=path.name + ".", delete=False
+        ) as file:
+            temporary = Path(file.name)
+            try:
+                file.write(head)
+                for entry, array in zip(entries, arrays.values(), strict=True):
+                    file.write(b"\0" * (len(head) + entry["offset"] - file.tell()))
+                    file.write(memoryview(array).cast("B"))
+                file.flush()
+                os.fsync(file.fileno())
+                temporary.replace(path)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
+    except OSError as error:
+        raise _cannot_create(path.parent, error) from None
+
+
+def _check_writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise _cannot_create(folder, error) from None
+
+
+def _cannot_create(folder: Path, error: OSError) -> CannotCreateError:
+    return CannotCreateError(
+        f"the pose database cannot be kept there ({error.strerror or error})",
+        str(folder),
+        "give the service a cache folder it may write to, with 150 MB free; without it every start"
+        " builds the database anew",
+    )
+
+
+def _read(path: Path, wanted: str) -> PoseDatabase:
+    """The database of a file, mapped into memory. Raises _UnusableError saying why not."""
+    try:
+        with path.open("rb") as file:
+            if file.read(len(_MAGIC)) != _MAGIC:
+                raise _UnusableError(f"{path} is not a pose database")
+            length = int.from_bytes(file.read(8), "little")
+            if length > _BLOCK:
+                raise _UnusableError(f"{path} is damaged (its header)")
+            try:
+                header = json.loads(file.read(length))
+                version, content = header["version"], header["content"]
+                entries, size = header["arrays"], header["size"]
+            except (ValueError, TypeError, KeyError):
+                raise _UnusableError(f"{path} is damaged (its header)") from None
+            if version != VERSION or content != wanted:
+                raise _UnusableError(f"{path} is of another version")
+            base = file.tell() + -file.tell() % _ALIGNMENT
+            if path.stat().st_size != base + size:
+                raise _UnusableError(f"{path} is cut short")
+            if _checksum(file, base, entries) != header["crc32"]:
+                raise _UnusableError(f"{path} is damaged (its checksum)")
+    except FileNotFoundError:
+        raise _UnusableError(f"no pose database at {path} yet") from None
+    except OSError as error:
+        raise _UnusableError(f"{path} cannot be read ({error.strerror or error})") from None
+    return _database(
+        {
+            entry["name"]: np.memmap(
+                path, np.dtype(entry["dtype"]), "r", base + entry["offset"], tuple(entry["shape"])
+            )
+            for entry in entries
+        }
+    )
+
+
+def _checksum(file: Any, base: int, entries: list[dict[str, Any]]) -> int:
+    """Of the arrays' bytes, read in blocks, so that the process' memory does not grow by the file."""
+    checksum = 0
+    for entry in entries:
+        file.seek(base + entry["offset"])
+        left = int(np.prod(entry["shape"])) * np.dtype(entry["dtype"]).itemsize
+        while left > 0:
+            block = file.read(min(left, _BLOCK))
+            if not block:
+                break
+            checksum = zlib.crc32(block, checksum)
+            left -= len(block)
+    return checksum
+
+
+def _arrays(database: PoseDatabase) -> dict[str, NDArray[Any]]:
+    index = database.index
+    arrays = {
+        "local_xyzw": database.local_xyzw,
+        "camera_from_root_xyzw": database.camera_from_root_xyzw,
+        "root_m": database.root_m,
+        "side_rad": database.side_rad,
+        "mean": index.projection.mean,
+        "basis": index.projection.basis,
+        "centres": index.centres,
+        "start": index.start,
+        "vectors": index.vectors,
+        "packed_maps": index.packed_maps,
+    }
+    return {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+
+
+def _database(arrays: dict[str, NDArray[Any]]) -> PoseDatabase:
+    # plain views: numba would compile everything a second time for the memmap subclass
+    plain = {name: np.asarray(array).view(np.ndarray) for name, array in arrays.items()}
+    # what every query reads is kept in memory proper
+    small = {name: plain[name].copy() for name in ("mean", "basis", "centres", "start")}
+    return PoseDatabase(
+        local_xyzw=plain["local_xyzw"],
+        camera_from_root_xyzw=plain["camera_from_root_xyzw"],
+        root_m=plain["root_m"],
+        side_rad=plain["side_rad"],
+        index=IdMapIndex(
+            projection=Projection(small["mean"], small["basis"]),
+            centres=small["centres"],
+            start=small["start"],
+            vectors=plain["vectors"],
+            packed_maps=plain["packed_maps"],
+        ),
+    )

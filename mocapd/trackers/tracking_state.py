@@ -1,0 +1,57 @@
+"""`live`, `coasting` or `lost`, from evidence and time alone."""
+
+from dataclasses import dataclass
+
+from mocapd.clock import nanoseconds
+from mocapd.errors import ConfigError
+from mocapd.types import Tracking
+
+
+@dataclass(frozen=True, slots=True)
+class TrackingStateParams:
+    """coast_s: how long after the last evidence a pose is still predicted [s].
+
+    confirm_s: how long evidence must persist, frame after frame, before a lost person is believed
+    to be back [s]; with the default that is the third frame at 30 Hz, the second at 15 Hz.
+    """
+
+    coast_s: float = 0.5
+    confirm_s: float = 0.06
+
+    def __post_init__(self) -> None:
+        for name in ("coast_s", "confirm_s"):
+            if not 0.0 <= getattr(self, name) < float("inf"):
+                raise ConfigError(f"{getattr(self, name)} s", f"tracker.{name}", "give 0 or more")
+
+
+class TrackingState:
+    """Starts lost. Evidence makes it live after `confirm_s`; without any it coasts, then is lost."""
+
+    def __init__(self, params: TrackingStateParams | None = None) -> None:
+        params = params if params is not None else TrackingStateParams()
+        self._coast_ns = nanoseconds(params.coast_s)
+        self._confirm_ns = nanoseconds(params.confirm_s)
+        self.reset()
+
+    def reset(self) -> None:
+        """Lost, and nothing seen."""
+        self.now = Tracking.LOST
+        self._evidence_ns: int | None = None  # the last time there was any
+        self._since_ns: int | None = None  # while lost: since when every frame had some
+
+    def step(self, t_ns: int, evidence: bool) -> Tracking:
+        """The state at `t_ns` [ns, never decreasing], given whether that frame shows the person."""
+        if self._evidence_ns is not None and t_ns - self._evidence_ns > self._coast_ns:
+            self.reset()  # also when no frame at all came meanwhile
+        if self.now is not Tracking.LOST:
+            self.now = Tracking.LIVE if evidence else Tracking.COASTING
+        elif not evidence:
+            self._since_ns = None
+        else:
+            if self._since_ns is None:
+                self._since_ns = t_ns
+            if t_ns - self._since_ns >= self._confirm_ns:
+                self.now = Tracking.LIVE
+        if evidence:
+            self._evidence_ns = t_ns
+        return self.now

@@ -1,0 +1,53 @@
+"""Background subtraction: an adaptive mixture of Gaussians per pixel [SG99], as a hint."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.types import Bytes
+
+
+@dataclass(frozen=True, slots=True)
+class BackgroundParams:
+    """`shift`: the mask is 2^shift times smaller than the frame, each way.
+
+    `history`: frames the mixture remembers; `deviation2`: squared Mahalanobis distance beyond
+    which a pixel is foreground; `grow`: dilation [mask pixels], so that a hint does not cut off
+    thin arms.
+    """
+
+    shift: int = 2
+    history: int = 300
+    deviation2: float = 16.0
+    grow: int = 1
+
+
+class BackgroundSubtractor:
+    """The background of one camera. It learns from every frame it is given; one thread."""
+
+    def __init__(self, params: BackgroundParams | None = None) -> None:
+        self.params = params or BackgroundParams()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the background."""
+        self._mixture = cv2.createBackgroundSubtractorMOG2(
+            history=self.params.history,
+            varThreshold=self.params.deviation2,
+            detectShadows=False,
+        )
+
+    def apply(self, pixels: Bytes, learning_rate: float = -1.0) -> Bytes:
+        """The mask (H >> shift, W >> shift) uint8 of `pixels` (H,W,3): 0 background, 255 foreground.
+
+        learning_rate: 0 looks without learning, 1 learns anew from this frame, negative chooses
+        by `history`. The first frame after a reset has no foreground.
+        """
+        step = 1 << self.params.shift
+        small = np.ascontiguousarray(pixels[step // 2 :: step, step // 2 :: step])
+        mask = self._mixture.apply(small, learningRate=learning_rate)
+        if self.params.grow > 0:
+            size = 2 * self.params.grow + 1
+            mask = cv2.dilate(mask, np.ones((size, size), dtype=np.uint8))
+        return np.asarray(mask, dtype=np.uint8)

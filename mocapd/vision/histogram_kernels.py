@@ -1,0 +1,97 @@
+"""Integral histograms of chrominance over a coarse grid (paper §4; integral histogram: [Por05])."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+UInt8 = NDArray[np.uint8]
+UInt16 = NDArray[np.uint16]
+
+DIVISIONS = 10
+BINS = DIVISIONS * DIVISIONS
+NO_BIN = 255
+
+
+@njit(cache=True, nogil=True)
+def chrominance_bins(
+    pixels_bgr: UInt8, mask: UInt8, mask_shift: int, step: int, min_sum: int, out: UInt8
+) -> None:
+    """out (gh,gw): the chrominance bin 0..99 of every `step`-th pixel, NO_BIN for background.
+
+    The chrominances (r,g,b)/(r+g+b) fill a triangle; ten divisions of each side cut it into
+    exactly a hundred equal triangles. The sample (i,j) is the pixel at the middle of its cell.
+    Pixels darker than r+g+b = min_sum have no chrominance to speak of and count as grey.
+    """
+    grey = DIVISIONS // 3
+    grey_bin = grey * (2 * DIVISIONS - grey) + 2 * grey
+    for i in range(out.shape[0]):
+        row = pixels_bgr[i * step + step // 2]
+        mask_row = mask[(i * step + step // 2) >> mask_shift]
+        for j in range(out.shape[1]):
+            x = j * step + step // 2
+            if mask_row[x >> mask_shift] == 0:
+                out[i, j] = NO_BIN
+                continue
+            b, g, r = int(row[x, 0]), int(row[x, 1]), int(row[x, 2])
+            total = r + g + b
+            if total < min_sum:
+                out[i, j] = grey_bin
+                continue
+            # barycentric cell: red row, green column, and which of the cell's two triangles
+            red = min(DIVISIONS - 1, DIVISIONS * r // total)
+            green = min(DIVISIONS - 1 - red, DIVISIONS * g // total)
+            blue = DIVISIONS * b // total
+            upside_down = 1 if red + green + blue < DIVISIONS - 1 else 0
+            # row `red` holds 2 (10 - red) - 1 triangles; rows above it hold the rest
+            out[i, j] = red * (2 * DIVISIONS - red) + 2 * green + upside_down
+
+
+@njit(cache=True, nogil=True)
+def integral_histogram(bins: UInt8, out: UInt16) -> None:
+    """out (gh+1,gw+1,BINS): counts of each bin over the samples above and left of a corner."""
+    out[0] = 0
+    row = np.empty(BINS, dtype=np.uint16)
+    for i in range(bins.shape[0]):
+        out[i + 1, 0] = 0
+        row[:] = 0
+        for j in range(bins.shape[1]):
+            k = bins[i, j]
+            if k != NO_BIN:
+                row[k] += 1
+            above = out[i, j + 1]
+            here = out[i + 1, j + 1]
+            for n in range(BINS):
+                here[n] = above[n] + row[n]
+
+
+@njit(cache=True, nogil=True)
+def uniformity(
+    integral: UInt16, radii: NDArray[np.int64], bin_cap: float, out: NDArray[np.float32]
+) -> None:
+    """out (S,gh,gw): u(h) = sum_i min(h_i, bin_cap) of the window of 2 radius + 1 samples a side.
+
+    h is normalised by the whole window, so samples outside the image and background samples count
+    as no colour at all: a few pixels in a corner must not look as colourful as a whole shirt.
+    """
+    gh, gw = out.shape[1], out.shape[2]
+    for s in range(radii.shape[0]):
+        radius = radii[s]
+        area = float((2 * radius + 1) ** 2)
+        cap = bin_cap * area
+        whole = np.uint16(cap)
+        fraction = cap - float(whole)
+        for i in range(gh):
+            top = integral[max(0, i - radius)]
+            bottom = integral[min(gh, i + radius + 1)]
+            for j in range(gw):
+                left, right = max(0, j - radius), min(gw, j + radius + 1)
+                a, b, c, d = top[left], top[right], bottom[left], bottom[right]
+                # min(n, cap) of a whole number n is min(n, whole), plus the fraction once beyond;
+                # 16-bit sums throughout, so that a vector instruction takes many bins at once
+                capped = np.uint16(0)
+                beyond = np.uint16(0)
+                for k in range(BINS):
+                    n = np.uint16(np.uint16(d[k] - c[k]) - np.uint16(b[k] - a[k]))
+                    capped = np.uint16(capped + min(n, whole))
+                    beyond = np.uint16(beyond + np.uint16(n > whole))
+                out[s, i, j] = (float(capped) + fraction * float(beyond)) / area

@@ -1,0 +1,115 @@
+"""Stroke images: a person's coarse scribbles, one colour id per shirt colour, and their pixels."""
+
+from pathlib import Path
+from typing import cast
+
+import cv2
+import numpy as np
+
+from mocapd.errors import InputError
+from mocapd.types import Bytes, Floats
+
+COLOURS = 10
+_SCRIBBLE_AGAIN = "scribble again: 0 where nothing is drawn, 1..10 the colour id"
+
+# A stroke is drawn on one patch, so most of its pixels show that patch. The centre is estimated
+# from the innermost three quarters (fast MCD); 1.61 makes their covariance consistent with the
+# full Gaussian's: 0.75 / P(chi2_5 <= quantile of chi2_3 at 0.75).
+_CORE_FRACTION = 0.75
+_CORE_TO_FULL_VARIANCE = 1.61
+_CHI2_3_AT_0_999 = 16.27
+_CONCENTRATION_STEPS = 5
+_PIXEL_NOISE_VARIANCE = 0.015**2
+
+
+def read_image(path: Path) -> Bytes:
+    """A colour image file as (h,w,3) uint8 BGR. Raises InputError."""
+    return _read(path, cv2.IMREAD_COLOR)
+
+
+def read_strokes(path: Path, size_px: tuple[int, int] | None = None) -> Bytes:
+    """A stroke image file as labels (h,w) uint8; `size_px` (width, height) is what it must have.
+
+    Gray files, and colour files whose channels agree, hold the ids themselves. Raises InputError.
+    """
+    image = _read(path, cv2.IMREAD_UNCHANGED)
+    if image.dtype != np.uint8:
+        raise InputError(f"has {image.dtype} pixels, wanted 8 bits", str(path), _SCRIBBLE_AGAIN)
+    if image.ndim == 3:
+        if (image[..., :3] != image[..., :1]).any():
+            raise InputError("is painted in colours, not ids", str(path), _SCRIBBLE_AGAIN)
+        image = np.ascontiguousarray(image[..., 0])
+    if size_px is not None and image.shape != (size_px[1], size_px[0]):
+        raise InputError(
+            f"is {image.shape[1]}x{image.shape[0]} pixels, wanted {size_px[0]}x{size_px[1]}",
+            str(path),
+            "the strokes belong to another image",
+        )
+    if image.max() > COLOURS:
+        raise InputError(f"contains the id {image.max()}", str(path), _SCRIBBLE_AGAIN)
+    return image
+
+
+def read_labelled(image_path: Path, strokes_path: Path) -> tuple[Bytes, Bytes]:
+    """An image and the strokes on it: (h,w,3) uint8 BGR and (h,w) uint8. Raises InputError."""
+    image = read_image(image_path)
+    return image, read_strokes(strokes_path, (image.shape[1], image.shape[0]))
+
+
+def stroke_colours(image: Bytes, strokes: Bytes) -> list[Floats]:
+    """Per colour id 1..10 the RGB values (n,3) in 0..1 under its strokes, sloppy ends trimmed.
+
+    image (h,w,3) uint8 BGR; strokes (h,w) uint8. n is 0 for a colour without strokes. Pixels
+    where a stroke has run over the border of its patch are outliers of that stroke and left out.
+    """
+    if image.shape[:2] != strokes.shape:
+        raise InputError(f"strokes {strokes.shape} on an image {image.shape[:2]}")
+    colours: list[Floats] = []
+    for colour in range(1, COLOURS + 1):
+        count, components = cv2.connectedComponents((strokes == colour).astype(np.uint8))
+        parts = [
+            _trim(image[components == part][:, ::-1].astype(float) / 255.0)
+            for part in range(1, count)
+        ]
+        colours.append(np.concatenate(parts) if parts else np.empty((0, 3)))
+    return colours
+
+
+def stroke_means(image: Bytes, strokes: Bytes) -> tuple[Floats, Floats]:
+    """Mean RGB (10,3) in 0..1 under the strokes of each colour, and its pixel count (10,).
+
+    A colour without strokes has count 0 and mean 0.
+    """
+    colours = stroke_colours(image, strokes)
+    counts = np.array([len(values) for values in colours], dtype=float)
+    means = np.array([values.mean(axis=0) if len(values) else np.zeros(3) for values in colours])
+    return means, counts
+
+
+def _trim(values: Floats) -> Floats:
+    if len(values) < 8:
+        return values
+    core = round(_CORE_FRACTION * len(values))
+    distance2 = ((values - np.median(values, axis=0)) ** 2).sum(axis=1)
+    for _ in range(_CONCENTRATION_STEPS):
+        inner = values[np.argsort(distance2, kind="stable")[:core]]
+        covariance = np.cov(inner.T) * _CORE_TO_FULL_VARIANCE + np.eye(3) * _PIXEL_NOISE_VARIANCE
+        centred = values - inner.mean(axis=0)
+        distance2 = (centred * np.linalg.solve(covariance, centred.T).T).sum(axis=1)
+    kept: Floats = values[distance2 < _CHI2_3_AT_0_999]
+    return kept
+
+
+def _read(path: Path, flags: int) -> Bytes:
+    try:
+        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    except FileNotFoundError:
+        raise InputError("no such file", str(path), "check the path") from None
+    except OSError as error:
+        raise InputError(
+            f"cannot be read ({error.strerror})", str(path), "check its rights"
+        ) from None
+    image = cv2.imdecode(data, flags) if data.size else None
+    if image is None:
+        raise InputError("is not an image, or is cut short", str(path), "save it again as PNG")
+    return cast(Bytes, image)  # read_strokes looks at the depth before it trusts this

@@ -1,0 +1,153 @@
+"""Capture folders: what they hold, how their frames pair, and what is said of broken ones."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mocapd.capture.file import FileSource
+from mocapd.capture.folder import frame_sets, load_folder, sources_in_step
+from mocapd.errors import ConfigError, InputError, MocapdError
+from tests.capture.films import number_of, write_capture, write_film
+
+
+def edit_rig(folder: Path, edit: Callable[[list[dict[str, Any]]], object]) -> None:
+    rig = json.loads((folder / "rig.json").read_text())
+    edit(rig["cameras"])
+    (folder / "rig.json").write_text(json.dumps(rig))
+
+
+def test_a_folder_says_what_it_holds(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / "scribble").mkdir()
+    (path / "model").mkdir()
+    for name in ("scribble/cam0", "model/0", "model/1"):
+        (path / f"{name}.png").touch()
+        (path / f"{name}_strokes.png").touch()
+    (path / "model" / "0_labels.png").touch()  # ground truth: none of a tracker's business
+    folder = load_folder(path)
+    assert folder.rig.names == ("cam0", "cam1")
+    assert folder.stature_m == 1.72
+    assert folder.fps_hz == 30.0
+    assert [camera.time_offset_s for camera in folder.cameras] == [0.0, 0.01]
+    assert [camera.frames for camera in folder.cameras] == [12, 12]
+    scribbles = [camera.scribble for camera in folder.cameras]
+    assert scribbles[0] is not None
+    assert scribbles[0].strokes.name == "cam0_strokes.png"
+    assert scribbles[1] is None
+    assert [pair.image.name for pair in folder.model] == ["0.png", "1.png"]
+
+
+def test_frames_of_one_index_come_together_each_with_its_own_time(tmp_path: Path) -> None:
+    sets = list(frame_sets(load_folder(write_capture(tmp_path / "capture"))))
+    assert len(sets) == 12
+    for index, frames in enumerate(sets):
+        t_ns = round(index / 30.0 * 1e9)
+        assert frames.t_ns == t_ns
+        assert {name: frame.t_ns for name, frame in frames.frames.items()} == {
+            "cam0": t_ns,
+            "cam1": t_ns + 10_000_000,
+        }
+        assert frames.spread_ns == 10_000_000
+        assert {number_of(frame.pixels) for frame in frames.frames.values()} == {index}
+
+
+def test_a_camera_that_ends_early_is_absent_and_the_rest_goes_on(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture", frames=(5, 9))
+    sets = list(frame_sets(load_folder(path)))
+    assert [tuple(one.frames) for one in sets] == [("cam0", "cam1")] * 5 + [("cam1",)] * 4
+    assert [one.t_ns for one in sets] == sorted(one.t_ns for one in sets)
+
+
+def test_a_damaged_frame_does_not_shift_the_pairing(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture")
+    film = path / "cam1.avi"
+    data = bytearray(film.read_bytes())
+    starts = [i for i in range(len(data) - 2) if data[i : i + 3] == b"\xff\xd8\xff"]
+    data[starts[4] : starts[5] - 8] = bytes(starts[5] - 8 - starts[4])
+    film.write_bytes(data)
+    sets = list(frame_sets(load_folder(path)))
+    assert len(sets) == 12
+    assert tuple(sets[4].frames) == ("cam0",)
+    assert all(
+        number_of(frame.pixels) == index
+        for index, one in enumerate(sets)
+        for frame in one.frames.values()
+    )
+
+
+def test_leaving_early_closes_the_videos(tmp_path: Path) -> None:
+    sources = [FileSource(name, write_film(tmp_path / name, 9)) for name in ("a.avi", "b.avi")]
+    sets = sources_in_step(sources)
+    next(sets)
+    sets.close()  # type: ignore[attr-defined]  # a generator
+    for source in sources:
+        with pytest.raises(MocapdError):
+            source.read()
+
+
+def test_videos_without_a_rig_play_in_step(tmp_path: Path) -> None:
+    sources = [FileSource(name, write_film(tmp_path / name, 4)) for name in ("a.avi", "b.avi")]
+    sets = list(sources_in_step(sources))
+    assert [tuple(one.frames) for one in sets] == [("a.avi", "b.avi")] * 4
+
+
+def test_another_size_than_the_calibration_names_both_and_the_file(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture", size_px=(96, 64))
+    with pytest.raises(ConfigError, match=r"cam0\.avi.*96x64.*64x48"):
+        load_folder(path)
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (lambda cameras: cameras[1].pop("K"), r"cam1.*'K' is missing"),
+        (lambda cameras: cameras[1].update(fps="fast"), r"cam1.*'fps' must be a number"),
+        (lambda cameras: cameras[1].update(fps=0), r"cam1.*'fps' must be above 0"),
+        (lambda cameras: cameras[1].update(fps=25.0), r"different rates.*25.*30"),
+        (lambda cameras: cameras[0].update(time_offset_s=float("nan")), r"cam0.*'time_offset_s'"),
+        (lambda cameras: cameras[0].update(file=7), r"cam0.*'file'"),
+    ],
+)
+def test_a_wrong_rig_file_is_a_config_error_naming_the_field(
+    tmp_path: Path, edit: Callable[[list[dict[str, Any]]], object], said: str
+) -> None:
+    path = write_capture(tmp_path / "capture")
+    edit_rig(path, edit)
+    with pytest.raises(ConfigError, match=said):
+        load_folder(path)
+
+
+@pytest.mark.parametrize("gone", ["rig.json", "cam1.avi"])
+def test_a_missing_file_is_an_input_error_naming_it(tmp_path: Path, gone: str) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / gone).unlink()
+    with pytest.raises(InputError, match=gone):
+        load_folder(path)
+
+
+@pytest.mark.parametrize("subject", ["{}", "[]", '{"stature_m": 172}', '{"stature_m": "tall"}'])
+def test_a_wrong_subject_is_a_config_error(tmp_path: Path, subject: str) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / "subject.json").write_text(subject)
+    with pytest.raises(ConfigError, match=r"subject\.json.*stature_m"):
+        load_folder(path)
+
+
+def test_an_image_without_its_strokes_is_an_input_error(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / "model").mkdir()
+    (path / "model" / "0.png").touch()
+    with pytest.raises(InputError, match=r"0_strokes\.png"):
+        load_folder(path)
+
+
+def test_a_development_capture_loads_whole(dev_captures: Callable[[str], Path]) -> None:
+    folder = load_folder(dev_captures("pair_outdoor_async"))
+    assert folder.rig.names == ("cam0", "cam1")
+    assert folder.cameras[1].time_offset_s == pytest.approx(0.0105, abs=1e-3)
+    assert len(folder.model) == 5
+    first = next(frame_sets(folder))
+    assert all(frame.pixels.shape == (480, 640, 3) for frame in first.frames.values())

@@ -1,0 +1,91 @@
+"""What the camera strings of a configuration mean."""
+
+from pathlib import Path
+
+import pytest
+
+from mocapd.capture.file import FileSource
+from mocapd.capture.from_config import open_source
+from mocapd.capture.pace import Pace
+from mocapd.capture.url import UrlSource
+from mocapd.capture.v4l2 import V4l2Source
+from mocapd.errors import ConfigError, InputError, UnavailableError
+from tests.capture.films import write_capture, write_film
+
+
+@pytest.mark.parametrize(
+    ("spec", "kind", "name"),
+    [
+        ("usb:1-3:046d:0825:AA01", V4l2Source, "usb:1-3:046d:0825:AA01"),
+        ("/dev/video17", V4l2Source, "video17"),
+        ("17", V4l2Source, "video17"),
+        ("rtsp://u:p@127.0.0.1/live", UrlSource, "rtsp://u:***@127.0.0.1/live"),
+        ("http://127.0.0.1:8080/video", UrlSource, "http://127.0.0.1:8080/video"),
+    ],
+)
+def test_live_cameras_by_their_strings(spec: str, kind: type, name: str) -> None:
+    source = open_source(spec)
+    assert isinstance(source, kind)
+    assert source.name == name
+    assert not source.recorded
+    assert open_source(spec, "left").name == "left"
+
+
+def test_a_video_file(tmp_path: Path) -> None:
+    source = open_source(str(write_film(tmp_path / "walk.avi", 3)), pace=Pace(live=True))
+    assert isinstance(source, FileSource)
+    assert source.name == "walk"
+    assert source.recorded
+
+
+def test_one_camera_of_a_folder_under_its_own_name_or_another(tmp_path: Path) -> None:
+    folder = write_capture(tmp_path / "capture")
+    assert open_source(f"{folder}#cam1").name == "cam1"
+    assert open_source(f"{folder}#cam1", "left").name == "left"
+    with pytest.raises(ConfigError, match=r"2 cameras.*#NAME.*cam0, cam1"):
+        open_source(str(folder))
+    with pytest.raises(ConfigError, match=r"no camera 'cam7'.*cam0, cam1"):
+        open_source(f"{folder}#cam7")
+    with pytest.raises(ConfigError, match=r"64x48.*'left'.*640x480"):
+        open_source(f"{folder}#cam1", "left", size_px=(640, 480))
+
+
+def test_a_folder_of_one_camera_needs_no_choice(tmp_path: Path) -> None:
+    folder = write_capture(tmp_path / "capture", frames=(5,), time_offsets_s=(0.0,))
+    assert open_source(str(folder)).name == "cam0"
+
+
+def test_a_recorded_camera_keeps_its_own_clock_offset(tmp_path: Path) -> None:
+    source = open_source(f"{write_capture(tmp_path / 'capture')}#cam1")
+    source.open()
+    assert source.read().t_ns == 10_000_000
+    source.close()
+
+
+def test_a_simulated_camera_among_others_is_refused() -> None:
+    with pytest.raises(ConfigError, match="simulate all cameras"):
+        open_source("sim:living_room#cam0")
+
+
+def test_a_recording_that_is_not_there_or_damaged_is_told_at_the_start(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such camera or file"):
+        open_source(str(tmp_path / "gone.mp4"))
+    (tmp_path / "bad.mp4").write_bytes(b"no video")
+    with pytest.raises(InputError, match=r"bad\.mp4"):
+        open_source(str(tmp_path / "bad.mp4"))
+
+
+def test_a_file_of_another_size_than_its_calibration_is_told_at_the_start(tmp_path: Path) -> None:
+    film = write_film(tmp_path / "a.avi", 3)
+    with pytest.raises(ConfigError, match=r"64x48.*640x480"):
+        open_source(str(film), size_px=(640, 480))
+
+
+def test_a_wrong_identity_is_a_config_error() -> None:
+    with pytest.raises(ConfigError):
+        open_source("usb:left")
+
+
+def test_a_node_that_is_not_there_says_what_to_do() -> None:
+    with pytest.raises(UnavailableError, match=r"/dev/video977: no such camera.*mocapd cameras"):
+        open_source("977").open()

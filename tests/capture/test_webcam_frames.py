@@ -1,0 +1,172 @@
+"""What is asked of a webcam and read back, its buffers as pictures, its measured rate."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from mocapd.capture.controls import Controls, apply_controls, control_steps
+from mocapd.capture.rate import RateMeter
+from mocapd.capture.v4l2 import WebcamSettings, decode, negotiate
+from mocapd.errors import ConfigError, UnavailableError
+from mocapd.types import Bytes
+from tests.capture.films import number_of, picture
+
+SIZE_PX = (64, 48)
+
+
+def jpeg(index: int) -> Bytes:
+    return np.asarray(cv2.imencode(".jpg", picture(index))[1], dtype=np.uint8)
+
+
+def test_a_whole_jpeg_is_decoded_whatever_the_shape_of_the_buffer() -> None:
+    for buffer in (jpeg(77), jpeg(77).reshape(1, -1), np.append(jpeg(77), np.zeros(99, np.uint8))):
+        pixels = decode(buffer, "MJPG", SIZE_PX)
+        assert pixels is not None
+        assert pixels.shape == (48, 64, 3)
+        assert not pixels.flags.writeable
+        assert number_of(pixels) == 77
+
+
+@pytest.mark.parametrize("part", [0.0, 0.1, 0.5, 0.95])
+def test_a_cut_jpeg_is_torn(part: float) -> None:
+    whole = jpeg(5)
+    assert decode(whole[: int(part * whole.size)], "MJPG", SIZE_PX) is None
+
+
+def test_a_picture_of_another_size_is_torn() -> None:
+    assert decode(jpeg(5), "MJPG", (640, 480)) is None
+
+
+def test_yuyv_is_converted_and_a_short_buffer_is_torn() -> None:
+    buffer = cv2.cvtColor(picture(9), cv2.COLOR_BGR2YUV_YUY2)
+    pixels = decode(buffer, "YUYV", SIZE_PX)
+    assert pixels is not None
+    assert number_of(pixels) == 9
+    assert decode(buffer.reshape(-1)[:-2], "YUYV", SIZE_PX) is None
+
+
+class StubbornCamera:
+    """Takes values as the UVC cameras measured do: says yes to all, clips, ignores values under auto."""
+
+    def __init__(self, fourcc: str = "MJPG", unplugged: bool = False) -> None:
+        self.asked: list[int] = []
+        self._unplugged = unplugged
+        self.held = {
+            cv2.CAP_PROP_FOURCC: float(cv2.VideoWriter.fourcc(*fourcc)),
+            cv2.CAP_PROP_FRAME_WIDTH: 640.0,
+            cv2.CAP_PROP_FRAME_HEIGHT: 480.0,
+            cv2.CAP_PROP_FPS: 30.0,
+            cv2.CAP_PROP_BUFFERSIZE: 4.0,
+            cv2.CAP_PROP_AUTO_EXPOSURE: 3.0,
+            cv2.CAP_PROP_EXPOSURE: 250.0,
+            cv2.CAP_PROP_AUTO_WB: 1.0,
+            cv2.CAP_PROP_WB_TEMPERATURE: 4000.0,
+            cv2.CAP_PROP_GAIN: 0.0,
+        }
+        self._limits = {
+            cv2.CAP_PROP_FRAME_WIDTH: 640.0,
+            cv2.CAP_PROP_FRAME_HEIGHT: 480.0,
+            cv2.CAP_PROP_FPS: 30.0,
+            cv2.CAP_PROP_GAIN: 255.0,
+        }
+        self._under: Mapping[int, tuple[int, float]] = {
+            cv2.CAP_PROP_EXPOSURE: (cv2.CAP_PROP_AUTO_EXPOSURE, 1.0),
+            cv2.CAP_PROP_WB_TEMPERATURE: (cv2.CAP_PROP_AUTO_WB, 0.0),
+        }
+
+    def set(self, property_id: int, value: float) -> bool:
+        self.asked.append(property_id)
+        if property_id in self._under:
+            automatic, manual = self._under[property_id]
+            if self.held[automatic] != manual:
+                return True
+        if property_id in self.held and property_id != cv2.CAP_PROP_FOURCC:  # it has only one
+            self.held[property_id] = min(value, self._limits.get(property_id, value))
+        return not self._unplugged
+
+    def get(self, property_id: int) -> float:
+        return -1.0 if self._unplugged else self.held.get(property_id, -1.0)
+
+
+NODE = Path("/dev/video0")
+
+
+def test_the_format_is_asked_for_before_the_size_and_the_size_before_the_rate() -> None:
+    camera = StubbornCamera()
+    got = negotiate(camera, WebcamSettings(), "left", NODE, moved=False)
+    assert camera.asked[:4] == [
+        cv2.CAP_PROP_FOURCC,
+        cv2.CAP_PROP_FRAME_WIDTH,
+        cv2.CAP_PROP_FRAME_HEIGHT,
+        cv2.CAP_PROP_FPS,
+    ]
+    assert (got.fourcc, got.size_px, got.fps_hz, got.buffers) == ("MJPG", (640, 480), 30.0, 1)
+
+
+def test_what_is_read_back_counts_and_not_what_was_asked() -> None:
+    asked = WebcamSettings(fps_hz=60.0)
+    assert negotiate(StubbornCamera(), asked, "left", NODE, moved=False).fps_hz == 30.0
+    yuyv = negotiate(StubbornCamera("YUYV"), WebcamSettings(), "left", NODE, moved=False)
+    assert yuyv.fourcc == "YUYV"
+
+
+def test_a_webcam_that_does_not_give_the_calibrated_size_is_a_config_error() -> None:
+    asked = WebcamSettings(size_px=(1280, 720))
+    with pytest.raises(ConfigError, match=r"640x480.*'left'.*1280x720"):
+        negotiate(StubbornCamera(), asked, "left", NODE, moved=False)
+
+
+def test_a_webcam_unplugged_while_it_is_opened_is_sought_again() -> None:
+    with pytest.raises(UnavailableError, match="unplugged"):
+        negotiate(StubbornCamera(unplugged=True), WebcamSettings(), "left", NODE, moved=False)
+
+
+def test_a_webcam_of_another_format_is_refused() -> None:
+    with pytest.raises(UnavailableError, match="'GREY'"):
+        negotiate(StubbornCamera("GREY"), WebcamSettings(), "left", NODE, moved=False)
+
+
+def test_values_take_effect_because_the_automatic_goes_off_first() -> None:
+    camera = StubbornCamera()
+    results = apply_controls(camera, Controls(exposure=100, wb_temperature=5000))
+    assert all(one.applied for one in results)
+    assert camera.held[cv2.CAP_PROP_EXPOSURE] == 100.0
+    assert camera.held[cv2.CAP_PROP_WB_TEMPERATURE] == 5000.0
+
+
+def test_what_was_not_applied_shows_though_set_said_yes() -> None:
+    results = apply_controls(StubbornCamera(), Controls(gain=999, focus=30))
+    assert {one.name: (one.asked, one.got) for one in results if not one.applied} == {
+        "gain": (999.0, 255.0),
+        "autofocus": (0.0, -1.0),
+        "focus": (30.0, -1.0),
+    }
+
+
+def test_nothing_is_touched_without_being_asked_for() -> None:
+    assert control_steps(Controls()) == ()
+    assert [value for _, _, value in control_steps(Controls(auto_exposure=True))] == [3.0]
+
+
+def test_the_rate_is_that_of_the_last_seconds() -> None:
+    meter = RateMeter(window_s=2.0)
+    assert meter.rate_hz() == 0.0
+    for index in range(100):
+        meter.add(index * 40_000_000)
+    assert meter.full
+    assert meter.rate_hz() == pytest.approx(25.0)
+    for index in range(30):
+        meter.add(4_000_000_000 + index * 100_000_000)
+    assert meter.rate_hz() == pytest.approx(10.0)
+
+
+def test_a_cleared_meter_knows_no_rate() -> None:
+    meter = RateMeter(window_s=1.0)
+    for index in range(40):
+        meter.add(index * 40_000_000)
+    meter.clear()
+    assert not meter.full
+    assert meter.rate_hz() == 0.0

@@ -1,0 +1,119 @@
+"""Finding webcams in sysfs, and what the listing says of each node."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from mocapd.capture.identity import WebcamIdentity
+from mocapd.capture.listing import list_cameras
+from mocapd.capture.node_access import holders
+from mocapd.capture.usb_devices import UsbWebcam, usb_webcams
+from mocapd.capture.v4l2 import V4l2Source
+from mocapd.capture.webcams import capture_nodes, find_webcam, video_nodes
+from mocapd.errors import UnavailableError
+from tests.capture.fake_sysfs import FakeMachine
+
+LEFT = WebcamIdentity("1-3", "046d", "0825", "AA:01")
+RIGHT = WebcamIdentity("1-4.2", "1bcf", "28c4", "")
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> FakeMachine:
+    machine = FakeMachine(tmp_path)
+    machine.plug(RIGHT, "HD Camera", 0)
+    machine.plug(LEFT, "Webcam C270", 10)  # a text sort would put video10 before video2
+    machine.add_virtual("Loopback", 2)
+    return machine
+
+
+def test_nodes_come_in_the_order_of_their_numbers(machine: FakeMachine) -> None:
+    nodes = video_nodes(machine.sysfs, machine.dev)
+    assert [node.node.name for node in nodes] == [
+        "video0",
+        "video1",
+        "video2",
+        "video10",
+        "video11",
+    ]
+    assert [node.identity for node in nodes] == [RIGHT, RIGHT, None, LEFT, LEFT]
+    assert nodes[3].name == "Webcam C270"
+    assert nodes[3].interface == "1-3:1.0"
+
+
+def test_only_the_node_that_captures_is_offered(machine: FakeMachine) -> None:
+    nodes = capture_nodes(machine.sysfs, machine.dev)
+    assert {str(one): node.node.name for one, node in nodes.items()} == {
+        str(LEFT): "video10",
+        str(RIGHT): "video0",
+    }
+
+
+def test_an_identity_is_resolved_again_after_each_plugging(tmp_path: Path) -> None:
+    before, after = FakeMachine(tmp_path / "a"), FakeMachine(tmp_path / "b")
+    before.plug(LEFT, "C270", 0)
+    after.plug(WebcamIdentity("2-1.4", *LEFT.model), "C270", 6)
+    match, node = find_webcam(LEFT, sysfs=before.sysfs, dev=before.dev)
+    assert (match.moved, node.name) == (False, "video0")
+    match, node = find_webcam(LEFT, sysfs=after.sysfs, dev=after.dev)
+    assert (match.moved, node.name) == (True, "video6")
+
+
+def test_an_absent_webcam_is_unavailable_and_says_where_it_belongs(machine: FakeMachine) -> None:
+    source = V4l2Source(
+        "left", WebcamIdentity("1-9", "dead", "beef", ""), sysfs=machine.sysfs, dev=machine.dev
+    )
+    with pytest.raises(UnavailableError, match=r"usb:1-9:dead:beef:.*not plugged in.*port 1-9"):
+        source.open()
+
+
+def test_a_node_that_udev_has_not_made_yet_is_unavailable(machine: FakeMachine) -> None:
+    (machine.dev / "video10").unlink()
+    with pytest.raises(UnavailableError, match="not made yet"):
+        find_webcam(LEFT, sysfs=machine.sysfs, dev=machine.dev)
+
+
+def test_a_machine_without_video_has_no_cameras(tmp_path: Path) -> None:
+    assert list_cameras(tmp_path, tmp_path, usb=lambda: ()) == ()
+
+
+def test_the_listing_gives_each_node_its_reason(machine: FakeMachine) -> None:
+    rows = list_cameras(machine.sysfs, machine.dev, usb=lambda: ())
+    by_name = {row.node.name: row for row in rows if row.node}
+    assert by_name["video10"].spec == str(LEFT)
+    assert by_name["video10"].usb_id == "046d:0825:AA:01"
+    assert by_name["video10"].port_path == "1-3"
+    assert by_name["video2"].spec == str(machine.dev / "video2")
+    assert all(row.problem == "not a video node" for row in rows)  # plain files
+    assert not any(row.usable for row in rows)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may open everything")
+def test_a_node_without_permission_says_how_to_get_it(machine: FakeMachine) -> None:
+    (machine.dev / "video10").chmod(0)
+    rows = list_cameras(machine.sysfs, machine.dev, usb=lambda: ())
+    row = next(row for row in rows if row.node and row.node.name == "video10")
+    assert row.problem == "no permission"
+    assert "usermod -aG" in row.fix
+
+
+def test_a_webcam_without_a_driver_is_listed_with_the_mend(machine: FakeMachine) -> None:
+    lone = UsbWebcam(WebcamIdentity("1-5", "0c45", "6366", "SN1"), "USB Camera", True)
+    twice = UsbWebcam(LEFT, "Webcam C270", True)
+    rows = list_cameras(machine.sysfs, machine.dev, usb=lambda: (twice, lone))
+    without = [row for row in rows if row.node is None]
+    assert [row.spec for row in without] == ["usb:1-5:0c45:6366:SN1"]
+    assert "modprobe uvcvideo" in without[0].fix
+
+
+def test_pyusb_lists_what_there_is_and_never_fails() -> None:
+    assert isinstance(usb_webcams(), tuple)
+
+
+def test_who_holds_a_node_is_found_in_proc(tmp_path: Path) -> None:
+    node = Path("/dev/video7")
+    for pid, target in ((4711, node), (4712, Path("/dev/null"))):
+        (tmp_path / str(pid) / "fd").mkdir(parents=True)
+        (tmp_path / str(pid) / "fd" / "3").symlink_to(target)
+        (tmp_path / str(pid) / "comm").write_text("cheese\n")
+    assert holders(node, tmp_path) == ((4711, "cheese"),)

@@ -1,0 +1,107 @@
+"""What the commands print, and what they leave behind."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mocapd as package
+from tests.cli.mocapd_process import COMMAND, mocapd
+from tests.cli.small_capture import FRAMES, write_capture
+
+COMMANDS = ("run", "demo", "track", "watch", "cameras", "check-config", "version")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_each_command_has_an_example(command: str, clean_env: dict[str, str]) -> None:
+    outcome = mocapd(clean_env, command, "--help")
+    assert outcome.code == 0
+    assert f"Example: mocapd {command}" in outcome.out
+
+
+def test_the_help_names_every_command(clean_env: dict[str, str]) -> None:
+    outcome = mocapd(clean_env, "--help")
+    for command in COMMANDS:
+        assert f"  {command} " in outcome.out
+
+
+def test_version(clean_env: dict[str, str]) -> None:
+    assert mocapd(clean_env, "version").out == f"{package.__version__}\n"
+
+
+def test_check_config_tells_every_key_and_its_origin(clean_env: dict[str, str]) -> None:
+    env = clean_env | {"MOCAPD_LOG_LEVEL": "debug"}
+    outcome = mocapd(env, "check-config", "--set", "zenoh.port=7448")
+    assert outcome.code == 0
+    lines = {line.split()[0]: line for line in outcome.out.splitlines()}
+    assert lines["zenoh.port"].split() == ["zenoh.port", "=", "7448", "#", "command", "line"]
+    assert lines["log_level"].endswith("# environment MOCAPD_LOG_LEVEL")
+    assert lines["osc.enabled"].endswith("# built-in")
+
+
+def test_check_config_changed_and_json(clean_env: dict[str, str]) -> None:
+    words = ("check-config", "--changed", "--json", "--camera", "left=/dev/video0")
+    outcome = mocapd(clean_env, *words)
+    told = json.loads(outcome.out)
+    assert list(told) == ["camera"]
+    assert told["camera"]["value"][0]["source"] == "/dev/video0"
+    assert told["camera"]["from"] == "command line"
+
+
+def test_the_readme_holds_the_table_of_keys(clean_env: dict[str, str]) -> None:
+    readme = Path(__file__).resolve().parents[2] / "README.md"
+    table = mocapd(clean_env, "check-config", "--markdown").out
+    assert table in readme.read_text(), "renew it: mocapd check-config --markdown"
+
+
+def test_cameras_as_json_is_one_object_a_line(clean_env: dict[str, str]) -> None:
+    outcome = mocapd(clean_env, "cameras", "--json")
+    assert outcome.code == 0
+    for line in outcome.out.splitlines():
+        assert {"node", "usb_id", "port", "source", "problem"} <= set(json.loads(line))
+
+
+def test_track_writes_every_frame_and_the_same_bytes_twice(
+    clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    capture = write_capture(tmp_path / "capture")
+    for name in ("a.npz", "b.npz"):
+        words = ("track", capture, "--out", tmp_path / name, "--tracker", "canned")
+        outcome = mocapd(clean_env, *words)
+        assert outcome.code == 0, outcome.err
+        assert outcome.out == ""
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    with np.load(tmp_path / "a.npz", allow_pickle=False) as track:
+        assert track["joints"].shape == (FRAMES, 22, 3)
+        assert track["global_quats"].shape == (FRAMES, 22, 4)
+        np.testing.assert_allclose(track["times"], np.arange(FRAMES) / 30.0, atol=1e-8)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npz", "b.npz", "capture", "home"]
+
+
+def test_score_track_reads_what_track_writes(
+    clean_env: dict[str, str], tmp_path: Path, dev_captures: Callable[[str], Path], shared_dir: Path
+) -> None:
+    capture, out = dev_captures("mono_shirt_signals"), tmp_path / "t.npz"
+    assert mocapd(clean_env, "track", capture, "--out", out, "--tracker", "canned").code == 0
+    score = [sys.executable, str(shared_dir / "tools" / "score_track.py"), str(capture), str(out)]
+    done = subprocess.run([*score, "--json"], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)
+
+
+def test_logs_carry_priorities_in_the_journal(clean_env: dict[str, str], tmp_path: Path) -> None:
+    capture = write_capture(tmp_path / "capture")
+    log = tmp_path / "log"
+    with log.open("w") as stream:
+        stat = os.fstat(stream.fileno())
+        env = clean_env | {"JOURNAL_STREAM": f"{stat.st_dev}:{stat.st_ino}"}
+        words = ("run", "--capture", capture, "--set", "zenoh.enabled=false")
+        done = subprocess.run([*COMMAND, *words], env=env, stderr=stream, timeout=60, check=False)
+    assert done.returncode == 0
+    lines = log.read_text().splitlines()
+    assert lines
+    assert all(line.startswith("<") and line[2] == ">" for line in lines), lines

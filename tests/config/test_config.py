@@ -1,0 +1,156 @@
+"""What a user meets in the configuration: precedence, origins, and messages that say the mend."""
+
+from pathlib import Path
+
+import pytest
+
+from mocapd.config import Effective, load_config
+from mocapd.config_sections import CameraSection
+from mocapd.errors import ConfigError, InputError
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "config.toml"
+
+
+def load(file: Path, text: str, **env: str) -> Effective:
+    file.write_text(text)
+    return load_config(file=file, env=env)
+
+
+def error_of(file: Path, text: str) -> ConfigError:
+    with pytest.raises(ConfigError) as caught:
+        load(file, text)
+    return caught.value
+
+
+def origin(effective: Effective, path: str) -> str:
+    return next(s.origin for s in effective.settings if s.key.path == path)
+
+
+def test_without_any_source_everything_is_built_in() -> None:
+    effective = load_config(env={}, candidates=())
+    assert not any(setting.changed for setting in effective.settings)
+    assert effective.config.zenoh.port == 7447
+    assert effective.file is None
+
+
+def test_flag_beats_environment_beats_file_beats_built_in(file: Path) -> None:
+    file.write_text("[zenoh]\nport = 1\nformat = 'json'\nconnect_timeout_s = 9\n")
+    env = {"MOCAPD_ZENOH_PORT": "2", "MOCAPD_ZENOH_FORMAT": "msgpack"}
+    effective = load_config({"zenoh.port": "3"}, file, env)
+    zenoh = effective.config.zenoh
+    assert (zenoh.port, zenoh.format, zenoh.connect_timeout_s) == (3, "msgpack", 9.0)
+    assert origin(effective, "zenoh.port") == "command line"
+    assert origin(effective, "zenoh.format") == "environment MOCAPD_ZENOH_FORMAT"
+    assert origin(effective, "zenoh.connect_timeout_s") == f"{file}:4"
+    assert origin(effective, "zenoh.enabled") == "built-in"
+
+
+def test_the_users_file_comes_before_the_machines(tmp_path: Path) -> None:
+    user, machine = tmp_path / "user.toml", tmp_path / "machine.toml"
+    machine.write_text("instance = 'machine'")
+    assert load_config(env={}, candidates=(user, machine)).config.instance == "machine"
+    user.write_text("instance = 'user'")
+    assert load_config(env={}, candidates=(user, machine)).config.instance == "user"
+
+
+def test_the_file_may_be_named_by_the_environment(file: Path) -> None:
+    file.write_text("instance = 'here'")
+    assert load_config(env={"MOCAPD_CONFIG": str(file)}).config.instance == "here"
+
+
+def test_a_named_file_must_exist(file: Path) -> None:
+    with pytest.raises(InputError, match="no such config file"):
+        load_config(file=file, env={})
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "what", "fix"),
+    [
+        ("[zenoh]\nenabled = true\nprot = 7447\n", ":3", "'zenoh.prot'", "'zenoh.port'"),
+        ("\ninstanze = 'a'\n", ":2", "'instanze'", "'instance'"),
+        ("[zenho]\nport = 1\n", ":1", "'zenho'", "'zenoh'"),
+        ("[zenoh]\nport = 'high'\n", ":2", 'zenoh.port = "high"', "a whole number"),
+        ("[tracker]\nstature_m = 172\n", ":2", "tracker.stature_m = 172", "from 0.5 to 2.6"),
+        ("log_level = 'loud'\n", ":1", 'log_level = "loud"', '"warning"'),
+        ("osc = true\n", ":1", "osc = true", "write [osc]"),
+        ("[camera]\nid = 'a'\n", ":1", "[camera] is not a section", "[[camera]]"),
+        ("[[camera]]\nid = 'a'\n", ":1", "camera[0] has no 'source'", "add source"),
+        (
+            "[[camera]]\nid = 'a'\nsource = '0'\n\n[[camera]]\nid = 'b'\nsource = '1'\nfsp_hz = 30\n",
+            ":8",
+            "'camera[1].fsp_hz'",
+            "'fps_hz'",
+        ),
+        (
+            "[[camera]]\nid = 'a'\nsource = '0'\n[camera.controls]\nexposure = 'dim'\n",
+            ":5",
+            'camera[0].controls.exposure = "dim"',
+            "a whole number",
+        ),
+        (
+            "[[camera]]\nid = 'a'\nsource = '0'\n[[camera]]\nid = 'a'\nsource = '1'\n",
+            ":1",
+            "two cameras have the id 'a'",
+            "rename",
+        ),
+        ("a = \n", ":1", "not valid TOML", "mend"),
+        ("[zenoh]\nport = 70000\n", ":2", "70000", "a port from 1 to 65535"),
+        ("[osc]\ndestinations = ['localhost:1']\n", ":2", "'localhost:1'", "not localhost"),
+    ],
+)
+def test_an_error_names_place_value_and_mend(
+    file: Path, text: str, where: str, what: str, fix: str
+) -> None:
+    error = error_of(file, text)
+    assert error.exit_code == 78
+    assert error.where.startswith(f"{file}{where}")
+    assert what in error.what
+    assert fix in error.fix
+
+
+def test_an_unknown_variable_is_an_error_with_the_nearest_name() -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config(env={"MOCAPD_ZENOH_PROT": "1"}, candidates=())
+    assert "MOCAPD_ZENOH_PROT" in caught.value.what
+    assert "MOCAPD_ZENOH_PORT" in caught.value.fix
+
+
+def test_a_wrong_variable_names_the_variable() -> None:
+    with pytest.raises(ConfigError, match=r"environment MOCAPD_OSC_ENABLED: osc.enabled = "):
+        load_config(env={"MOCAPD_OSC_ENABLED": "perhaps"}, candidates=())
+
+
+def test_text_in_the_environment_needs_no_quotes_and_lists_are_toml() -> None:
+    env = {
+        "MOCAPD_INSTANCE": "12",
+        "MOCAPD_OSC_ENABLED": "false",
+        "MOCAPD_OSC_DESTINATIONS": '["127.0.0.1:9000"]',
+        "MOCAPD_CAMERA": '[{id = "a", source = "/dev/video0", controls = {gain = 3}}]',
+    }
+    config = load_config(env=env, candidates=()).config
+    assert config.instance == "12"
+    assert config.osc.enabled is False
+    assert config.osc.destinations == ("127.0.0.1:9000",)
+    assert config.camera[0].controls.gain == 3
+
+
+def test_paths_in_a_file_are_meant_from_that_file(file: Path) -> None:
+    (file.parent / "left.mp4").write_bytes(b"")
+    text = (
+        "rig = 'rig.json'\n"
+        "[[camera]]\nid = 'l'\nsource = 'left.mp4'\nwhite_balance = 'l.png'\n"
+        "[[camera]]\nid = 'r'\nsource = 'rtsp://host/left.mp4'\n"
+    )
+    config = load(file, text).config
+    assert config.rig == file.parent / "rig.json"
+    assert config.camera[0].source == str(file.parent / "left.mp4")
+    assert config.camera[0].white_balance == file.parent / "l.png"
+    assert config.camera[1] == CameraSection("r", "rtsp://host/left.mp4")
+
+
+def test_every_key_is_documented() -> None:
+    effective = load_config(env={}, candidates=())
+    assert [s.key.path for s in effective.settings if not s.key.help] == []

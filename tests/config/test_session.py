@@ -1,0 +1,87 @@
+"""What a run works on: calibration that comes with the cameras, and what the config gives itself."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mocapd.capture.folder import load_folder
+from mocapd.config_sections import CameraSection, Config, TrackerSection
+from mocapd.errors import ConfigError, InputError
+from mocapd.session import cameras_of, open_session
+from mocapd.tracker_setup import inputs_of_capture, inputs_of_config, read_model, stroked_folder
+from tests.cli.small_capture import camera_entry, write_capture, write_rig, write_stroked
+
+
+@pytest.fixture
+def capture(tmp_path: Path) -> Path:
+    return write_capture(tmp_path / "capture")
+
+
+def quiet(_what: str, _done: int, _total: int) -> None: ...
+
+
+def config_of(capture: Path) -> Config:
+    return Config(
+        camera=cameras_of(str(capture)),
+        tracker=TrackerSection(name="canned"),
+        cache_dir=capture.parent,
+    )
+
+
+def test_the_cameras_of_a_folder_bring_their_rig_and_the_wearer(capture: Path) -> None:
+    session = open_session(config_of(capture), quiet)
+    assert session.rig is not None
+    assert session.rig.names == ("cam0", "cam1")
+    assert [camera.source.name for camera in session.cameras] == ["cam0", "cam1"]
+    assert session.rig_source == str(capture / "rig.json")
+    assert session.tracker.skeleton.rest_m[:, 1].max() < 1.7
+
+
+def test_the_configs_own_rig_goes_before_the_folders(capture: Path, tmp_path: Path) -> None:
+    own = write_rig(tmp_path, [camera_entry("cam1", 0.1), camera_entry("cam0", 0.2)])
+    session = open_session(replace(config_of(capture), rig=own), quiet)
+    assert session.rig is not None
+    assert session.rig_source == str(own)
+    assert [camera.source.name for camera in session.cameras] == ["cam1", "cam0"]
+
+
+def test_webcams_need_no_rig_where_the_tracker_needs_none() -> None:
+    camera = CameraSection("left", "/dev/video0")
+    config = Config(camera=(camera,), tracker=TrackerSection(name="canned"))
+    session = open_session(config, quiet)
+    assert session.rig is None
+    assert session.cameras[0].expected_hz == 30.0
+
+
+def test_simulated_cameras_mix_with_no_others() -> None:
+    cameras = (CameraSection("a", "sim:living_room#cam0"), CameraSection("b", "/dev/video0"))
+    with pytest.raises(ConfigError, match="one scenario"):
+        open_session(Config(camera=cameras), quiet)
+
+
+def test_the_inputs_of_a_folder_hold_strokes_of_every_colour(capture: Path) -> None:
+    write_stroked(capture / "scribble" / "cam1.png", range(1, 5))
+    inputs = inputs_of_capture(load_folder(capture), 1.9)
+    assert inputs.stature_m == 1.7
+    assert set(inputs.white_balance) == {"cam1"}
+    assert set(inputs.model[0].strokes.ravel().tolist()) == set(range(11))
+
+
+def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
+    camera = CameraSection("left", "/dev/video0", white_balance=tmp_path / "left.png")
+    with pytest.raises(InputError, match=r"left\.png: no such file"):
+        inputs_of_config(TrackerSection(), (camera,), None)
+
+
+def test_a_model_is_checked(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    folder.mkdir()
+    with pytest.raises(InputError, match="holds no image"):
+        stroked_folder(folder)
+    write_stroked(folder / "0.png", range(1, 6))
+    write_stroked(folder / "1.png", range(6, 11))
+    assert len(read_model(stroked_folder(folder))) == 2
+    (folder / "0_strokes.png").write_bytes(b"no picture")
+    with pytest.raises(InputError, match=r"0_strokes\.png: is damaged"):
+        read_model(stroked_folder(folder))

@@ -1,0 +1,78 @@
+"""What every test shares: quiet libraries, an environment of its own, and the recordings in ../shared."""
+
+import os
+
+# Before numpy loads: thread pools cost more than they bring at these sizes.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared"
+ABSENT = "../shared is not beside this checkout: {} is missing"
+
+# No example is judged by how long it took: this machine may be busy.
+settings.register_profile("mocapd", deadline=None, derandomize=True, print_blob=True)
+settings.load_profile("mocapd")
+
+
+@pytest.fixture(scope="session")
+def shared_dir() -> Path:
+    """../shared: the recordings and tools beside the checkout; skips where it is absent."""
+    if not SHARED.is_dir():
+        pytest.skip(ABSENT.format("the folder"))
+    return SHARED
+
+
+@pytest.fixture(scope="session")
+def dev_captures(shared_dir: Path) -> Callable[[str], Path]:
+    """The folder of a development capture by its name, `dev_captures("pair_office_traffic")`."""
+
+    def folder(name: str) -> Path:
+        path = shared_dir / "captures" / "dev" / name
+        if not (path / "rig.json").is_file():
+            pytest.skip(ABSENT.format(f"captures/dev/{name}"))
+        return path
+
+    return folder
+
+
+@pytest.fixture
+def clean_env(tmp_path: Path) -> dict[str, str]:
+    """The environment of a user with an empty home and no MOCAPD_* variable, for child processes."""
+    dropped = ("MOCAPD_", "XDG_", "JOURNAL_STREAM", "STATE_DIRECTORY", "CACHE_DIRECTORY")
+    env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
+    home = tmp_path / "home"
+    home.mkdir()
+    return env | {"HOME": str(home), "NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
+
+
+class _SkippedForNothing:
+    """With MOCAPD_REQUIRE_SHARED set (.ci/run), a test skipped for want of ../shared fails the run."""
+
+    def __init__(self) -> None:
+        self.skipped: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        # longrepr of a skip: file, line, reason
+        if report.skipped and isinstance(report.longrepr, tuple) and "shared" in report.longrepr[2]:
+            self.skipped.append(report.nodeid)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        if self.skipped:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        for test in self.skipped:
+            terminalreporter.write_line(f"FAILED: ../shared is there, yet skipped: {test}")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if os.environ.get("MOCAPD_REQUIRE_SHARED"):
+        config.pluginmanager.register(_SkippedForNothing())

@@ -1,0 +1,193 @@
+"""Each promise of mocapd.trackers.base.Tracker, on every registered tracker."""
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import NAMES, joint_positions
+from mocapd.errors import ConfigError
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import TRACKERS, TrackerInputs, build
+from mocapd.types import BodyState, FrameSet, Track, Tracking
+from tests.contract.tracker_cases import CASES, TrackerCase
+
+DAY_NS = 86_400_000_000_000
+
+
+@pytest.fixture(scope="module", params=list(TRACKERS))
+def built(request: pytest.FixtureRequest) -> TrackerCase:
+    assert request.param in CASES, "add its case to tests/contract/tracker_cases.py"
+    return CASES[request.param]()
+
+
+@pytest.fixture
+def case(built: TrackerCase) -> TrackerCase:
+    """Built once, since that may be slow; as new in each test, by the promise of `reset`."""
+    built.tracker.reset()
+    return built
+
+
+def run(tracker: Tracker, sets: Sequence[FrameSet]) -> list[Track]:
+    return [tracker.step(one) for one in sets]
+
+
+def assert_same(one: BodyState, other: BodyState) -> None:
+    assert (one.t_ns, one.tracking, one.tracker) == (other.t_ns, other.tracking, other.tracker)
+    assert one.cameras == other.cameras
+    assert np.array_equal(one.confidence, other.confidence)
+    if one.pose is None or other.pose is None:
+        assert one.pose is other.pose
+        return
+    assert np.array_equal(one.pose.root_m, other.pose.root_m)
+    assert np.array_equal(one.pose.quats_xyzw, other.pose.quats_xyzw)
+    assert one.joints_m is not None
+    assert other.joints_m is not None
+    assert np.array_equal(one.joints_m, other.joints_m)
+
+
+def assert_well_formed(tracker: Tracker, track: Track, frames: FrameSet) -> None:
+    body = track.body
+    n = len(tracker.skeleton.names)
+    assert body.t_ns == frames.t_ns
+    assert body.tracker == tracker.name
+    assert set(body.cameras) <= set(frames.frames)
+    assert body.confidence.shape == (n,)
+    assert ((body.confidence >= 0.0) & (body.confidence <= 1.0)).all()
+    if body.tracking is Tracking.LOST:
+        assert body.pose is None
+        assert body.joints_m is None
+        assert not body.confidence.any()
+        return
+    assert body.pose is not None
+    assert body.joints_m is not None
+    assert body.pose.root_m.shape == (3,)
+    assert body.pose.quats_xyzw.shape == (n, 4)
+    assert np.isfinite(body.joints_m).all()
+    assert np.allclose(np.linalg.norm(body.pose.quats_xyzw, axis=1), 1.0, atol=1e-9)
+    assert (body.pose.quats_xyzw[:, 3] >= 0.0).all()
+    expected = joint_positions(tracker.skeleton, body.pose)
+    assert np.allclose(body.joints_m, expected, atol=1e-6)
+    for camera, evidence in track.evidence.items():
+        x0, y0, x1, y1 = track.roi_px[camera]
+        assert evidence.dtype == np.uint8
+        assert 0 <= x0 <= x1
+        assert 0 <= y0 <= y1
+
+
+def test_names_agree(case: TrackerCase) -> None:
+    assert case.tracker.name in TRACKERS
+    assert case.tracker.skeleton.names == NAMES
+
+
+def test_it_tracks_a_person_and_all_it_says_is_well_formed(case: TrackerCase) -> None:
+    for one in case.person:
+        track = case.tracker.step(one)
+        assert_well_formed(case.tracker, track, one)
+    assert track.body.tracking is Tracking.LIVE
+    assert track.body.cameras
+
+
+def test_the_same_frames_after_reset_give_the_same_output(case: TrackerCase) -> None:
+    first = run(case.tracker, case.person)
+    case.tracker.reset()
+    for one, other in zip(first, run(case.tracker, case.person), strict=True):
+        assert_same(one.body, other.body)
+
+
+def test_what_was_handed_out_does_not_change_afterwards(case: TrackerCase) -> None:
+    half = len(case.person) // 2
+    kept = run(case.tracker, case.person[:half])[-1].body
+    copy = replace(kept, confidence=kept.confidence.copy())
+    if kept.pose is not None and kept.joints_m is not None:
+        pose = replace(
+            kept.pose, root_m=kept.pose.root_m.copy(), quats_xyzw=kept.pose.quats_xyzw.copy()
+        )
+        copy = replace(copy, pose=pose, joints_m=kept.joints_m.copy())
+    run(case.tracker, case.person[half:])
+    assert_same(kept, copy)
+
+
+def test_frames_are_not_written_to(case: TrackerCase) -> None:
+    before = [f.pixels.copy() for one in case.person for f in one.frames.values()]
+    assert not any(f.pixels.flags.writeable for one in case.person for f in one.frames.values())
+    run(case.tracker, case.person)
+    after = [f.pixels for one in case.person for f in one.frames.values()]
+    assert all(np.array_equal(b, a) for b, a in zip(before, after, strict=True))
+
+
+@pytest.mark.parametrize("missing", [0, -1])
+def test_a_camera_that_goes_missing_is_no_error(case: TrackerCase, missing: int) -> None:
+    names = list(case.person[0].frames)
+    gone = names[missing]
+    half = len(case.person) // 2
+    for k, one in enumerate(case.person):
+        frames = {n: f for n, f in one.frames.items() if k < half or n != gone}
+        t_ns = next(iter(frames.values())).t_ns if frames else one.t_ns
+        partial = FrameSet(t_ns, frames)
+        assert_well_formed(case.tracker, case.tracker.step(partial), partial)
+
+
+def test_without_any_camera_the_person_is_lost_in_the_end(case: TrackerCase) -> None:
+    run(case.tracker, case.person)
+    last_ns = case.person[-1].t_ns
+    for k in range(1, 91):
+        nothing = FrameSet(last_ns + k * 33_333_333, {})
+        track = case.tracker.step(nothing)
+        assert_well_formed(case.tracker, track, nothing)
+    assert track.body.tracking is Tracking.LOST
+
+
+def test_without_any_frame_ever_it_is_lost(case: TrackerCase) -> None:
+    assert case.tracker.step(FrameSet(0, {})).body.tracking is Tracking.LOST
+
+
+def test_in_an_empty_room_nobody_is_found(case: TrackerCase) -> None:
+    sees = TRACKERS[case.tracker.name].sees
+    for one, track in zip(case.empty, run(case.tracker, case.empty), strict=True):
+        assert_well_formed(case.tracker, track, one)
+        if sees:
+            assert track.body.tracking is Tracking.LOST
+
+
+def test_a_pause_in_time_is_no_error(case: TrackerCase) -> None:
+    later = [shifted(one, DAY_NS) for one in case.person]
+    run(case.tracker, case.person)
+    for one, track in zip(later, run(case.tracker, later), strict=True):
+        assert_well_formed(case.tracker, track, one)
+    assert track.body.tracking is Tracking.LIVE
+
+
+def test_time_is_only_what_the_frames_say(case: TrackerCase) -> None:
+    """The same pictures a whole number of days later: the same states, at the frames' times."""
+    first = run(case.tracker, case.person)
+    case.tracker.reset()
+    later = [shifted(one, DAY_NS) for one in case.person]
+    for one, other in zip(first, run(case.tracker, later), strict=True):
+        assert_same(one.body, replace(other.body, t_ns=other.body.t_ns - DAY_NS))
+
+
+def shifted(one: FrameSet, by_ns: int) -> FrameSet:
+    frames = {name: replace(frame, t_ns=frame.t_ns + by_ns) for name, frame in one.frames.items()}
+    return FrameSet(one.t_ns + by_ns, frames, one.spread_ns)
+
+
+def test_an_unknown_tracker_is_an_error_that_names_the_known() -> None:
+    with pytest.raises(ConfigError, match=", ".join(TRACKERS)):
+        build("psychic", TrackerInputs(None, 1.7))
+
+
+def test_canned_needs_no_compiler_and_no_camera_library() -> None:
+    code = (
+        "import sys\n"
+        "from mocapd.trackers.registry import TrackerInputs, build\n"
+        "build('canned', TrackerInputs(None, 1.7))\n"
+        "print(sorted({'numba', 'cv2', 'scipy'} & set(sys.modules)))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.strip() == "[]"

@@ -1,0 +1,63 @@
+"""For each registered tracker: how to build it, frames it can track, and frames of an empty room."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import TrackerInputs, build
+from mocapd.types import Frame, FrameSet
+
+START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
+PERIOD_NS = 33_333_333
+
+
+@dataclass(frozen=True)
+class TrackerCase:
+    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight."""
+
+    tracker: Tracker
+    person: list[FrameSet]
+    empty: list[FrameSet]
+
+
+def frame_sets(
+    pixels: Mapping[str, list[np.ndarray]],
+    start_ns: int = START_NS,
+    offset_ns: Mapping[str, int] | None = None,
+) -> list[FrameSet]:
+    """Read-only frames at 30 Hz from each camera's pictures; the first camera gives the set's time."""
+    offset_ns = offset_ns or {}
+    names = list(pixels)
+    out = []
+    for k in range(len(pixels[names[0]])):
+        frames = {}
+        for name in names:
+            picture = np.ascontiguousarray(pixels[name][k])
+            picture.flags.writeable = False
+            t_ns = start_ns + k * PERIOD_NS + offset_ns.get(name, 0)
+            frames[name] = Frame(name, k, t_ns, picture)
+        t_ns = frames[names[0]].t_ns
+        spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
+        out.append(FrameSet(t_ns, frames, spread_ns))
+    return out
+
+
+def grey_room(n: int, seed: int) -> list[np.ndarray]:
+    """n noisy pictures (480,640,3) of a wall."""
+    rng = np.random.default_rng(seed)
+    return [rng.integers(90, 120, (480, 640, 3), dtype=np.uint8) for _ in range(n)]
+
+
+def canned_case() -> TrackerCase:
+    sets = frame_sets(
+        {"cam0": grey_room(8, 0), "cam1": grey_room(8, 1)}, offset_ns={"cam1": 11_000_000}
+    )
+    return TrackerCase(build("canned", TrackerInputs(None, 1.7)), sets, sets)
+
+
+# One line per tracker of mocapd.trackers.registry.TRACKERS.
+CASES: Mapping[str, Callable[[], TrackerCase]] = {
+    "canned": canned_case,
+}

@@ -1,0 +1,38 @@
+"""A daemon whose camera has a bug: run as a script, it must not live on without that camera."""
+
+import sys
+
+from mocapd.body.skeleton import standard_skeleton
+from mocapd.camera_inputs import CameraInput
+from mocapd.cli.running import Signals, run_daemon
+from mocapd.config_sections import Config, OscSection, ZenohSection
+from mocapd.daemon import Daemon
+from mocapd.session import Session
+from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.types import Frame
+
+
+class DyingCamera:
+    """Opens, and fails in a way that no source may."""
+
+    name = "cam0"
+    recorded = False
+
+    def open(self) -> None: ...
+
+    def read(self) -> Frame:
+        return Frame(self.name, 1 // 0, 0, None)  # type: ignore[arg-type]  # never gets there
+
+    def close(self) -> None: ...
+
+
+def main() -> int:
+    """The daemon's exit code."""
+    config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
+    tracker = CannedTracker(standard_skeleton(1.75))
+    session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker)
+    return run_daemon(Daemon(config, session), Signals())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,228 @@
+"""The client as a game uses it: newest wins, blocking and asyncio, restarts, clear errors."""
+
+import asyncio
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+import zenoh
+
+from mocapd import client, clock
+from mocapd.errors import InputError, UnavailableError
+from mocapd.outputs import wire
+from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
+from tests.outputs.zenoh_pair import running_sink
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_newest_frame_wins() -> None:
+    with running_sink() as running, client.Client(client.Link(running.endpoint)) as game:
+        running.heard()
+        assert game.poll() is None
+        for seq in range(10):
+            running.sink.send(small_frame(seq=seq))
+        time.sleep(0.2)
+        body = game.poll()
+        assert body is not None
+        assert body.seq == 9
+        assert game.poll() is None
+        assert game.wait(0.05) is None
+
+
+def test_a_body_is_easy_to_read() -> None:
+    frame = whole_frame()
+    body = client.Body(frame)
+    assert body.tracked
+    assert "leftHand" in body
+    assert "tail" not in body
+    assert body["leftHand"].position_m == frame.joints["leftHand"].p
+    assert body["leftHand"].rotation_xyzw == frame.joints["leftHand"].r
+    assert body["leftHand"].local_rotation_xyzw == frame.joints["leftHand"].l
+    assert body["leftHand"].confidence == frame.joints["leftHand"].c
+    assert list(body) == list(body.joints) == list(frame.joints)
+    assert body.latency_s == pytest.approx(1 / 64)
+    with pytest.raises(KeyError):
+        body["tail"]
+
+
+def test_age_counts_from_the_exposure() -> None:
+    captured_ns = clock.monotonic_ns() - clock.nanoseconds(0.5)
+    frame = small_frame(capture_unix_ns=captured_ns + clock.unix_from_monotonic_ns())
+    assert 0.5 <= client.Body(frame).age_s < 5.0
+
+
+def test_a_lost_body_is_not_tracked() -> None:
+    body = client.Body(small_frame(tracking="lost", joints={}))
+    assert not body.tracked
+    assert body.tracking == "lost"
+    assert list(body) == []
+
+
+def test_stream_blocks_for_the_next_body_and_ends_the_connection_when_left() -> None:
+    with running_sink() as running:
+        sender = threading.Thread(target=_send_for_a_while, args=(running.sink.send,))
+        sender.start()
+        seen = []
+        for body in client.stream(running.endpoint):
+            seen.append(body.seq)
+            if len(seen) == 5:
+                break
+        sender.join()
+        assert seen == sorted(set(seen))
+        assert eventually(lambda: running.sink.status().listeners == 0)
+
+
+def _send_for_a_while(send) -> None:  # type: ignore[no-untyped-def]
+    for seq in range(200):
+        send(small_frame(seq=seq))
+        time.sleep(0.005)
+
+
+def test_astream_gives_the_newest_body() -> None:
+    async def play(endpoint: str) -> list[int]:
+        seen = []
+        async for body in client.astream(endpoint):
+            seen.append(body.seq)
+            await asyncio.sleep(0.05)  # slower than the daemon
+            if len(seen) == 5:
+                break
+        return seen
+
+    with running_sink() as running:
+        sender = threading.Thread(target=_send_for_a_while, args=(running.sink.send,))
+        sender.start()
+        seen = asyncio.run(play(running.endpoint))
+        sender.join()
+        assert seen == sorted(set(seen))
+        assert seen[-1] - seen[0] > len(seen)  # it skipped what it was too slow for
+        assert eventually(lambda: running.sink.status().listeners == 0)
+
+
+def test_astream_can_be_cancelled_while_waiting() -> None:
+    async def wait_in_vain(endpoint: str) -> None:
+        async with asyncio.timeout(0.3):
+            async for _ in client.astream(endpoint, connect_timeout_s=None):
+                raise AssertionError("nobody sends")
+
+    with running_sink() as running, pytest.raises(TimeoutError):
+        asyncio.run(wait_in_vain(running.endpoint))
+    with pytest.raises(TimeoutError):
+        asyncio.run(wait_in_vain(f"tcp/127.0.0.1:{free_port()}"))
+
+
+def test_it_goes_on_when_the_daemon_comes_back() -> None:
+    port = free_port()
+    with running_sink(port) as running:
+        game = client.Client(client.Link(running.endpoint))
+        running.heard()
+        running.sink.send(small_frame(seq=1))
+        first = game.wait(5.0)
+    assert first is not None
+    with running_sink(port) as running:
+        assert eventually(lambda: running.sink.status().listeners == 1)
+        running.sink.send(small_frame(seq=2))
+        second = game.wait(5.0)
+    assert second is not None
+    assert second.seq == 2
+    game.close()
+    game.close()
+
+
+@pytest.mark.parametrize("timeout_s", [0.0, 0.3])
+def test_nothing_there_is_one_clear_line(timeout_s: float) -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    with pytest.raises(
+        UnavailableError, match=f"no mocapd at {endpoint} -- start `mocapd run` or pass endpoint="
+    ):
+        next(client.stream(endpoint, connect_timeout_s=timeout_s))
+
+
+def test_a_zenoh_router_without_mocapd_is_told_from_nothing() -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    router = zenoh.Config()
+    router.insert_json5("mode", '"router"')
+    router.insert_json5("listen/endpoints", f'["{endpoint}"]')
+    router.insert_json5("scouting/multicast/enabled", "false")
+    with zenoh.open(router), pytest.raises(UnavailableError, match="a Zenoh node answers"):
+        client.Client(client.Link(endpoint, connect_timeout_s=0.0))
+
+
+def test_another_instance_is_not_mistaken_for_ours() -> None:
+    with running_sink() as running, pytest.raises(UnavailableError, match="mocapd/v1/attic/alive"):
+        client.Client(client.Link(running.endpoint, instance="attic", connect_timeout_s=0.0))
+
+
+def test_it_waits_for_a_daemon_that_starts_later() -> None:
+    port = free_port()
+    got: list[client.Body] = []
+
+    def play() -> None:
+        got.append(next(client.stream(f"tcp/127.0.0.1:{port}", connect_timeout_s=None)))
+
+    game = threading.Thread(target=play)
+    game.start()
+    time.sleep(0.3)
+    with running_sink(port) as running:
+        running.heard()
+        running.sink.send(small_frame())
+        game.join(10.0)
+    assert len(got) == 1
+
+
+def test_a_frame_of_another_version_says_so() -> None:
+    with running_sink() as running, client.Client(client.Link(running.endpoint)) as game:
+        running.heard()
+        running.sink.send(small_frame(schema="mocapd.Skeleton.v9"))
+        with pytest.raises(InputError, match="same version of mocapd"):
+            game.wait(5.0)
+
+
+def test_a_game_that_leaves_without_closing_ends_well() -> None:
+    program = (
+        "import sys, threading, time, mocapd.client\n"
+        "def read():\n"
+        "    for body in mocapd.client.stream(sys.argv[1]): pass\n"
+        "threading.Thread(target=read, daemon=True).start()\n"
+        "time.sleep(0.5)\n"
+    )
+    with running_sink() as running:
+        ended = subprocess.run(
+            [sys.executable, "-c", program, running.endpoint], cwd=ROOT, timeout=20, check=False
+        )
+    assert ended.returncode == 0
+
+
+def test_importing_the_client_is_light() -> None:
+    program = (
+        "import sys, mocapd.client\n"
+        "heavy = {'cv2', 'numba', 'scipy', 'numpy', 'psutil', 'matplotlib'} & set(sys.modules)\n"
+        "sys.exit(f'loads {heavy}' if heavy else 0)\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 0, ended.stderr
+
+
+def test_the_sample_prints_the_left_hand() -> None:
+    sample = ROOT / "clients" / "python" / "print_pose.py"
+    with running_sink() as running:
+        printing = subprocess.Popen(
+            [sys.executable, str(sample), running.endpoint],
+            stdout=subprocess.PIPE,
+            env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"},
+            text=True,
+        )
+        running.heard()
+        running.sink.send(whole_frame(seq=1))
+        assert printing.stdout is not None
+        line = printing.stdout.readline()
+        printing.terminate()
+        printing.communicate(timeout=10)
+    x, y, z = wire.decode(wire.encode_msgpack(whole_frame())).joints["leftHand"].p
+    assert f"{x:+.2f} {y:+.2f} {z:+.2f}" in line

@@ -1,0 +1,136 @@
+"""OSC on the wire: golden bytes, an independent decoder, splitting."""
+
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pythonosc.osc_bundle import OscBundle
+from pythonosc.osc_message import OscMessage
+from pythonosc.osc_message_builder import OscMessageBuilder
+
+from mocapd.outputs import osc_encoding as osc
+from mocapd.outputs.osc_frame import FrameBundles
+from mocapd.outputs.wire import Joint
+from tests.outputs.frames import small_frame, whole_frame
+
+ONE, HALF, QUARTER = b"\x3f\x80\0\0", b"\x3f\x00\0\0", b"\x3e\x80\0\0"
+ZERO = b"\0\0\0\0"
+
+GOLDEN_FRAME = b"".join(
+    [
+        b"/mocapd/v1/frame\0\0\0\0,iiiiiiifssss\0\0\0",
+        ZERO,  # person
+        b"\0\0\0\x07",  # seq
+        ZERO + b"\0\0\0\x01",  # part 0 of 1
+        b"\0\0\0\x02",  # joints
+        b"\x65\x53\xf1\x05" + b"\0\0\0\x7b",  # 1_700_000_005 s and 123 ns
+        b"\x3c\x80\0\0",  # 1/64 s
+        b"live\0\0\0\0colour\0\0left,right\0\0pc\0\0",
+    ]
+)
+GOLDEN_HIPS = b"".join(
+    [
+        b"/mocapd/v1/joint/hips\0\0\0,ffffffffffff\0\0\0",
+        QUARTER + ONE + b"\xbf\x00\0\0",
+        ZERO * 3 + ONE,
+        ZERO * 3 + ONE,
+        ONE,
+    ]
+)
+GOLDEN_ARM = b"".join(
+    [
+        b"/mocapd/v1/joint/leftUpperArm\0\0\0,ffffffffffff\0\0\0",
+        HALF + b"\x3f\xc0\0\0" + b"\xbf\x00\0\0",
+        ZERO * 2 + b"\x3f\x40\0\0" + b"\x3f\x20\0\0",
+        HALF * 4,
+        b"\x3e\x00\0\0",
+    ]
+)
+GOLDEN_BUNDLE = b"#bundle\0\0\0\0\0\0\0\0\x01" + b"".join(
+    struct.pack(">i", len(element)) + element for element in (GOLDEN_FRAME, GOLDEN_HIPS, GOLDEN_ARM)
+)
+
+
+def decoded(datagram: bytes | bytearray) -> list[OscMessage]:
+    """The messages of a bundle, by python-osc."""
+    return list(OscBundle(bytes(datagram)))
+
+
+def test_a_frame_is_these_bytes() -> None:
+    frame = small_frame()
+    assert [bytes(d) for d in FrameBundles(frame).filled(frame)] == [GOLDEN_BUNDLE]
+
+
+def test_a_layout_made_from_another_frame_of_the_shape_gives_the_same_bytes() -> None:
+    joints = {name: Joint((9.0,) * 3, (9.0,) * 4, (9.0,) * 4, 9.0) for name in small_frame().joints}
+    layout = FrameBundles(small_frame(seq=99, person=5, joints=joints))
+    layout.filled(small_frame(seq=99, joints=joints))
+    assert [bytes(d) for d in layout.filled(small_frame())] == [GOLDEN_BUNDLE]
+
+
+def test_an_independent_decoder_reads_the_whole_body() -> None:
+    frame = whole_frame(seq=2**31 + 5)
+    datagrams = FrameBundles(frame).filled(frame)
+    seen: dict[str, list[float]] = {}
+    for part, datagram in enumerate(datagrams):
+        assert len(datagram) <= osc.MAX_DATAGRAM_BYTES
+        head, *joints = decoded(datagram)
+        assert head.address == "/mocapd/v1/frame"
+        person, seq, which, parts, count, second, nanosecond, latency_s, *strings = head.params
+        assert (person, seq, which, parts, count) == (0, 5, part, len(datagrams), 22)
+        assert second * 1_000_000_000 + nanosecond == frame.capture_unix_ns
+        assert latency_s == 1 / 64
+        assert strings == ["live", "colour", "left,right", "pc"]
+        seen |= {m.address.removeprefix("/mocapd/v1/joint/"): m.params for m in joints}
+    assert list(seen) == list(frame.joints)
+    for name, joint in frame.joints.items():
+        assert seen[name] == pytest.approx([*joint.p, *joint.r, *joint.l, joint.c], abs=1e-6)
+
+
+def test_the_body_takes_two_datagrams_of_about_the_same_size() -> None:
+    frame = whole_frame()
+    sizes = [len(d) for d in FrameBundles(frame).filled(frame)]
+    assert len(sizes) == 2
+    assert max(sizes) - min(sizes) < 120
+
+
+@given(st.integers(260, 2600))
+def test_any_limit_is_kept_and_no_joint_lost(limit_bytes: int) -> None:
+    frame = whole_frame()
+    datagrams = FrameBundles(frame, limit_bytes).filled(frame)
+    assert all(len(datagram) <= limit_bytes for datagram in datagrams)
+    names = [m.address.rpartition("/")[2] for d in datagrams for m in decoded(d)[1:]]
+    assert names == list(frame.joints)
+
+
+def test_lost_is_one_short_datagram() -> None:
+    frame = small_frame(tracking="lost", joints={}, cameras=())
+    (datagram,) = FrameBundles(frame).filled(frame)
+    (head,) = decoded(datagram)
+    assert head.params[3:5] == [1, 0]
+    assert head.params[8] == "lost"
+
+
+def test_many_long_camera_names_still_fit() -> None:
+    frame = whole_frame()
+    cameras = tuple(f"camera-over-the-garage-door-{i}" for i in range(100))
+    many = small_frame(joints=frame.joints, cameras=cameras)
+    assert all(len(d) <= osc.MAX_DATAGRAM_BYTES for d in FrameBundles(many).filled(many))
+
+
+@given(st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"])))
+def test_strings_are_terminated_and_padded(text: str) -> None:
+    data = osc.string(text)
+    assert len(data) % 4 == 0
+    assert data.rstrip(b"\0").decode() == text
+    assert data.endswith(b"\0")
+
+
+@given(st.integers(-(2**31), 2**31 - 1), st.floats(width=32, allow_nan=False), st.text("abc/é"))
+def test_messages_are_byte_for_byte_those_of_python_osc(i: int, f: float, s: str) -> None:
+    builder = OscMessageBuilder("/some/address")
+    builder.add_arg(i, "i")
+    builder.add_arg(f, "f")
+    builder.add_arg(s, "s")
+    assert osc.message("/some/address", "ifs", i, f, s) == builder.build().dgram

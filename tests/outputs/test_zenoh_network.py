@@ -1,0 +1,80 @@
+"""Exposed with TLS and passwords: who has both gets in, nobody else."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import zenoh
+
+from mocapd.client import Client, Link
+from mocapd.errors import UnavailableError
+from mocapd.outputs.zenoh_config import Params
+from mocapd.outputs.zenoh_sink import ZenohSink
+from tests.outputs.frames import eventually, free_port, small_frame
+
+pytestmark = pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl")
+
+
+def openssl(folder: Path, *arguments: str) -> None:
+    subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def certificates(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An authority (ca.pem) and a certificate of 127.0.0.1 signed by it (server.pem, server.key)."""
+    folder = tmp_path_factory.mktemp("certificates")
+    key = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
+    (folder / "ext").write_text("subjectAltName=IP:127.0.0.1\nbasicConstraints=CA:FALSE\n")
+    openssl(folder, "req", "-x509", *key, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=ca")
+    openssl(folder, "req", *key, "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=pc")
+    openssl(
+        folder,
+        *("x509", "-req", "-in", "server.csr", "-CA", "ca.pem", "-CAkey", "ca.key"),
+        *("-CAcreateserial", "-extfile", "ext", "-out", "server.pem"),
+    )
+    (folder / "users").write_text("game:secret\n")
+    return folder
+
+
+def test_only_the_right_login_over_tls_gets_the_stream(certificates: Path) -> None:
+    endpoint = f"tls/127.0.0.1:{free_port()}"
+    sink = ZenohSink(
+        Params(
+            instance="pc",
+            listen=(endpoint,),
+            tls_certificate=str(certificates / "server.pem"),
+            tls_private_key=str(certificates / "server.key"),
+            password_file=str(certificates / "users"),
+        )
+    )
+    sink.open()
+    ca = str(certificates / "ca.pem")
+    with Client(Link(endpoint, tls_root_ca=ca, user="game", password="secret")) as client:
+        assert eventually(lambda: sink.status().listeners == 1)
+        sink.send(small_frame(seq=3))
+        body = client.wait(5.0)
+        assert body is not None
+        assert body.seq == 3
+    for refused in (
+        Link(endpoint, tls_root_ca=ca, user="game", password="wrong", connect_timeout_s=0.0),
+        Link(endpoint, tls_root_ca=ca, connect_timeout_s=0.0),
+        Link(endpoint, user="game", password="secret", connect_timeout_s=0.0),
+        Link(endpoint.replace("tls", "tcp"), user="game", password="secret", connect_timeout_s=0.0),
+    ):
+        with pytest.raises(UnavailableError, match="check tls_root_ca, user and password too"):
+            Client(refused)
+    sink.close()
+
+
+def test_a_certificate_that_is_none_is_one_line(certificates: Path) -> None:
+    users = str(certificates / "users")
+    sink = ZenohSink(
+        Params(
+            listen=(f"tls/127.0.0.1:{free_port()}",), tls_certificate=users, tls_private_key=users
+        )
+    )
+    with pytest.raises(UnavailableError, match="tls/127") as caught:
+        sink.open()
+    assert "\n" not in str(caught.value)
+    assert isinstance(caught.value.__cause__, zenoh.ZError)

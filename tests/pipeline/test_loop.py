@@ -1,0 +1,160 @@
+"""The pipeline's thread: bodies out for frames in, metrics, stopping, and death that is heard of."""
+
+import gc
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import standard_skeleton
+from mocapd.clock import monotonic_ns
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
+from mocapd.pipeline.loop import PipelineLoop
+from mocapd.pipeline.smoothing import Smoother
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.types import BodyState, Frame, FrameSet, Skeleton, Track, Tracking
+from tests.pipeline.free_running import PIXELS
+
+SKELETON = standard_skeleton(1.7)
+MS = 1_000_000
+
+
+class FailingTracker:
+    """Breaks at its third step."""
+
+    name = "failing"
+    skeleton = SKELETON
+
+    def __init__(self) -> None:
+        self._inner = CannedTracker(SKELETON)
+        self._steps = 0
+
+    def reset(self) -> None: ...
+
+    def step(self, frames: FrameSet) -> Track:
+        self._steps += 1
+        if self._steps == 3:
+            raise ArithmeticError("singular")
+        return self._inner.step(frames)
+
+
+class Run:
+    """A loop on two cameras, fed by hand, with what came out of it."""
+
+    def __init__(self, tracker: Tracker) -> None:
+        self.collector = FrameCollector(("a", "b"))
+        self.out: list[tuple[BodyState, Skeleton, FrameSet]] = []
+        self.deaths: list[BaseException] = []
+        self.news = threading.Condition()
+        self.loop = PipelineLoop(
+            self.collector, tracker, Smoother("balanced", SKELETON), self._publish, self._die
+        )
+        self._seq = 0
+
+    def _publish(self, body: BodyState, skeleton: Skeleton, frames: FrameSet) -> None:
+        with self.news:
+            self.out.append((body, skeleton, frames))
+            self.news.notify_all()
+
+    def _die(self, error: BaseException) -> None:
+        with self.news:
+            self.deaths.append(error)
+            self.news.notify_all()
+
+    def feed(self) -> None:
+        t_ns = monotonic_ns() - 5 * MS
+        for name in ("a", "b"):
+            self.collector.put(Frame(name, self._seq, t_ns, PIXELS))
+        self._seq += 1
+
+    def wait_for(self, condition: Callable[[], bool]) -> None:
+        with self.news:
+            assert self.news.wait_for(condition, 20.0)
+
+    def feed_until_out(self, n: int) -> None:
+        for k in range(n):
+            self.feed()
+            self.wait_for(lambda k=k: len(self.out) > k)  # type: ignore[misc]
+
+
+def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
+    run = Run(CannedTracker(SKELETON))
+    run.loop.start()
+    run.feed_until_out(12)
+    assert run.loop.stop(20.0)
+    times = [body.t_ns for body, _, _ in run.out]
+    assert times == sorted(set(times))
+    assert all(body.t_ns == frames.t_ns for body, _, frames in run.out)
+    assert all(body.tracking is Tracking.LIVE for body, _, _ in run.out)
+    metrics = run.loop.metrics()
+    assert metrics.published >= 11  # the last is recorded after it is out
+    assert metrics.sets_made == 12
+    assert metrics.sets_dropped == 0
+    assert metrics.latency_ms.median >= 5.0
+    assert metrics.latency_ms.p95 >= metrics.latency_ms.median
+    assert metrics.step_ms.median < metrics.latency_ms.median
+    assert metrics.tracker == "canned"
+    assert metrics.tracking is Tracking.LIVE
+    assert metrics.cameras["a"].counts.received == 12
+    assert metrics.cameras["b"].delay_ms >= 5.0
+    assert not run.deaths
+
+
+def test_metrics_before_the_first_frame_are_there_and_empty() -> None:
+    run = Run(CannedTracker(SKELETON))
+    metrics = run.loop.metrics()
+    assert metrics.published == 0
+    assert metrics.rate_hz == 0.0
+    assert metrics.tracking is Tracking.LOST
+    assert np.isnan(metrics.latency_ms.median)
+    assert run.loop.stop()  # never started: nothing to wait for
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_death_is_heard_of_with_its_cause() -> None:
+    run = Run(FailingTracker())
+    run.loop.start()
+    run.feed_until_out(2)
+    run.feed()
+    run.wait_for(lambda: bool(run.deaths))
+    assert isinstance(run.deaths[0], ArithmeticError)
+    assert run.loop.stop(20.0)
+    assert gc.isenabled()
+
+
+def test_stopping_wakes_a_loop_without_frames_and_is_no_death() -> None:
+    run = Run(CannedTracker(SKELETON))
+    run.loop.start()
+    assert run.loop.stop(20.0)
+    assert run.loop.stop(20.0)
+    assert not run.deaths
+    assert gc.isenabled()
+
+
+def test_garbage_is_collected_when_idle_and_only_then() -> None:
+    class Node:
+        def __init__(self) -> None:
+            self.me = self
+            freed.append(0)
+
+        def __del__(self) -> None:
+            freed.pop()
+
+    freed: list[int] = []
+    with IdleCollection() as garbage:
+        garbage.idle(0)
+        for _ in range(5_000):
+            Node()
+        assert len(freed) == 5_000
+        garbage.idle(YOUNG_EVERY_NS // 2)
+        assert len(freed) == 5_000
+        garbage.idle(YOUNG_EVERY_NS)
+        assert not freed
+        Node()
+        garbage.idle(YOUNG_EVERY_NS + ALL_EVERY_NS)
+        assert not freed
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
