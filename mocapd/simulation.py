@@ -9,7 +9,7 @@ from mocapd.capture.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.config_sections import CameraSection
 from mocapd.errors import InputError
-from mocapd.sim.film import Film, load_film
+from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.setup import SimSetup
 from mocapd.sim.strokes import LabelledImage
@@ -44,11 +44,11 @@ def camera_names(source: str) -> tuple[str, ...]:
 
 def open_film(source: str, cache_dir: Path, progress: Progress) -> Film:
     """The scenario's film, rendered when it is not in the cache. Raises MocapdError."""
-    return load_film(
-        load_scenario(scenario_path(source)),
-        cache_dir,
-        lambda done, total: progress("rendering the simulated webcams", done, total),
-    )
+    scenario = load_scenario(scenario_path(source))
+    what = "rendering the simulated webcams"
+    if not any(cache_dir.glob(f"*{film_key(scenario)[:16]}*")):
+        progress(what, 0, 1)  # something to see while the renderer is compiled
+    return load_film(scenario, cache_dir, lambda done, total: progress(what, done, total))
 
 
 def simulated_inputs(cameras: Sequence[CameraSection], film: Film) -> tuple[CameraInput, ...]:

@@ -18,9 +18,9 @@ def add_to(app: typer.Typer) -> None:
 def cameras(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a camera.")] = False,
 ) -> None:
-    """List the webcams: node, name, vid:pid:serial, USB port, formats; why one cannot be used.
+    """List the webcams, and why one cannot be used.
 
-    The `source` of a camera goes into the config.
+    Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config.
 
     Example: mocapd cameras
     """

@@ -28,7 +28,7 @@ def check_config(
         bool, typer.Option("--markdown", help="The table of all keys for the README.")
     ] = False,
 ) -> None:
-    """Check the configuration; print the effective value of each key and where it came from.
+    """Print each setting and where it came from.
 
     Ends with 78 and one line when something is wrong.
 

@@ -23,9 +23,10 @@ def add_to(app: typer.Typer) -> None:
 
 
 def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
-    """Run on two simulated webcams: a person in the shirt in a furnished room.
+    """Run the daemon on two simulated webcams.
 
-    One of its two coloured lamps goes out in each loop. Publishes on Zenoh and OSC on 127.0.0.1.
+    They show a person in the shirt in a furnished room with two coloured lamps, one of which goes
+    out in each loop. Publishes on Zenoh and OSC on 127.0.0.1.
 
     Example: mocapd demo
     """

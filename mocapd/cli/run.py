@@ -48,11 +48,11 @@ def run(
 
 def run_with(config: "Config", hint: str = "") -> int:
     """Run with this configuration until it ends; the exit code. `hint` is logged once it runs."""
-    from mocapd.cli.caches import use_cache_dir
+    from mocapd.cli.libraries import prepare_libraries
     from mocapd.cli.logs import set_up_logs
 
     set_up_logs(config.log_level)
-    use_cache_dir(config.cache_dir)
+    prepare_libraries(config.cache_dir)
 
     from mocapd.cli.progress import ProgressBars
     from mocapd.cli.running import Signals, run_daemon

@@ -33,16 +33,16 @@ def track(
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Track a recorded capture, every frame of it, and write joints and rotations.
+    """Track a recorded capture offline, every frame.
 
-    Twice the same input gives the same file.
+    Writes joints and rotations. Twice the same input gives the same file.
 
     Example: mocapd track captures/office --out office.npz --tracker colour
     """
-    from mocapd.cli.caches import use_cache_dir
+    from mocapd.cli.libraries import prepare_libraries
 
     effective = effective_config(config, settings, tracker__name=tracker).config
-    use_cache_dir(effective.cache_dir)
+    prepare_libraries(effective.cache_dir)
 
     from mocapd.capture.folder import frame_sets, load_folder
     from mocapd.cli.progress import ProgressBars

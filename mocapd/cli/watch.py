@@ -35,7 +35,9 @@ def watch(
         float, typer.Option("--timeout", min=0.0, help="How long to look for a daemon [s].")
     ] = 5.0,
 ) -> None:
-    """Subscribe to a running daemon and print its frames, the newest each time.
+    """Print the frames of a running daemon.
+
+    It subscribes like any client; the newest frame wins.
 
     Example: mocapd watch --json | head -n 1
     """

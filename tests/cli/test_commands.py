@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,6 +12,8 @@ import numpy as np
 import pytest
 
 import mocapd as package
+from mocapd.cli.demo import watch_command
+from mocapd.config_sections import Config, ZenohSection
 from tests.cli.mocapd_process import COMMAND, mocapd
 from tests.cli.small_capture import FRAMES, write_capture
 
@@ -105,3 +108,10 @@ def test_logs_carry_priorities_in_the_journal(clean_env: dict[str, str], tmp_pat
     lines = log.read_text().splitlines()
     assert lines
     assert all(line.startswith("<") and line[2] == ">" for line in lines), lines
+
+
+def test_the_demo_prints_a_command_for_the_second_terminal() -> None:
+    command = shlex.split(watch_command(Config(zenoh=ZenohSection(port=7448))))
+    assert Path(command[0]).name == "mocapd"
+    assert command[1:] == ["watch", "--set", "zenoh.port=7448"]
+    assert shlex.split(watch_command(Config()))[1:] == ["watch"]

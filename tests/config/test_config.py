@@ -1,5 +1,7 @@
 """What a user meets in the configuration: precedence, origins, and messages that say the mend."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -154,3 +156,9 @@ def test_paths_in_a_file_are_meant_from_that_file(file: Path) -> None:
 def test_every_key_is_documented() -> None:
     effective = load_config(env={}, candidates=())
     assert [s.key.path for s in effective.settings if not s.key.help] == []
+
+
+def test_reading_the_configuration_loads_no_numba() -> None:
+    """Numba reads where its cache is while it is imported, and the configuration says where."""
+    code = "import sys, mocapd.config; sys.exit('numba' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -113,20 +113,20 @@ def accumulate(
                     if k_model == 0:
                         continue
                     i = _nearest(image_ids, x, y, k_model, offsets, n_offsets)
-                    if i < 0:
-                        cost += r2_robust
-                        continue
-                    dx, dy = offsets[i, 0], offsets[i, 1]
-                    t = triangle_at[y, x]
                     row_weight = weight
                     if k_image == 0:
                         row_weight *= softness[y, x] / 255.0
+                    if i < 0:
+                        cost += row_weight * r2_robust
+                        continue
+                    dx, dy = offsets[i, 0], offsets[i, 1]
+                    t = triangle_at[y, x]
                 else:
                     if k_image == 0:
                         continue
                     i = _nearest(model_ids, x, y, k_image, offsets, n_offsets)
                     if i < 0:
-                        cost += r2_robust
+                        cost += weight * r2_robust
                         continue
                     dx, dy = -offsets[i, 0], -offsets[i, 1]
                     t = triangle_at[y - dy, x - dx]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
+from mocapd.geometry.cameras import normalised
 from mocapd.trackers.colour import idmap_crop_kernels, idmap_descriptor_kernels
 from mocapd.trackers.colour.idmap_crop_kernels import unpack
 from mocapd.trackers.colour.idmap_index import (
@@ -104,7 +105,9 @@ class PoseDatabase:
         root = self.camera_from_root_xyzw[indices].astype(float)
         return _weighted(local, weights), _weighted(root, weights)
 
-    def root_in_view(self, indices: Ints, distances: NDArray[np.float64], side_rad: float) -> Floats:
+    def root_in_view(
+        self, indices: Ints, distances: NDArray[np.float64], side_rad: float
+    ) -> Floats:
         """The root's position (3,) [m] in the view frame of a crop that spans `side_rad` focal lengths.
 
         The view frame is the camera's, turned so that its axis goes through the crop's centre; the mean
@@ -112,7 +115,9 @@ class PoseDatabase:
         """
         weights = blend_weights(distances)
         nearer = self.side_rad[indices].astype(float) / side_rad
-        return weights @ (self.root_m[indices] * np.stack([1 + 0 * nearer, 1 + 0 * nearer, nearer], 1))
+        return weights @ (
+            self.root_m[indices] * np.stack([1 + 0 * nearer, 1 + 0 * nearer, nearer], 1)
+        )
 
 
 def blend_weights(distances: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -122,12 +127,9 @@ def blend_weights(distances: NDArray[np.float64]) -> NDArray[np.float64]:
     return weights / weights.sum()
 
 
-def camera_from_view(camera: Camera, undistorted_xy: Floats) -> Floats:
-    """Rotation (4,) that takes the optical axis to the ray of normalised image coordinates (2,).
-
-    `geometry.cameras.normalised(camera, centre_px)` gives them.
-    """
-    ray = np.append(undistorted_xy, 1.0)
+def camera_from_view(camera: Camera, centre_px: Floats) -> Floats:
+    """Rotation (4,) that takes the camera's optical axis to the ray of a pixel (2,)."""
+    ray = np.append(normalised(camera, centre_px), 1.0)
     ray = ray / np.linalg.norm(ray)
     return rotations.canonical(np.array([-ray[1], ray[0], 0.0, 1.0 + ray[2]]))
 

@@ -95,7 +95,7 @@ def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
             {"name": name, "dtype": array.dtype.str, "shape": array.shape, "offset": offset}
         )
         offset += array.nbytes
-        checksum = zlib.crc32(memoryview(array).cast("B"), checksum)
+        checksum = zlib.crc32(array.view(np.uint8).reshape(-1).data, checksum)
     header = json.dumps(
         {
             "version": VERSION, "content": digest, "crc32": checksum, "size": offset,
@@ -114,7 +114,7 @@ def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
                 file.write(head)
                 for entry, array in zip(entries, arrays.values(), strict=True):
                     file.write(b"\0" * (len(head) + entry["offset"] - file.tell()))
-                    file.write(memoryview(array).cast("B"))
+                    file.write(array.view(np.uint8).reshape(-1).data)
                 file.flush()
                 os.fsync(file.fileno())
                 temporary.replace(path)

@@ -65,6 +65,7 @@ class Fit:
     matched: Floats
     unexplained: Floats
     H: Floats
+    cost: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -246,6 +247,7 @@ class Fitter:
         visible, matched, unexplained = np.zeros(21), np.zeros(21), np.zeros(21)
         H = np.zeros((P, P))
         start = (prediction.root_m, prediction.local_xyzw)
+        cost = 0.0
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
             radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
@@ -253,13 +255,14 @@ class Fitter:
             H = np.zeros((P, P))
             b = np.zeros(P)
             visible[:] = matched[:] = unexplained[:] = 0.0
+            cost = 0.0
             vertices, rest = shaped(m, state.factors)
             for view in views:
                 root, local = self.moved(state, view.dt_s)
                 ids, triangle_at = self._rendered(view.index, root, local, vertices, rest, view.roi)
                 joint_shape_derivatives(m.parents, m.d_rest, self._R, self._d_joints)
                 camera, factor = self.cameras[view.index], self.factors[view.index]
-                accumulate(
+                cost += accumulate(
                     ids, triangle_at, view.ids, view.softness, self._spiral, n_offsets,
                     0.6 * radius, iteration & 1, m.triangles, m.patch, vertices, m.d_vertices,
                     m.triangle_bones, m.triangle_weights, rest, m.d_rest, m.parents,
@@ -280,7 +283,7 @@ class Fitter:
                 b[N_POSE:] += prediction.information @ (prediction.factors - state.factors)
             step = np.linalg.solve(A, b)
             state = self._stepped(state, step)
-        return Fit(state, visible, matched, unexplained, H)
+        return Fit(state, visible, matched, unexplained, H, cost)
 
     def _add_limits(self, local: Floats, A: Floats, b: Floats) -> None:
         """Pull joints back into their range, softly."""

@@ -76,7 +76,7 @@ def from_packed(packed: Bytes, distances: Singles) -> float:
         if high != 0:
             total += distances[high, 2 * i + 1]
             count += 1
-    return total / count if count > 0 else -1.0
+    return float(total / count) if count > 0 else -1.0
 
 
 @njit(cache=True, nogil=True)
@@ -125,7 +125,7 @@ def to_points(
         for i in range(least.shape[0]):
             total += least[i]
     count = start[N_IDS]
-    return total / count if count > 0 else -1.0
+    return float(total / count) if count > 0 else -1.0
 
 
 @njit(cache=True, nogil=True)

@@ -29,7 +29,8 @@ class Projection:
         """Vectors (N,D) of packed maps (N, PACKED)."""
         raw = np.empty((len(packed_maps), LENGTH), np.float32)
         describe_packed(packed_maps, raw)
-        return (raw - self.mean) @ self.basis
+        vectors: Singles = np.matmul(raw - self.mean, self.basis, dtype=np.float32)
+        return vectors
 
 
 def fit_projection(packed_maps: Bytes, dimensions: int) -> Projection:

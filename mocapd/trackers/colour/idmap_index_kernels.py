@@ -9,7 +9,7 @@ Ints = NDArray[np.int64]
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def squared_gap(a: Singles, b: Singles) -> float:
+def squared_gap(a: Singles, b: Singles) -> np.float32:
     """Squared Euclidean distance of two vectors."""
     total = np.float32(0.0)
     for i in range(a.shape[0]):

@@ -1,8 +1,8 @@
 """Upper-body poses over 3-D orientations, spread evenly by a Sobol sequence.
 
 [Wang 2011, section 5.2, step 2] blends generic action poses linearly; so do we, with key poses of our
-own, and fill up with arms drawn from the joints' whole range. A pose with a forearm inside the trunk
-is left out.
+own, and fill up with arms drawn from the joints' whole range. A pose beyond the joint limits or with a
+forearm inside the trunk is left out.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limits import from_swing_twist
+from mocapd.body.joint_limits import from_swing_twist, standard_limits, swing_twist
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.key_poses import ARMS, TORSOS, arm_rotations
@@ -38,6 +38,7 @@ class SamplingParams:
     key_share: float = 0.7  # of the arms that are blends of key poses
     jitter_deg: float = 12.0  # about a blend of key poses
     pronation_deg: float = 50.0
+    limit_slack_deg: float = 8.0  # a blend may go beyond the joint limits by this
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +87,7 @@ def poses_from_cube(cube: Floats, params: SamplingParams) -> PoseSet:
         local[:, INDEX[side + "Shoulder"]] = collar * mirror
         local[:, INDEX[side + "UpperArm"]] = upper * mirror
         local[:, INDEX[side + "LowerArm"]] = lower * mirror
-    keep = ~_cuts_trunk(local)
+    keep = ~(_cuts_trunk(local) | _beyond_limits(local, np.radians(params.limit_slack_deg)))
     return PoseSet(
         local[keep].astype(np.float32), _orientation(cube[:, :5], params)[keep].astype(np.float32)
     )
@@ -123,9 +124,7 @@ def _orientation(u: Floats, params: SamplingParams) -> Floats:
     low, high = np.radians(params.lean_deg)
     q = rotations.multiply(q, _about(0, _centred(u[:, 3], low, high)))
     side = np.radians(params.lean_side_deg)
-    return rotations.canonical(
-        rotations.multiply(q, _about(2, _centred(u[:, 4], -side, side)))
-    )
+    return rotations.canonical(rotations.multiply(q, _about(2, _centred(u[:, 4], -side, side))))
 
 
 def _torso(u: Floats) -> Floats:
@@ -163,12 +162,16 @@ def _arm(u: Floats, params: SamplingParams) -> tuple[Floats, Floats, Floats]:
     # the collar bone follows the arm: about a fifth of its rise above 30 degrees of elevation
     direction = rotations.rotate(upper, np.array([1.0, 0.0, 0.0]))
     elevation = np.arccos(np.clip(-direction[:, 1], -1.0, 1.0))
-    rise = 0.2 * np.maximum(elevation - np.radians(30.0), 0.0) + np.radians(8.0) * (2 * u[:, 11] - 1)
+    rise = 0.2 * np.maximum(elevation - np.radians(30.0), 0.0) + np.radians(8.0) * (
+        2 * u[:, 11] - 1
+    )
     forwards = np.radians(15.0) * direction[:, 2] + np.radians(8.0) * (2 * u[:, 12] - 1)
     vector = np.stack([0.0 * rise, -forwards, rise], axis=-1)
     collar = rotations.exp(vector)
-    return collar, rotations.canonical(rotations.multiply(rotations.inverse(collar), upper)), (
-        rotations.canonical(lower)
+    return (
+        collar,
+        rotations.canonical(rotations.multiply(rotations.inverse(collar), upper)),
+        (rotations.canonical(lower)),
     )
 
 
@@ -176,6 +179,18 @@ def _blend(q_xyzw: Floats, weights: Floats) -> Floats:
     """Weighted linear blend (N,4) of rotations (N,K,4), brought to the first one's hemisphere."""
     sign = np.where(np.einsum("nki,ni->nk", q_xyzw, q_xyzw[:, 0]) < 0.0, -1.0, 1.0)
     return rotations.canonical(np.einsum("nki,nk->ni", q_xyzw, sign * weights))
+
+
+def _beyond_limits(local_xyzw: Floats, slack_rad: float) -> NDArray[np.bool_]:
+    """Whether a joint is bent farther than an adult's goes: (N,)."""
+    limits = standard_limits()
+    out = np.zeros(len(local_xyzw), dtype=bool)
+    for g in np.flatnonzero(limits.axis >= 0):
+        j = limits.joint[g]
+        angles = swing_twist(local_xyzw[:, j], int(limits.axis[g])) / limits.share[j]
+        out |= (angles < limits.lower_rad[g] - slack_rad).any(axis=1)
+        out |= (angles > limits.upper_rad[g] + slack_rad).any(axis=1)
+    return out
 
 
 def _cuts_trunk(local_xyzw: Floats) -> NDArray[np.bool_]:

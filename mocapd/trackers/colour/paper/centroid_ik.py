@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 from mocapd.body.model import N_POSE, BodyModel
 from mocapd.body.posing_kernels import difference, retract
 from mocapd.trackers.colour.paper.covariances import Covariances
-from mocapd.trackers.colour.paper.drawing import Drawing, Grid, Posture, draw, posture, triangle_points
+from mocapd.trackers.colour.paper.drawing import (
+    Drawing,
+    Grid,
+    Posture,
+    draw,
+    posture,
+    triangle_points,
+)
 from mocapd.trackers.colour.paper.patch_kernels import centroid_rows
 from mocapd.types import Camera, Floats
 

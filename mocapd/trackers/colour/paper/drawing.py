@@ -25,7 +25,8 @@ class Grid:
 
     def to_pixels(self, samples: Floats) -> Floats:
         """Positions (...,2) on the grid as pixels."""
-        return samples * self.stride + np.array([self.x0, self.y0], dtype=float)
+        pixels: Floats = samples * self.stride + np.array([self.x0, self.y0], dtype=float)
+        return pixels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +59,9 @@ def posture(model: BodyModel, root_m: Floats, local_xyzw: Floats) -> Posture:
     return Posture(root_m, local_xyzw, R, joints, turned)
 
 
-def project_body(model: BodyModel, body: Posture, camera: Camera, grid: Grid) -> tuple[Floats, Floats]:
+def project_body(
+    model: BodyModel, body: Posture, camera: Camera, grid: Grid
+) -> tuple[Floats, Floats]:
     """Vertices on the grid (V,2) and their depth (V,) [m]."""
     xy, depth = np.empty((len(model.vertices_m), 2)), np.empty(len(model.vertices_m))
     # the kernel averages blocks of pixels; here a sample is one pixel

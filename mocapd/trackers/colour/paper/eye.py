@@ -20,7 +20,8 @@ from mocapd.vision.whitening import fold
 @dataclass(frozen=True, slots=True, eq=False)
 class Sight:
     """What step 1 saw: ids (h,w) on `grid`; size_px: s, the side of the square cut out around
-    the shirt; map40 (40,40) with its scale [px per cell] and centre_px (2,); mask and mask_shift as the classifiers take them."""
+    the shirt; map40 (40,40) with its scale [px per cell] and centre_px (2,); mask and mask_shift as
+    the classifiers take them."""
 
     ids: Bytes
     grid: Grid
@@ -37,7 +38,8 @@ class Eye:
     """Evidence of one camera. Keeps the background, W and the reference illuminations."""
 
     def __init__(self, camera: Camera, colours: ColourModel, W: Floats, params: Params) -> None:
-        self.camera, self.colours, self.params = camera, colours, params
+        self.camera, self.params = camera, params
+        self.colours = colours.tolerating(params.shading_sigma, params.noise_sigma)
         self._first_W = W
         self._search = HistogramSearch(camera.size_px, params.histogram)
         self._background = BackgroundSubtractor(params.background)
@@ -55,7 +57,9 @@ class Eye:
         params = self.params
         mask, shift = self._background.apply(pixels), params.background.shift
         if self._body is not None:
-            mask = np.maximum(mask, self._body)  # a person who stands still fades into the background
+            mask = np.maximum(
+                mask, self._body
+            )  # a person who stands still fades into the background
         if np.count_nonzero(mask) < params.min_foreground * mask.size:
             mask, shift = np.ones((1, 1), np.uint8), 31
         found = self._search.search(pixels, mask, shift)
@@ -128,7 +132,9 @@ class Eye:
 
     def _remember_body(self, grid: Grid, drawing: Drawing) -> None:
         shift = self.params.background.shift
-        body = np.zeros((self.camera.size_px[1] >> shift, self.camera.size_px[0] >> shift), np.uint8)
+        body = np.zeros(
+            (self.camera.size_px[1] >> shift, self.camera.size_px[0] >> shift), np.uint8
+        )
         rows, columns = np.nonzero(drawing.triangle_at >= 0)
         body[
             np.minimum((grid.y0 + rows * grid.stride) >> shift, body.shape[0] - 1),

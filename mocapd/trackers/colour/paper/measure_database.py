@@ -85,7 +85,9 @@ def dispersion_row(name: str, distance: NDArray[np.float64], errors: Floats) -> 
     )
 
 
-def recall_row(database: PoseDatabase, queries: Bytes, truth: Ints, setting: tuple[int, int]) -> str:
+def recall_row(
+    database: PoseDatabase, queries: Bytes, truth: Ints, setting: tuple[int, int]
+) -> str:
     """One line of the recall table for a setting (probes, reranked)."""
     id_map = np.empty((SIZE, SIZE), np.uint8)
     found, first = [], []
@@ -115,7 +117,9 @@ def main() -> int:
     queries = render(held_out, model, params, lambda _: None).packed_maps
 
     say = sys.stdout.write
-    say("| poses | nearest, mean [px²] | 95 % | worst | ten nearest, mean | arm joints [cm] | 95 % |\n")
+    say(
+        "| poses | nearest, mean [px²] | 95 % | worst | ten nearest, mean | arm joints [cm] | 95 % |\n"
+    )
     say("|---|---|---|---|---|---|---|\n")
     drawn = random_poses(params.count, 5, params)
     maps = render(drawn, model, params, lambda _: None).packed_maps

@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.body.model import BodyModel
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import normalised
-from mocapd.trackers.colour.database import PoseDatabase, blend_weights, camera_from_view
+from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
 from mocapd.trackers.colour.idmap_crop_kernels import crop_window
 from mocapd.trackers.colour.idmap_render_kernels import CANVAS
 from mocapd.trackers.colour.paper.drawing import (
@@ -26,8 +26,10 @@ from mocapd.vision.raster_kernels import label_triangles
 
 _VIEW_DISTANCE_M = 2.8
 _MIN_SAMPLES = 8  # of a patch on the canvas
-_ITERATIONS = 15
-_ROBUST_RAD = 0.02  # residuals are weighed down beyond this
+# Residuals beyond the scale are weighed down. It narrows step by step: a start is off by some tenths of
+# a metre, at which a narrow scale would give up one camera for the other.
+_SCALES_RAD = (0.5, 0.15, 0.05)
+_ITERATIONS = 6  # for each scale
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +61,7 @@ def guess(database: PoseDatabase, camera: Camera, sight: Sight, neighbours: int)
     indices, distances = database.nearest(sight.map40, neighbours)
     _, view_from_root = database.blend(indices, distances)
     focal = float(np.sqrt(camera.K[0, 0] * camera.K[1, 1]))
-    turn = camera_from_view(camera, normalised(camera, sight.centre_px))
+    turn = camera_from_view(camera, sight.centre_px)
     side_rad = sight.map_scale * sight.map40.shape[0] / focal
     root = rotations.rotate(turn, database.root_in_view(indices, distances, side_rad))
     return Guess(
@@ -133,23 +135,33 @@ def place(starts: Sequence[Guess], seen: Sequence[Constraints]) -> tuple[Floats,
 
 
 def _refine(seen: Sequence[Constraints], root: Floats, q: Floats) -> tuple[float, Floats, Floats]:
+    for scale_rad in _SCALES_RAD:
+        root, q = _descend(seen, root, q, scale_rad)
+    return _normal_equations(seen, root, q, _SCALES_RAD[1])[0], root, q
+
+
+def _descend(
+    seen: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
+) -> tuple[Floats, Floats]:
     damping = 1e-3
-    cost, gradient, hessian = _normal_equations(seen, root, q)
+    cost, gradient, hessian = _normal_equations(seen, root, q, scale_rad)
     for _ in range(_ITERATIONS):
         step = -np.linalg.solve(hessian + damping * np.diag(np.diag(hessian) + 1e-9), gradient)
         new_root = root + step[:3]
-        new_q = rotations.canonical(rotations.multiply(rotations.exp(step[3:]), q))
-        new = _normal_equations(seen, new_root, new_q)
+        new_q = rotations.canonical(
+            rotations.multiply(rotations.exp(np.asarray(step[3:], dtype=np.float64)), q)
+        )
+        new = _normal_equations(seen, new_root, new_q, scale_rad)
         if new[0] < cost:
             root, q, damping = new_root, new_q, damping * 0.3
             cost, gradient, hessian = new
         else:
             damping *= 10.0
-    return cost, root, q
+    return root, q
 
 
 def _normal_equations(
-    seen: Sequence[Constraints], root: Floats, q: Floats
+    seen: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
 ) -> tuple[float, Floats, Floats]:
     cost, gradient, hessian = 0.0, np.zeros(6), np.zeros((6, 6))
     for c in seen:
@@ -166,8 +178,8 @@ def _normal_equations(
         J = np.concatenate([d, np.cross(arm[:, None, :], d)], axis=2).reshape(-1, 6)
         size2 = (residual**2).sum(axis=1)
         # Geman-McClure: a wrong limb of one camera's guess must not turn the trunk
-        w = c.weight / (1.0 + size2 / _ROBUST_RAD**2) ** 2
-        cost += float((c.weight * size2 / (1.0 + size2 / _ROBUST_RAD**2)).sum())
+        w = c.weight / (1.0 + size2 / scale_rad**2) ** 2
+        cost += float((c.weight * size2 / (1.0 + size2 / scale_rad**2)).sum())
         wide = np.repeat(w, 2)
         gradient += J.T @ (wide * residual.ravel())
         hessian += J.T @ (wide[:, None] * J)

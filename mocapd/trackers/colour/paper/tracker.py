@@ -121,9 +121,7 @@ class PaperTracker:
             )
             targets.append(target)
         elapsed_s = (frames.t_ns - self._last_t_ns) * 1e-9
-        body = self._solver.solve(
-            targets, blended, self._last, elapsed_s, params.min_patch_samples
-        )
+        body = self._solver.solve(targets, blended, self._last, elapsed_s, params.min_patch_samples)
         seen = {
             name: draw(model, body, self._eyes[name].camera, sights[name].grid) for name in guesses
         }

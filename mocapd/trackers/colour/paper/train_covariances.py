@@ -125,7 +125,13 @@ def _sight(ids: Bytes, grid: Grid) -> Sight:
 def _gap(model: BodyModel, a: Posture, b: Posture) -> Floats:
     out = np.empty(N_POSE)
     difference(
-        a.root_m, a.local_xyzw, b.root_m, b.local_xyzw, model.joint_of_group, model.share_of_joint, out
+        a.root_m,
+        a.local_xyzw,
+        b.root_m,
+        b.local_xyzw,
+        model.joint_of_group,
+        model.share_of_joint,
+        out,
     )
     return out
 

@@ -1,4 +1,4 @@
-"""Where compiled code and other things that can be made again are kept."""
+"""What must be set before the heavy libraries are at work: caches and threads."""
 
 import os
 import tempfile
@@ -6,6 +6,15 @@ from pathlib import Path
 
 import mocapd
 from mocapd.errors import CannotCreateError
+
+
+def prepare_libraries(cache_dir: Path) -> None:
+    """Before anything imports numba. Raises CannotCreateError when the cache cannot be written."""
+    import cv2
+
+    use_cache_dir(cache_dir)
+    # a task of under 8 ms waits longer for a pool of threads than it takes
+    cv2.setNumThreads(1)
 
 
 def use_cache_dir(cache_dir: Path) -> None:
