@@ -19,10 +19,12 @@ from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.arm_kernels import score_arms
-from mocapd.trackers.colour.fitting import Fitter, MotionState, View
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View
+from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats, Ints
 
 SIDES = ("left", "right")
+_LIBRARY = 2048
 _PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
 
@@ -150,3 +152,51 @@ def arm_library(size: int, side: str) -> Floats:
         angles = lower + (upper - lower) * u[:, span]
         out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
     return out
+
+
+class ArmSearch:
+    """Tries other poses of arms that the pictures do not confirm."""
+
+    def __init__(self, fitter: Fitter, params: Params) -> None:
+        self.fitter, self.params = fitter, params
+        self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
+        self._library = {side: arm_library(_LIBRARY, side) for side in SIDES}
+        u = qmc.Halton(6, scramble=False).random(_LIBRARY + 1)[1:]
+        near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
+        self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
+
+    def improve(
+        self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """A better fit, if another pose of a doubtful arm gives one, and the sides that changed.
+
+        turn: a running number; each turn tries another part of the low-discrepancy sets.
+        """
+        p = self.params
+        changed = []
+        for side, arm in self.arms.items():
+            if not doubtful(side, fit, p):
+                continue
+            tries = candidates(
+                self.fitter, fit.state, arm, views,
+                _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
+            )  # fmt: skip
+            best = fit
+            for state in best_arm_poses(self.fitter, fit.state, arm, views, tries, p.arm_fits):
+                other = self.fitter.fit(state, views, dt_s, 3, learn_shape)
+                if other.cost < best.cost - p.arm_gain:
+                    best = other
+            if best is not fit:
+                fit = best
+                changed.append(side)
+        return fit, tuple(changed)
+
+
+def doubtful(side: str, fit: Fit, params: Params) -> bool:
+    """Whether too little of an arm is confirmed by the pictures."""
+    return agreement(side, fit.visible, fit.matched, fit.unexplained) < params.doubtful_arm
+
+
+def _part(rows: Floats, turn: int, size: int) -> Floats:
+    first = (turn * size) % len(rows)
+    return rows[first : first + size]

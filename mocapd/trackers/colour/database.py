@@ -114,17 +114,18 @@ class PoseDatabase:
         body's size is taken for the person's.
         """
         weights = blend_weights(distances)
-        nearer = self.side_rad[indices].astype(float) / side_rad
-        return weights @ (
-            self.root_m[indices] * np.stack([1 + 0 * nearer, 1 + 0 * nearer, nearer], 1)
-        )
+        root_m = self.root_m[indices].astype(float)
+        root_m[:, 2] *= self.side_rad[indices] / side_rad  # twice the size, half as far away
+        blended: Floats = weights @ root_m
+        return blended
 
 
 def blend_weights(distances: NDArray[np.float64]) -> NDArray[np.float64]:
     """Weights (k,) that sum to 1."""
     width = max(float(distances.mean()), 1e-9)
     weights = np.exp(-((distances / width) ** 2))
-    return weights / weights.sum()
+    normalised_weights: NDArray[np.float64] = weights / weights.sum()
+    return normalised_weights
 
 
 def camera_from_view(camera: Camera, centre_px: Floats) -> Floats:

@@ -117,7 +117,7 @@ class Fitter:
                 "hips": (p.hips_sd_rad,) * 3, "spine": (p.spine_sd_rad,) * 3,
                 "leftShoulder": (p.collar_sd_rad,) * 3, "rightShoulder": (p.collar_sd_rad,) * 3,
                 "leftUpperArm": (p.arm_sd_rad,) * 3, "rightUpperArm": (p.arm_sd_rad,) * 3,
-            }, p.forearm_sd_rad),
+            }, p.arm_sd_rad),
         ])  # fmt: skip
         # where a joint likes to be when nothing is seen of it: spread about the T-pose
         self._rest_information = np.concatenate([

@@ -5,50 +5,64 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Params:
-    """Parameters of the full tracker; lengths in work pixels are after downsampling to `work_width_px`."""
+    """Parameters of the full tracker; work pixels are those of frames averaged down to `work_width_px`."""
 
-    # picture
-    work_width_px: int = 320  # frames are averaged down by a whole factor to about this width
-    margin_px: int = 28  # work px looked at around the predicted body
+    work_width_px: int = 320
+    margin_px: int = 28  # looked at around the predicted body [work px]
+    doubt_margin_px: int = 50  # the same while an arm is in doubt
 
-    # classification, paper section 5.2
-    threshold: float = 5.0  # T of the pose-assisted classifier [standard deviations]
+    # classification, paper section 5.2; thresholds are lower than the paper's 3 and 5 because the
+    # spread admits shade and noise: see docs/decisions/classification.md
+    threshold: float = 3.0  # T of the pose-assisted classifier [standard deviations]
     prior_weight: float = 6.0  # C = prior_weight / size of the predicted shirt [work px]
-    background_penalty: float = 2.5  # [standard deviations] added where the static background is seen
-    other_penalty: float = 2.5  # the same where the colour is rather seen on other things
+    first_threshold: float = 1.7  # T without a pose, whole picture
+    colour_sd_floor: float = 0.04  # sensor noise, compression and cloth [0..1]
+    shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
+    background_penalty: float = 1.5  # added where the static background is seen [standard deviations]
+    other_penalty: float = 1.5  # added where the colour is rather seen on other things
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
-    poor_classification: float = 0.4  # under this share of shirt pixels, other illuminations are tried
-    new_illumination: float = 0.5  # Frobenius distance at which a W joins the cache
+    poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried
+    sudden_loss: float = 0.85  # or under this share of what was usual in the last frames
     colour_memory_s: float = 0.7  # time constant of the learned colours
-    colour_sd_floor: float = 0.022  # sensor noise and cloth [0..1]
-    shading_sd: float = 0.10  # spread of brightness over the cloth, as a share of the colour
+    count_memory_s: float = 2.5  # time constant of the colour counts, shirt against others
 
     # alignment
     iterations: int = 5
     first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
-    row_weight: float = 0.06  # inverse variance of a pixel's residual, neighbours being correlated
+    row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
     soft_unknown: float = 0.5  # the same where the background was never seen
 
-    # motion: spread of the prediction after one frame, growing with the square root of time
+    # motion: spread of the prediction over 1/30 s, growing with the square root of time
     prediction_damping: float = 0.8
     root_sd_m: float = 0.10
     hips_sd_rad: float = 0.3
     spine_sd_rad: float = 0.2
     collar_sd_rad: float = 0.2
     arm_sd_rad: float = 0.8
-    forearm_sd_rad: float = 0.8
-
     limit_sd_rad: float = 0.08  # softness of the joint limits
+    fastest_rad_s: float = 15.0
+    fastest_m_s: float = 4.0
+
+    # arms in doubt
+    doubtful_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
+    arm_cloud: int = 128  # tries about the present pose
+    arm_library: int = 256  # tries over the whole range, another part each frame
+    arm_fits: int = 3  # of which so many are fitted
+    arm_gain: float = 5.0  # by how much the cost must fall to change over [disagreeing pixels]
 
     # body shape
-    shape_gain: float = 0.3  # share of a frame's information kept: neighbours in time are correlated
-    shape_learning_s: float = 6.0  # proportions settle over the first seconds
+    learn_shape: bool = True
+    shape_gain: float = 0.02  # share of a frame's information kept: errors last over frames
+    shape_learning_s: float = 6.0  # proportions settle over the first seconds of good tracking
+    shape_match: float = 0.7  # least agreement of a frame that teaches
 
     # decisions
-    live_match: float = 0.45  # share of rendered shirt pixels whose colour the picture has: tracked
-    accept_match: float = 0.62  # the same, to accept a new pose
-    accept_colours: int = 6  # colours that must be seen matched to accept a new pose
-    min_shirt_px: int = 150  # work px of matched shirt, all cameras together
-    coast_s: float = 0.25
+    live_match: float = 0.45  # share of rendered shirt pixels whose colour the picture has
+    accept_match: float = 0.58  # the same, to accept a new pose
+    accept_colours: int = 5  # colours that must be confirmed to accept a new pose
+    min_shirt_px: int = 120  # confirmed work px, all cameras together
+    found_evenness: float = 0.12  # of a window of ids (find_shirt), to ask the database at all
+    search_pause_s: float = 0.1  # between attempts that failed
+    neighbours: int = 6  # of the pose database, per camera

@@ -1,93 +1,309 @@
 """The colour tracker's step machine: predict, classify, fit, judge, learn; or look for the shirt anew."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from mocapd.body.model import N_POSE, BodyModel, build_model
+from mocapd.body.model import N_POSE, N_SHAPE, build_model, shape_of
 from mocapd.body.shape import skeleton_of
-from mocapd.trackers.colour import appearance as looks
-from mocapd.trackers.colour.appearance import Appearance
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View
+from mocapd.body.shirt import standard_shirt
+from mocapd.body.skeleton import NAMES, PARENTS, N_JOINTS
+from mocapd.clock import nanoseconds, seconds
+from mocapd.errors import ConfigError
+from mocapd.trackers.colour import detection
+from mocapd.trackers.colour.arms import SIDES, ArmSearch, doubtful
+from mocapd.trackers.colour.confidence import joint_confidence
+from mocapd.trackers.colour.database import PoseDatabase
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View, initial_information
 from mocapd.trackers.colour.params import Params
-from mocapd.trackers.colour.segmentation_kernels import (
-    agreement,
-    classify,
-    colour_distances,
-    colour_statistics,
-    learn_background,
-)
-from mocapd.types import Bytes, Camera, Floats, FrameSet
+from mocapd.trackers.colour.segmentation import Eye
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
+from mocapd.types import BodyState, Bytes, Floats, Frame, FrameSet, Ints, Pose, Rig, Skeleton, Track, Tracking
+from mocapd.vision.colour_model import ColourModel
+
+_TICK_S = 1.0 / 30.0
+_ARM_STEPS = {"left": slice(9, 18), "right": slice(18, 27)}  # of the pose parameters
+_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
 
-@dataclass(slots=True)
-class CameraMemory:
-    """What the tracker has learned of one camera: the only mutable record, owned by the tracker."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Known:
+    """What is carried from frame to frame while somebody is tracked."""
 
-    appearance: Appearance
-    references: list[Floats]  # reference illuminations, paper section 5.2
-    background_mean: NDArray[np.float32]
-    background_age: NDArray[np.uint8]
-    body_mask: NDArray[np.uint8]
-    shirt_count: NDArray[np.float32]
-    other_count: NDArray[np.float32]
-    phase: int = 0
+    t_ns: int
+    state: MotionState
+    fit: Fit | None
+    taught_s: float  # seconds of good tracking that the body shape was learned from
+    cameras: tuple[str, ...]
 
 
-class Segmenter:
-    """Work pictures and colour ids of one camera; the buffers live here."""
+class ColourTracker:
+    """One to N cameras see a person in the shirt; see `mocapd.trackers.base.Tracker` for the promises."""
 
-    def __init__(self, camera: Camera, factor: int, model_mean: Floats, model_cov: Floats, params: Params):
-        self.camera, self.factor, self.params = camera, factor, params
-        self.model_mean, self.model_cov = model_mean, model_cov
-        self.size = (camera.size_px[0] // factor, camera.size_px[1] // factor)
-        w, h = self.size
-        self._ids = np.empty(h * w, np.uint8)
-        self._softness = np.empty(h * w, np.uint8)
-        self._distance = np.empty(((h + 1) // 2 + 1) * ((w + 1) // 2 + 1) * 10, np.uint8)
+    name = "colour"
 
-    def memory(self, W: Floats) -> CameraMemory:
-        w, h = self.size
-        return CameraMemory(
-            looks.fresh(W), [W], np.zeros((h, w, 3), np.float32), np.zeros((h, w), np.uint8),
-            np.zeros((h, w), np.uint8), np.zeros(1 << 15, np.float32), np.zeros(1 << 15, np.float32),
-        )  # fmt: skip
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        colour_model: ColourModel,
+        white_balance: Mapping[str, Floats],
+        database: PoseDatabase,
+        params: Params | None = None,
+        tracking: TrackingStateParams | None = None,
+    ) -> None:
+        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent."""
+        self.params = p = params if params is not None else Params()
+        self.rig, self._database = rig, database
+        model = build_model(stature_m)
+        factors = [max(1, round(c.size_px[0] / p.work_width_px)) for c in rig.cameras]
+        # portrait and odd sizes: keep the work picture within the buffers
+        factors = [
+            max(f, -(-max(c.size_px) // 480)) for f, c in zip(factors, rig.cameras, strict=True)
+        ]
+        self._fitter = Fitter(model, rig.cameras, factors, p)
+        self._eyes = [
+            Eye(c, f, colour_model, np.asarray(white_balance.get(c.name, np.eye(3))), p)
+            for c, f in zip(rig.cameras, factors, strict=True)
+        ]
+        self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
+        self._arms = ArmSearch(self._fitter, p)
+        self._tracking = TrackingState(tracking)
+        self.probe: Callable[[str], None] = _silent
+        self.reset()
 
-    def work_picture(self, pixels: Bytes) -> Bytes:
-        """The frame averaged down by the camera's factor."""
-        if self.factor == 1:
-            return pixels
-        w, h = self.size
-        crop = pixels[: h * self.factor, : w * self.factor]
-        return cv2.resize(crop, (w, h), interpolation=cv2.INTER_AREA)
+    @property
+    def skeleton(self) -> Skeleton:
+        """The wearer's skeleton as estimated so far."""
+        factors = self._known.state.factors if self._known else self._factors
+        return skeleton_of(shape_of(self._fitter.model, factors))
 
-    def affine(self, appearance: Appearance) -> Floats:
+    def reset(self) -> None:
+        """Forget pose, proportions, light and background."""
+        for eye in self._eyes:
+            eye.reset()
+        self._tracking.reset()
+        self._known: _Known | None = None
+        self._factors: Floats = np.ones(N_SHAPE)
+        self._information: Floats = initial_information()
+        self._taught_s = 0.0
+        self._next_search_ns = 0
+        self._turn = 0
+
+    def step(self, frames: FrameSet) -> Track:
+        """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
+        self._turn += 1
+        present = self._look(frames)
+        self.probe("picture")
+        known = self._known
+        if known is not None and frames.t_ns - known.t_ns > nanoseconds(0.5):
+            known = None  # too old to predict from
+        views: list[View] = []
+        if known is not None and present:
+            known, views = self._follow(known, present, frames)
+        if known is None and present and frames.t_ns >= self._next_search_ns:
+            known, views = self._search(present, frames)
+            self.probe("detect")
+        evidence = known is not None and known.t_ns == frames.t_ns
+        tracking = self._tracking.step(frames.t_ns, evidence)
+        if tracking is Tracking.LOST and not evidence:
+            known = None
+        self._known = known
+        if known is not None:
+            self._factors, self._information = known.state.factors, known.state.information
+            self._taught_s = known.taught_s
+        self._learn(views, known if evidence else None, present, frames)
+        self.probe("background")
+        return self._track(tracking, frames, views)
+
+    # --- stages ---
+
+    def _look(self, frames: FrameSet) -> dict[int, float]:
+        """Take the pictures; per camera present, its own time after the set's [s]."""
+        present = {}
+        for name, frame in frames.frames.items():
+            if name in self._index:
+                i = self._index[name]
+                _check_size(frame, self.rig.cameras[i].size_px)
+                self._eyes[i].look(frame.pixels)
+                present[i] = seconds(frame.t_ns - frames.t_ns)
+        return dict(sorted(present.items()))
+
+    def _views(
+        self, state: MotionState, present: dict[int, float], doubted: tuple[str, ...], relight: bool
+    ) -> list[View]:
+        """Classify every picture with the state as prior."""
         p = self.params
-        return looks.whitening(
-            *looks.gaussians(appearance, self.model_mean, self.model_cov, p.colour_sd_floor, p.shading_sd)
+        margin = p.doubt_margin_px if doubted else p.margin_px
+        colours = _colours_of(doubted)
+        views = []
+        for i, dt_s in present.items():
+            roi = self._fitter.region(i, state, dt_s, margin)
+            if roi is None:
+                continue
+            predicted = self._fitter.render(i, state, dt_s, roi)
+            ids, softness = self._eyes[i].classify(predicted, roi, colours, relight)
+            views.append(View(i, roi, ids, softness, dt_s))
+        return views
+
+    def _follow(
+        self, known: _Known, present: dict[int, float], frames: FrameSet
+    ) -> tuple[_Known, list[View]]:
+        """One frame of tracking; a frame without evidence leaves `known` at its old time."""
+        p, fitter = self.params, self._fitter
+        last = known.state
+        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
+        root, local = fitter.moved(last, dt_s, p.prediction_damping)
+        predicted = replace(last, root_m=root, local_xyzw=local)
+        doubted = tuple(s for s in SIDES if known.fit is not None and doubtful(s, known.fit, p))
+        views = self._views(predicted, present, doubted, relight=True)
+        self.probe("classify")
+        if not views:
+            return known, views
+        learning = p.learn_shape and known.taught_s < p.shape_learning_s
+        fit = fitter.fit(predicted, views, dt_s, p.iterations, learning)
+        self.probe("fit")
+        fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
+        self.probe("arms")
+        match = fit.matched.sum() / max(fit.visible.sum(), 1.0)
+        # every second pixel was counted
+        if match < p.live_match or 2.0 * fit.matched.sum() < p.min_shirt_px:
+            return known, views
+        state, taught_s = fit.state, known.taught_s
+        if learning and match > p.shape_match:
+            gained = fitter.shape_information(fit.H) * (p.shape_gain * dt_s / _TICK_S)
+            state = replace(state, information=state.information + gained)
+            taught_s += dt_s
+        velocity = fitter.step_between(
+            (state.root_m, state.local_xyzw), (last.root_m, last.local_xyzw)
+        )
+        velocity /= dt_s
+        velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
+        velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
+        for side in switched:
+            velocity[_ARM_STEPS[side]] = 0.0  # it jumped, it did not move
+        names = tuple(self.rig.cameras[v.index].name for v in views)
+        return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
+
+    def _search(
+        self, present: dict[int, float], frames: FrameSet
+    ) -> tuple[_Known | None, list[View]]:
+        """Look for the wearer from nothing."""
+        p = self.params
+        self._next_search_ns = frames.t_ns + nanoseconds(p.search_pause_s)
+        sightings = [
+            s
+            for i in present
+            if (s := detection.sight(i, self._eyes[i], self._database, p)) is not None
+        ]
+        states = detection.hypotheses(
+            sightings, self.rig.cameras, self._database, self._factors, self._information
+        )
+        flat = [
+            View(
+                s.index, s.found.roi, s.found.ids,
+                np.full(s.found.ids.shape, int(255 * p.soft_unknown), np.uint8), present[s.index],
+            )
+            for s in sightings
+        ]  # fmt: skip
+        fit = detection.best_fit(self._fitter, states, flat)
+        if fit is None:
+            return None, []
+        for s in sightings:
+            self._eyes[s.index].relight(s.found.W)
+        # read the pictures again, now with the pose as prior, and fit once more
+        views = self._views(fit.state, present, (), relight=True)
+        if not views:
+            return None, []
+        fit = self._fitter.fit(fit.state, views, 0.1, p.iterations, learn_shape=False)
+        fit, _ = self._arms.improve(fit, views, 0.1, self._turn, learn_shape=False)
+        if not self._acceptable(fit):
+            return None, []
+        self._next_search_ns = frames.t_ns
+        names = tuple(self.rig.cameras[v.index].name for v in views)
+        return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), views
+
+    def _acceptable(self, fit: Fit) -> bool:
+        """Whether a pose found from nothing is the shirt: enough agrees, in enough colours."""
+        p = self.params
+        match = fit.matched.sum() / max(fit.visible.sum() + fit.unexplained.sum(), 1.0)
+        confirmed = (fit.matched >= 4.0) & (fit.matched >= 0.4 * fit.visible)
+        colours = np.unique(standard_shirt().colour_of_patch[np.flatnonzero(confirmed)])
+        return bool(
+            match >= p.accept_match
+            and np.count_nonzero(colours) >= p.accept_colours
+            and 2.0 * fit.matched.sum() >= p.min_shirt_px
         )
 
-    def distances(self, predicted: NDArray[np.uint8], limit: int, divisor: NDArray[np.int64]) -> NDArray[np.uint8]:
-        h, w = predicted.shape
-        h2, w2 = (h + 1) // 2, (w + 1) // 2
-        out = self._distance[: h2 * w2 * 10].reshape(h2, w2, 10)
-        colour_distances(predicted, limit, divisor, out)
-        return out
+    def _learn(
+        self, views: list[View], known: _Known | None, present: dict[int, float], frames: FrameSet
+    ) -> None:
+        """Follow light and background in every camera that has a frame."""
+        seen = {v.index: v for v in views}
+        for i in present:
+            eye = self._eyes[i]
+            view = seen.get(i)
+            if known is not None and view is not None and known.fit is not None:
+                final = self._fitter.render(i, known.state, view.dt_s, view.roi)
+                sure = known.fit.matched.sum() > 0.6 * known.fit.visible.sum()
+                eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
+                eye.mark_body(final, view.roi)
+            elif self._known is None:
+                eye.mark_body(None, (0, 0, 0, 0))
+        self.probe("learn")
+        for i in present:
+            self._eyes[i].learn_background()
 
-    def classify(
-        self, picture: Bytes, roi: Roi, distance: NDArray[np.uint8], prior: float, affine: Floats, memory: CameraMemory
-    ) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-        """ids and softness (h,w) over the region; the arrays are this object's buffers."""
-        p = self.params
-        h, w = roi[3] - roi[1], roi[2] - roi[0]
-        ids, softness = self._ids[: h * w].reshape(h, w), self._softness[: h * w].reshape(h, w)
-        classify(
-            picture, roi[0], roi[1], distance, affine, prior, p.threshold,
-            memory.background_mean, memory.background_age, p.background_tolerance, p.background_penalty,
-            memory.shirt_count, memory.other_count, p.other_penalty,
-            p.soft_unclassified, p.soft_unknown, ids, softness,
-        )  # fmt: skip
-        return ids, softness
+    # --- result ---
+
+    def _track(self, tracking: Tracking, frames: FrameSet, views: list[View]) -> Track:
+        known = self._known
+        if tracking is Tracking.LOST or known is None:
+            nobody = BodyState(
+                frames.t_ns, Tracking.LOST, self.name, None, None, np.zeros(N_JOINTS)
+            )
+            return Track(nobody)
+        state = known.state
+        away_s = seconds(frames.t_ns - known.t_ns)
+        if away_s > 0.0:  # coasting: it moves on for a moment, then stays
+            root, local = self._fitter.moved(state, min(away_s, 0.1), self.params.prediction_damping)
+            state = replace(state, root_m=root, local_xyzw=local)
+        joints, globals_ = self._fitter.joints(state)
+        confidence = joint_confidence(known.fit, len(known.cameras), away_s)
+        body = BodyState(
+            t_ns=frames.t_ns,
+            tracking=tracking,
+            tracker=self.name,
+            pose=Pose(joints[0], np.where(globals_[:, 3:] < 0, -globals_, globals_)),
+            joints_m=joints,
+            confidence=confidence,
+            cameras=known.cameras if away_s == 0.0 else (),
+        )
+        return Track(
+            body,
+            evidence={self.rig.cameras[v.index].name: v.ids.copy() for v in views},
+            roi_px={self.rig.cameras[v.index].name: v.roi for v in views},
+        )
+
+
+def _colours_of(sides: tuple[str, ...]) -> Ints:
+    """The colours (0..9) of the sleeves in doubt."""
+    if not sides:
+        return np.empty(0, np.int64)
+    colours = [standard_shirt().colour_of_patch[_PATCHES[side]] for side in sides]
+    return np.unique(np.concatenate(colours)).astype(np.int64) - 1
+
+
+def _check_size(frame: Frame, size_px: tuple[int, int]) -> None:
+    h, w = frame.pixels.shape[:2]
+    if (w, h) != size_px:
+        raise ConfigError(
+            f"delivers {w}x{h}, its calibration is for {size_px[0]}x{size_px[1]}",
+            f"camera {frame.camera!r}",
+            "set that size, or calibrate again",
+        )
+
+
+def _silent(stage: str) -> None:
+    """No stopwatch."""

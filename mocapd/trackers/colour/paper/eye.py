@@ -13,7 +13,11 @@ from mocapd.vision.background import BackgroundSubtractor
 from mocapd.vision.chrominance import HistogramSearch
 from mocapd.vision.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.vision.colour_model import ColourModel
-from mocapd.vision.white_balance import remember_illumination, solve_white_balance
+from mocapd.vision.white_balance import (
+    remember_illumination,
+    shade_precision,
+    solve_white_balance,
+)
 from mocapd.vision.whitening import fold
 
 
@@ -41,6 +45,7 @@ class Eye:
         self.camera, self.params = camera, params
         self.colours = colours.tolerating(params.shading_sigma, params.noise_sigma)
         self._first_W = W
+        self._precision = shade_precision(self.colours)
         self._search = HistogramSearch(camera.size_px, params.histogram)
         self._background = BackgroundSubtractor(params.background)
         self.reset()
@@ -73,7 +78,7 @@ class Eye:
                 if n > coloured:
                     self.W, ids, coloured = W, other, n
         map40, scale, centre = crop_id_map(ids)
-        if coloured < params.min_samples or scale == 0.0:
+        if coloured < params.min_samples or not map40.any():
             return None
         return Sight(
             ids, grid, scale * grid.stride * len(map40), map40, scale * grid.stride, grid.to_pixels(np.array(centre)),
@@ -92,20 +97,30 @@ class Eye:
         )  # fmt: skip
         return out
 
-    def learn(self, pixels: Bytes, grid: Grid, drawing: Drawing, colour: Bytes) -> None:
-        """Step 5: W for the next frame from the final pose, and a reference if the light is new."""
+    def learn(
+        self, pixels: Bytes, grid: Grid, drawing: Drawing, colour: Bytes, refined: Bytes
+    ) -> None:
+        """Step 5: W for the next frame from the final pose, and a reference if the light is new.
+
+        Only samples that step 3 classified as the pose shows them are learned from (`refined` (h,w)):
+        the rest, where the pose is off, would teach W the colours of neighbouring patches.
+        """
         params = self.params
         self._remember_body(grid, drawing)
         if not params.adaptive_white_balance:
             return
         ids = np.empty(drawing.triangle_at.shape, np.uint8)
         inner_ids(drawing.triangle_at, colour, ids)
+        ids[ids != refined] = 0
         sums, counts = np.empty((10, 3), np.int64), np.empty(10, np.int64)
         sum_colours(pixels, ids, grid.x0, grid.y0, grid.stride, sums, counts)
         if counts.sum() == 0:
             return
         means = sums / (255.0 * np.maximum(counts, 1))[:, None]
-        self.W = solve_white_balance(means, self.colours.mean, counts.astype(float), prior=self.W)
+        # hue is believed more than brightness, so that a patch in shade does not brighten the rest
+        self.W = solve_white_balance(
+            means, self.colours.mean, np.sqrt(counts), prior=self.W, precision=self._precision
+        )
         self.references = remember_illumination(self.references, self.W, params.new_illumination)
 
     def forget_body(self) -> None:

@@ -78,12 +78,16 @@ class PaperTracker:
                 sight = eye.look(frames.frames[name].pixels)
                 if sight is not None:
                     sights[name] = sight
-        body, agreement, seen = self._pose(frames, sights)
+        body, agreement, seen, refined = self._pose(frames, sights)
         if body is None or agreement < self.params.min_agreement:
             return Track(self._without(frames.t_ns), *self._evidence(sights))
         for name, drawing in seen.items():
             self._eyes[name].learn(
-                frames.frames[name].pixels, sights[name].grid, drawing, self._model.colour
+                frames.frames[name].pixels,
+                sights[name].grid,
+                drawing,
+                self._model.colour,
+                refined[name],
             )
         self._last, self._last_t_ns = body, frames.t_ns
         self._last_state = BodyState(
@@ -99,8 +103,9 @@ class PaperTracker:
 
     def _pose(
         self, frames: FrameSet, sights: Mapping[str, Sight]
-    ) -> tuple[Posture | None, float, dict[str, Drawing]]:
-        """Steps 2 to 4: the pose, the share of rendered samples classified alike, what each camera sees."""
+    ) -> tuple[Posture | None, float, dict[str, Drawing], dict[str, Bytes]]:
+        """Steps 2 to 4: the pose, the share of rendered samples classified alike, and per camera what it
+        sees of the pose and the ids of step 3."""
         params, model = self.params, self._model
         guesses = {}
         for name, sight in sights.items():
@@ -108,7 +113,7 @@ class PaperTracker:
             if len(found.indices) and found.distances[0] <= params.max_distance_px2:
                 guesses[name] = found
         if not guesses:
-            return None, 0.0, {}
+            return None, 0.0, {}, {}
         local = blended_local(self._database, list(guesses.values()))
         marks = [constraints(model, local, g, sights[name]) for name, g in guesses.items()]
         root_m, local[0] = place(list(guesses.values()), marks)
@@ -127,7 +132,7 @@ class PaperTracker:
         }
         alike = [_agreement(seen[name], model.colour, refined[name]) for name in guesses]
         rendered = sum(n for _, n in alike)
-        return body, sum(n for n, _ in alike) / max(rendered, 1), seen
+        return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
 
     def _target(
         self, eye: Eye, pixels: Bytes, sight: Sight, blended: Posture

@@ -1,0 +1,1 @@
+"""How good a tracker is: recorded captures are tracked and held against their ground truth."""

@@ -1,0 +1,119 @@
+"""Track one capture, every frame, and score the track."""
+
+import time
+from collections.abc import Callable, Container
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from mocapd.capture.folder import CaptureFolder, frame_sets, load_folder
+from mocapd.evaluate.recovery import recovery
+from mocapd.evaluate.score import Score, score
+from mocapd.evaluate.truth import Truth, load_truth
+from mocapd.offline import RecordedTrack, track_all
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import TrackerInputs
+from mocapd.tracker_setup import inputs_of_capture
+from mocapd.types import Bytes, FrameSet, Skeleton, Track
+
+BuildTracker = Callable[[TrackerInputs], Tracker]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evidence:
+    """What a tracker said of the colours of one frame: ids (h,w) over roi_px = x0, y0, x1, y1."""
+
+    ids: Bytes
+    roi_px: tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """A capture that is there, with its ground truth read."""
+
+    folder: CaptureFolder
+    truth: Truth
+
+    @property
+    def name(self) -> str:
+        return self.folder.path.name
+
+    @property
+    def frames(self) -> int:
+        return max(camera.frames for camera in self.folder.cameras)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaptureResult:
+    """One tracker on one capture. recovery_frames: None when the light is steady, infinite for never;
+    step_ms: median time of a frame set in the tracker alone; evidence: by (camera, frame), as asked."""
+
+    case: Case
+    track: RecordedTrack
+    score: Score
+    recovery_frames: float | None
+    step_ms: float
+    evidence: dict[tuple[str, int], Evidence]
+
+
+@dataclass(slots=True)
+class _Watched:
+    """A tracker with a stopwatch; keeps its evidence of the frames asked for."""
+
+    name: str
+    tracker: Tracker
+    keep: Container[int]
+    step_ms: list[float] = field(default_factory=list)
+    evidence: dict[tuple[str, int], Evidence] = field(default_factory=dict)
+
+    @property
+    def skeleton(self) -> Skeleton:
+        return self.tracker.skeleton
+
+    def reset(self) -> None:
+        self.tracker.reset()
+
+    def step(self, frames: FrameSet) -> Track:
+        start_s = time.perf_counter()
+        track = self.tracker.step(frames)
+        self.step_ms.append(1e3 * (time.perf_counter() - start_s))
+        for camera, ids in track.evidence.items():
+            frame = frames.frames[camera].seq
+            if frame in self.keep:
+                # the array may be a buffer of the tracker's
+                self.evidence[camera, frame] = Evidence(ids.copy(), track.roi_px[camera])
+        return track
+
+
+def open_case(capture: Path) -> Case:
+    """Check a capture and read its truth. Raises InputError or ConfigError naming the file."""
+    return Case(load_folder(capture), load_truth(capture))
+
+
+def evaluate(
+    case: Case,
+    build: BuildTracker,
+    *,
+    stature_m: float,
+    variant: str,
+    joints: str = "upper",
+    keep_evidence: Container[int] = (),
+    on_frame: Callable[[int], None] = lambda _: None,
+) -> CaptureResult:
+    """Track a capture from its first frame to its last, and score it.
+
+    `stature_m` is for captures that do not say. What the tracker is given is what `mocapd track`
+    gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
+    """
+    tracker = build(inputs_of_capture(case.folder, stature_m, variant))
+    watched = _Watched(tracker.name, tracker, keep_evidence)
+    track = track_all(watched, frame_sets(case.folder), on_frame)
+    return CaptureResult(
+        case=case,
+        track=track,
+        score=score(case.truth, track, joints),
+        recovery_frames=recovery(case.truth, track, joints),
+        step_ms=float(np.median(watched.step_ms)) if watched.step_ms else float("nan"),
+        evidence=watched.evidence,
+    )

@@ -1,0 +1,53 @@
+"""How long a change of the light throws the tracker off."""
+
+import math
+
+import numpy as np
+
+from mocapd.evaluate.score import joint_errors_m, match
+from mocapd.evaluate.truth import Truth
+from mocapd.offline import RecordedTrack
+from mocapd.types import Floats
+
+LIMIT_M = 0.06
+STEADY_FRAMES = 3
+# An error that rises later than this after the change has another cause, such as a fast throw.
+_BLAMED_FRAMES = 10
+
+
+def frame_errors_m(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Floats:
+    """RMS error (F,) [m] of the joints in each frame of the truth; infinite where nothing was tracked.
+
+    NaN outside the scored frames.
+    """
+    matches = match(truth, track, joints)
+    errors = np.full(len(truth.times_s), np.nan)
+    errors[matches.rows] = np.inf
+    squares = joint_errors_m(truth, track, matches, joints) ** 2
+    errors[matches.truth_rows] = np.sqrt(squares.mean(axis=1))
+    return errors
+
+
+def recovery_frames(errors_m: Floats) -> float:
+    """Frames until the error is back under 6 cm for good, of errors_m (N,) from the change on.
+
+    0 when it never left in the frames after the change that can be blamed on it, infinite when it
+    did not come back. Back means under 6 cm for three frames, or to the end of the recording.
+    """
+    over = ~(errors_m < LIMIT_M)
+    if not over[:_BLAMED_FRAMES].any():
+        return 0.0
+    left = int(over.argmax())
+    for frame in range(left + 1, len(over)):
+        if not over[frame : frame + STEADY_FRAMES].any():
+            return float(frame)
+    return math.inf
+
+
+def recovery(truth: Truth, track: RecordedTrack, joints: str = "upper") -> float | None:
+    """`recovery_frames` after the capture's change of light; None when its light is steady."""
+    if truth.light_change_s is None:
+        return None
+    errors = frame_errors_m(truth, track, joints)
+    after = np.isfinite(truth.times_s) & (truth.times_s >= truth.light_change_s)
+    return recovery_frames(errors[after & ~np.isnan(errors)])

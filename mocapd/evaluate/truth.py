@@ -1,0 +1,97 @@
+"""The ground truth of a capture. Only this package may read it: no tracker ever sees it."""
+
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.errors import InputError
+from mocapd.geometry.rig_file import read_json
+from mocapd.types import Bytes, Floats
+
+_FIELDS = ("times", "names", "joints", "visible")
+_RESTORE = "copy the capture again"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Truth:
+    """times_s (F,): middle of the exposure since the capture's start [s]; joints_m (F,J,3) [m, world],
+    NaN while nobody is there; visible (F,); light_change_s: when a lamp goes out, None if none does."""
+
+    names: tuple[str, ...]
+    times_s: Floats
+    joints_m: Floats
+    visible: NDArray[np.bool_]
+    light_change_s: float | None
+
+
+def load_truth(capture: Path) -> Truth:
+    """Read truth.npz, and info.json where there is one. Raises InputError naming the file."""
+    path = capture / "truth.npz"
+    if not path.is_file():
+        raise InputError(
+            "no ground truth, so there is nothing to score against",
+            str(path),
+            "choose a capture with a truth.npz, or use `mocapd track`",
+        )
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            missing = [field for field in _FIELDS if field not in data.files]
+            if missing:
+                raise InputError(f"lacks {', '.join(missing)}", str(path), _RESTORE)
+            truth = Truth(
+                names=tuple(str(name) for name in data["names"]),
+                times_s=data["times"].astype(float),
+                joints_m=data["joints"].astype(float),
+                visible=data["visible"].astype(bool),
+                light_change_s=_light_change_s(capture / "info.json"),
+            )
+    except (OSError, ValueError, zipfile.BadZipFile) as error:
+        raise InputError(f"cannot be read ({error})", str(path), _RESTORE) from None
+    frames, joints = len(truth.times_s), len(truth.names)
+    if truth.joints_m.shape != (frames, joints, 3) or truth.visible.shape != (frames,):
+        raise InputError("its arrays are not of one length", str(path), _RESTORE)
+    if not truth.visible.any():
+        raise InputError("nobody is visible in this capture", str(path), "choose another one")
+    return truth
+
+
+def labelled_frames(capture: Path, camera: str) -> tuple[int, ...]:
+    """The frames of a camera that have a picture of patch labels, in order."""
+    stems = (path.stem for path in (capture / "labels").glob(f"{camera}_*.png"))
+    numbers = (stem.removeprefix(f"{camera}_") for stem in stems)
+    return tuple(sorted(int(number) for number in numbers if number.isdigit()))
+
+
+def read_label(capture: Path, camera: str, frame: int) -> Bytes:
+    """Patch labels (h,w): 0 not shirt, 1..20 the patch at mid exposure. Raises InputError."""
+    path = capture / "labels" / f"{camera}_{frame:06d}.png"
+    try:
+        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", str(path), _RESTORE) from None
+    label = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE) if data.size else None
+    if label is None:
+        raise InputError("is damaged or no picture", str(path), _RESTORE)
+    return np.asarray(label, dtype=np.uint8)
+
+
+def _light_change_s(path: Path) -> float | None:
+    """`light_event.lamp_off_s` of a recorded capture, or the first lamp that the simulator dims."""
+    if not path.is_file():
+        return None
+    info = read_json(path)
+    event: Any = info.get("light_event")
+    if event:
+        return float(event["lamp_off_s"])
+    dimmed = [
+        float(t_s)
+        for events in info.get("light_events", {}).values()
+        for (t_s, level), (_, before) in zip(events, [(0.0, 1.0), *events], strict=False)
+        if level < before
+    ]
+    return min(dimmed, default=None)

@@ -1,0 +1,97 @@
+"""Find the wearer without a previous pose: locate the colours, ask the pose database, fit, judge."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.model import N_POSE
+from mocapd.geometry import rotations
+from mocapd.geometry.cameras import centre, normalised, rays
+from mocapd.geometry.triangulation import triangulate
+from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View
+from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_id_map
+from mocapd.trackers.colour.params import Params
+from mocapd.trackers.colour.segmentation import Eye, Found
+from mocapd.types import Camera, Floats
+
+WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales
+_APART_M = 0.5  # rays to the two crops that miss each other by more mean two things
+_LOOSE_S = 0.4  # a hypothesis is held as loosely as a prediction over this time
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighting:
+    """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
+
+    index: int  # of the camera
+    found: Found
+    centre_px: Floats  # full resolution
+    side_px: float
+    poses: np.ndarray
+    distances: Floats
+
+
+def sight(index: int, eye: Eye, database: PoseDatabase, params: Params) -> Sighting | None:
+    """Look for the shirt in one camera's present picture."""
+    found = eye.find(WINDOWS, lambda evenness: evenness >= params.found_evenness)
+    if found is None:
+        return None
+    id_map, scale, (cx, cy) = crop_id_map(found.ids)
+    poses, distances = database.nearest(id_map, params.neighbours)
+    if len(poses) == 0:
+        return None
+    work = np.array([cx + found.roi[0], cy + found.roi[1]])
+    return Sighting(
+        index, found, (work + 0.5) * eye.factor - 0.5, scale * SIZE * eye.factor, poses, distances
+    )
+
+
+def hypotheses(
+    sightings: Sequence[Sighting],
+    cameras: Sequence[Camera],
+    database: PoseDatabase,
+    factors: Floats,
+    information: Floats,
+) -> list[MotionState]:
+    """A state per neighbour of every sighting, placed by triangulation where two cameras agree."""
+    place: Floats | None = None
+    if len(sightings) > 1:
+        seen = [cameras[s.index] for s in sightings]
+        xy = np.array([normalised(c, s.centre_px) for c, s in zip(seen, sightings, strict=True)])
+        point, residual_m = triangulate(seen, xy)
+        if np.isfinite(point).all() and np.max(residual_m) < _APART_M:
+            place = point
+    out = []
+    for s in sightings:
+        camera = cameras[s.index]
+        view = camera_from_view(camera, s.centre_px)
+        to_world = rotations.from_matrix(camera.R.T)
+        for i in range(len(s.poses)):
+            one, distance = s.poses[i : i + 1], s.distances[i : i + 1]
+            side_rad = s.side_px / camera.K[0, 0]
+            in_view = database.root_in_view(one, distance, side_rad)
+            if place is not None:
+                _, ray = rays(camera, s.centre_px)
+                depth = float((place - centre(camera)) @ ray)
+                in_view = np.array([in_view[0], in_view[1], 0.0]) * depth / max(in_view[2], 0.1)
+                in_view[2] = depth
+            root = camera.R.T @ (rotations.rotate(view, in_view) - camera.t_m)
+            local = database.local_xyzw[one[0]].astype(float)
+            turned = rotations.multiply(view, database.camera_from_root_xyzw[one[0]].astype(float))
+            local[0] = rotations.canonical(rotations.multiply(to_world, turned))
+            out.append(MotionState(root, local, np.zeros(N_POSE), factors, information))
+    return out
+
+
+def best_fit(
+    fitter: Fitter, states: Sequence[MotionState], views: Sequence[View]
+) -> Fit | None:
+    """Fit all hypotheses a little, the best three more; the one of least cost, None when there is none."""
+    if not states:
+        return None
+    first = [fitter.fit(s, views, _LOOSE_S, 2, learn_shape=False) for s in states]
+    first.sort(key=lambda fit: fit.cost)
+    more = [fitter.fit(f.state, views, _LOOSE_S, 4, learn_shape=False) for f in first[:3]]
+    return min(more, key=lambda fit: fit.cost)
