@@ -44,8 +44,9 @@ class Frame:
 class FrameSet:
     """Frames of several cameras that belong together; a camera that has none is absent.
 
-    `t_ns` is the instant the pose is asked for: the time of the rig's first camera that is
-    present. `spread_ns` is the largest distance of a frame's own time from `t_ns`.
+    `t_ns` is the instant the pose is asked for: of live cameras the time of the newest frame, of a
+    recorded folder that of the rig's first camera that is present. `spread_ns` is the largest
+    distance of a frame's own time from `t_ns`.
     """
 
     t_ns: int

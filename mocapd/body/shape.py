@@ -22,7 +22,7 @@ N_FACTORS = len(FACTORS)
 # Spread of each factor over adults of one stature: lengths from the spread of the joint centres in
 # calib/body_proportions.json; breadths, depths and girths from ANSUR II (2012) coefficients of
 # variation at fixed stature, which clothes widen.
-FACTOR_SD = np.array([0.03, 0.06, 0.05, 0.06, 0.12, 0.14, 0.18])
+FACTOR_SD = np.array([0.04, 0.05, 0.02, 0.07, 0.12, 0.14, 0.18])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.assets import asset_path
 from mocapd.geometry import rotations
-from mocapd.types import Floats, Pose, Skeleton
+from mocapd.types import Floats, Ints, Pose, Skeleton
 
 NAMES = (
     "hips", "spine", "chest", "upperChest", "neck", "head",
@@ -36,7 +36,8 @@ def mean_proportions() -> Floats:
     joints = json.loads(asset_path("body_proportions.json").read_text())["joints"]
     rest = np.array([joints[name]["mean"] for name in NAMES])
     mirror = np.array([INDEX[_other_side(name)] for name in NAMES])
-    return 0.5 * (rest + rest[mirror] * np.array([-1.0, 1.0, 1.0]))
+    symmetric: Floats = 0.5 * (rest + rest[mirror] * np.array([-1.0, 1.0, 1.0]))
+    return symmetric
 
 
 def _other_side(name: str) -> str:
@@ -52,7 +53,29 @@ def standard_skeleton(stature_m: float) -> Skeleton:
 
 def rest_pose(skeleton: Skeleton) -> Pose:
     """The T-pose, standing at the origin."""
-    return Pose(skeleton.rest_m[0].copy(), np.tile(rotations.IDENTITY_XYZW, (len(skeleton.names), 1)))
+    return Pose(
+        skeleton.rest_m[0].copy(), np.tile(rotations.IDENTITY_XYZW, (len(skeleton.names), 1))
+    )
+
+
+@cache
+def _ancestry(parents: bytes) -> Floats:
+    """(J,J): 1 where the column's joint is the row's joint or above it; the root's column is 0."""
+    above = np.eye(len(parents) // 8)
+    for j, parent in enumerate(np.frombuffer(parents, dtype=np.int64)[1:], start=1):
+        above[j] += above[parent]
+    above[:, 0] = 0.0
+    return above
+
+
+@cache
+def _generations(parents: bytes) -> tuple[tuple[Ints, Ints], ...]:
+    """Joints and their parents, by distance from the root: children, grandchildren, ..."""
+    of = np.frombuffer(parents, dtype=np.int64)
+    out, last = [], np.array([0])
+    while len(last := np.flatnonzero(np.isin(of, last))):
+        out.append((last, of[last]))
+    return tuple(out)
 
 
 def joint_positions(skeleton: Skeleton, pose: Pose) -> Floats:
@@ -60,10 +83,8 @@ def joint_positions(skeleton: Skeleton, pose: Pose) -> Floats:
     parents = skeleton.parents
     offsets = skeleton.rest_m - skeleton.rest_m[parents]
     turned = rotations.rotate(pose.quats_xyzw[parents], offsets)
-    out = np.empty_like(skeleton.rest_m)
-    out[0] = pose.root_m
-    for j in range(1, len(parents)):
-        out[j] = out[parents[j]] + turned[j]
+    out: Floats = _ancestry(parents.tobytes()) @ turned
+    out += pose.root_m
     return out
 
 
@@ -77,6 +98,6 @@ def local_from_global(skeleton: Skeleton, global_xyzw: Floats) -> Floats:
 def global_from_local(skeleton: Skeleton, local_xyzw: Floats) -> Floats:
     """Global rotations (J,4) from those relative to the parent bone."""
     out = np.array(local_xyzw, dtype=float)
-    for j in range(1, len(skeleton.parents)):
-        out[j] = rotations.multiply(out[skeleton.parents[j]], local_xyzw[j])
+    for joints, parents in _generations(skeleton.parents.tobytes()):
+        out[joints] = rotations.multiply(out[parents], out[joints])
     return rotations.canonical(out)

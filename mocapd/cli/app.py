@@ -3,6 +3,7 @@
 import typer
 
 from mocapd.cli import cameras, check_config, demo, run, track, version, watch
+from mocapd.cli import eval as evaluation
 
 app = typer.Typer(
     name="mocapd",
@@ -13,5 +14,5 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, demo, track, watch, cameras, check_config, version):
+for command in (run, demo, track, evaluation, watch, cameras, check_config, version):
     command.add_to(app)

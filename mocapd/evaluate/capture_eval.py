@@ -12,9 +12,9 @@ from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import Score, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.offline import RecordedTrack, track_all
+from mocapd.tracker_setup import inputs_of_capture
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TrackerInputs
-from mocapd.tracker_setup import inputs_of_capture
 from mocapd.types import Bytes, FrameSet, Skeleton, Track
 
 BuildTracker = Callable[[TrackerInputs], Tracker]

@@ -21,8 +21,7 @@ def proportions(model: BodyModel, joints_m: Floats, global_xyzw: Floats) -> Floa
     d_bones = (model.d_rest - model.d_rest[:, parents])[:, 1:]
     # the solution of least norm leaves alone what has no effect
     step = np.linalg.lstsq(d_bones.reshape(N_SHAPE, -1).T, (bones - mean).ravel(), rcond=1e-6)[0]
-    factors: Floats = 1.0 + step
-    return factors
+    return np.asarray(1.0 + step, dtype=np.float64)
 
 
 def states(fitter: Fitter, track: RecordedTrack) -> list[MotionState]:

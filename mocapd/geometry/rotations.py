@@ -1,75 +1,99 @@
-"""Rotations as quaternions xyzw with w >= 0, rotation vectors and matrices; all batched over leading axes."""
+"""Rotations as quaternions xyzw with w >= 0, rotation vectors and matrices; all batched over leading axes.
+
+Written for the twenty-two bones of one body, thirty times a second: there a call of numpy costs more
+than its arithmetic, so products are one outer product and one multiplication by a table of signs.
+"""
 
 import numpy as np
 
 from mocapd.types import Floats
 
 IDENTITY_XYZW = np.array([0.0, 0.0, 0.0, 1.0])
+# Added to squared lengths: no zero to divide by. sin(x)/x and atan(x)/x of so small a length are 1 to
+# rounding, whatever it is; and the squares of lengths under 1e-162 would be 0 anyway.
+_TINY = 1e-300
+_CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
+
+
+def _table(terms: str) -> Floats:
+    """(n*n, len(terms)): which products a_i b_j make up each component, from `+ax -zy ...` by rows."""
+    rows = [row.split() for row in terms.strip().splitlines()]
+    n = 1 + max("xyzw".index(letter) for row in rows for term in row for letter in term[1:])
+    table = np.zeros((n, n, len(rows)))
+    for k, row in enumerate(rows):
+        for term in row:
+            i, j = "xyzw".index(term[1]), "xyzw".index(term[2])
+            table[i, j, k] = 1.0 if term[0] == "+" else -1.0
+    return table.reshape(n * n, len(rows))
+
+
+_HAMILTON = _table(
+    """
+    +wx +xw +yz -zy
+    +wy -xz +yw +zx
+    +wz +xy -yx +zw
+    +ww -xx -yy -zz
+    """
+)
+_CROSS = _table(
+    """
+    +yz -zy
+    +zx -xz
+    +xy -yx
+    """
+)
+_TWICE_CROSS = 2.0 * _CROSS
+
+
+def _bilinear(a: Floats, b: Floats, table: Floats) -> Floats:
+    outer = np.asarray(a)[..., :, None] * np.asarray(b)[..., None, :]
+    product: Floats = outer.reshape(*outer.shape[:-2], len(table)) @ table
+    return product
 
 
 def canonical(q_xyzw: Floats) -> Floats:
     """The same rotations (...,4) with unit norm and w >= 0."""
-    q: Floats = q_xyzw / np.linalg.norm(q_xyzw, axis=-1, keepdims=True)
-    return q * np.where(q[..., 3:] < 0.0, -1.0, 1.0)
+    norm = np.sqrt(np.vecdot(q_xyzw, q_xyzw))[..., None]
+    q: Floats = q_xyzw / np.copysign(norm, q_xyzw[..., 3:])
+    return q
 
 
 def multiply(a_xyzw: Floats, b_xyzw: Floats) -> Floats:
     """Hamilton product (...,4): first b, then a."""
-    ax, ay, az, aw = np.moveaxis(np.asarray(a_xyzw), -1, 0)
-    bx, by, bz, bw = np.moveaxis(np.asarray(b_xyzw), -1, 0)
-    return np.stack(
-        [
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-            aw * bw - ax * bx - ay * by - az * bz,
-        ],
-        axis=-1,
-    )
+    return _bilinear(a_xyzw, b_xyzw, _HAMILTON)
 
 
 def inverse(q_xyzw: Floats) -> Floats:
     """Conjugate of unit quaternions (...,4)."""
-    conjugate: Floats = np.asarray(q_xyzw) * np.array([-1.0, -1.0, -1.0, 1.0])
+    conjugate: Floats = q_xyzw * _CONJUGATE
     return conjugate
 
 
 def rotate(q_xyzw: Floats, v: Floats) -> Floats:
     """Vectors v (...,3) turned by q (...,4)."""
-    u, w = q_xyzw[..., :3], q_xyzw[..., 3:]
-    t = 2.0 * _cross(u, v)
-    return v + w * t + _cross(u, t)
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """np.cross for (...,3), without its overhead, which is several times this at 22 bones."""
-    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
-    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    u = q_xyzw[..., :3]
+    t = _bilinear(u, v, _TWICE_CROSS)
+    return v + q_xyzw[..., 3:] * t + _bilinear(u, t, _CROSS)
 
 
 def exp(rotvec_rad: Floats) -> Floats:
     """Rotation vectors (...,3) [rad] to quaternions (...,4); exact to rounding near zero."""
     r = np.asarray(rotvec_rad, dtype=float)
-    angle = np.linalg.norm(r, axis=-1, keepdims=True)
+    angle = np.sqrt(np.vecdot(r, r) + _TINY)[..., None]
     half = 0.5 * angle
-    # sin(a/2)/a by its series where the quotient would lose digits
-    small = angle < 1e-4
-    scale = np.where(small, 0.5 - angle**2 / 48.0, np.sin(half) / np.where(small, 1.0, angle))
-    return canonical(np.concatenate([r * scale, np.cos(half)], axis=-1))
+    q = np.empty((*r.shape[:-1], 4))
+    np.multiply(r, np.sin(half) / angle, out=q[..., :3])
+    np.cos(half, out=q[..., 3:])
+    return canonical(q)
 
 
 def log(q_xyzw: Floats) -> Floats:
     """Quaternions (...,4) to rotation vectors (...,3) [rad], angle in [0, pi]."""
     q = canonical(q_xyzw)
-    s = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
-    small = s < 1e-8  # below, the quotient is 2/w to rounding, and s may have underflowed
-    scale = np.where(
-        small,
-        2.0 / q[..., 3:].clip(1e-9),
-        2.0 * np.arctan2(s, q[..., 3:]) / np.where(small, 1.0, s),
-    )
-    return q[..., :3] * scale
+    v = q[..., :3]
+    s = np.sqrt(np.vecdot(v, v) + _TINY)[..., None]
+    rotvec_rad: Floats = v * (2.0 * np.arctan2(s, q[..., 3:]) / s)
+    return rotvec_rad
 
 
 def to_matrix(q_xyzw: Floats) -> Floats:

@@ -1,8 +1,11 @@
 """From the tracker's body to the frame that is sent; on the latency path."""
 
+from collections.abc import Iterator
+from typing import Any
+
 from mocapd.body.skeleton import local_from_global
 from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame
-from mocapd.types import BodyState, Skeleton, Tracking
+from mocapd.types import BodyState, Floats, Skeleton, Tracking
 
 
 def skeleton_frame(
@@ -38,16 +41,17 @@ def _joints(body: BodyState, skeleton: Skeleton) -> dict[str, Joint]:
     if body.tracking is Tracking.LOST or body.pose is None or body.joints_m is None:
         return {}
     local_xyzw = local_from_global(skeleton, body.pose.quats_xyzw)
-    # plain floats: msgspec encodes no numpy scalars, and tolist() makes them all in one go
-    columns = zip(
-        skeleton.names,
-        body.joints_m.tolist(),
-        body.pose.quats_xyzw.tolist(),
-        local_xyzw.tolist(),
+    joints = map(
+        Joint,
+        _rows(body.joints_m, 3),
+        _rows(body.pose.quats_xyzw, 4),
+        _rows(local_xyzw, 4),
         body.confidence.tolist(),
-        strict=True,
     )
-    return {
-        name: Joint(tuple(p_m), tuple(r_xyzw), tuple(l_xyzw), c)
-        for name, p_m, r_xyzw, l_xyzw, c in columns
-    }
+    return dict(zip(skeleton.names, joints, strict=True))
+
+
+def _rows(array: Floats, n: int) -> Iterator[tuple[Any, ...]]:
+    """The rows (J,n) as tuples of plain floats: msgspec encodes no numpy scalars."""
+    numbers = iter(array.ravel().tolist())
+    return zip(*[numbers] * n, strict=True)

@@ -11,6 +11,10 @@ when the next frame of each should arrive. A set goes out the moment its last ex
 arrives, or without the missing one at that frame's expected arrival plus `slack_periods`. A camera
 that failed `patience` sets in a row is not waited for until it returns.
 
+The time. A set's time is that of its newest frame: the pose is asked for at the freshest instant, and
+each frame carries its own. Sets follow each other by their anchors. Among cameras of different rates
+the newest frame of a set may be older than that of the set before; such a set is timed just after it.
+
 Two clocks. Frames carry capture times; waiting happens on arrival times, `now_ns`. Live callers
 give both; for recordings fed in order of capture `now_ns` is left out and is the newest capture.
 """
@@ -81,7 +85,8 @@ class Bundler:
             raise ConfigError("no camera is named", "bundler", "give at least one camera")
         self._now_ns: int | None = None
         self._deadline_ns: int | None = None
-        self._last_ns = 0  # of the last set: its time, its members' names, its anchor
+        self._last_set_ns: int | None = None
+        self._last_ns = 0  # of the last set: its anchor's time, its members' names, its anchor
         self._last_names: frozenset[str] = frozenset()
         self._last_anchor: CameraQueue | None = None
 
@@ -222,9 +227,13 @@ class Bundler:
                 camera.missed += 1
             camera.offset_ns = 0
         frames = {camera.name: camera.use() for camera in members}
-        spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
         self._last_ns, self._last_names, self._last_anchor = t_ns, frozenset(frames), anchor
-        return FrameSet(t_ns, frames, spread_ns)
+        set_ns = max(frame.t_ns for frame in frames.values())
+        if self._last_set_ns is not None:
+            set_ns = max(set_ns, self._last_set_ns + 1)
+        self._last_set_ns = set_ns
+        oldest_ns = min(frame.t_ns for frame in frames.values())
+        return FrameSet(set_ns, frames, set_ns - oldest_ns)
 
 
 def bundle_recorded(

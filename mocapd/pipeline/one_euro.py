@@ -6,12 +6,15 @@ speed of the signal: still means smooth, fast means prompt. dt is in seconds and
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.types import Floats
+
+Cutoff = TypeVar("Cutoff", float, Floats)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +37,9 @@ class OneEuroParams:
             raise ConfigError(f"{self.beta}", "smoothing.beta", "give 0 or more")
 
 
-def smoothing_factor(cutoff_hz: float | Floats, dt_s: float) -> Floats:
+def smoothing_factor(cutoff_hz: Cutoff, dt_s: float) -> Cutoff:
     """The weight of the newest sample, alpha = 1 / (1 + tau/dt), tau = 1/(2 pi cutoff) (eqs. 2, 3)."""
-    r = 2.0 * np.pi * np.asarray(cutoff_hz, dtype=float) * dt_s
+    r = (2.0 * math.pi * dt_s) * cutoff_hz
     return r / (1.0 + r)
 
 
@@ -95,5 +98,5 @@ class RotationOneEuro:
 
 
 def _adapted(params: OneEuroParams, velocity: Floats, dt_s: float) -> Floats:
-    speed = np.linalg.norm(velocity, axis=-1, keepdims=True)
+    speed = np.sqrt(np.vecdot(velocity, velocity))[..., None]
     return smoothing_factor(params.min_cutoff_hz + params.beta * speed, dt_s)

@@ -104,8 +104,9 @@ def transported(appearance: Appearance, observed: Floats, model_mean: Floats) ->
     A = np.concatenate([weight * known[seen], ridge * np.eye(3)])
     b = np.concatenate([weight * now, ridge * gain * np.eye(3)])
     M = np.linalg.lstsq(A, b, rcond=None)[0].T
-    if np.linalg.det(M) <= 1e-6:
-        return appearance
+    stretch = np.linalg.svd(M, compute_uv=False)
+    if np.linalg.det(M) <= 0.0 or stretch[0] > 5.0 or stretch[-1] < 0.1:
+        return appearance  # no lamp does that: the pose is wrong, not the light
     W = appearance.W @ np.linalg.inv(M[::-1, ::-1])
     sums = appearance.sums.copy()
     sums[:, 1:4] = sums[:, 1:4] @ M.T

@@ -22,7 +22,8 @@ class Params:
     other_penalty: float = 1.5  # added where the colour is rather seen on other things
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
     poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried
-    sudden_loss: float = 0.85  # or under this share of what was usual in the last frames
+    sudden_loss: float = 0.93  # or under this share of what was usual in the last seconds
+    usual_s: float = 2.0  # time constant of what is usual
     colour_memory_s: float = 0.7  # time constant of the learned colours
     count_memory_s: float = 2.5  # time constant of the colour counts, shirt against others
 
@@ -60,9 +61,13 @@ class Params:
 
     # decisions
     live_match: float = 0.45  # share of rendered shirt pixels whose colour the picture has
+    sure_match: float = 0.6  # the same, to learn from a frame what is shirt and what is not
     accept_match: float = 0.58  # the same, to accept a new pose
     accept_colours: int = 5  # colours that must be confirmed to accept a new pose
     min_shirt_px: int = 120  # confirmed work px, all cameras together
     found_evenness: float = 0.12  # of a window of ids (find_shirt), to ask the database at all
+    doubt_match: float = 0.6  # under this agreement the shirt is looked for anew beside tracking
+    doubt_pause_s: float = 0.4  # between such looks
+    doubt_gain: float = 0.05  # by how much the agreement must be better to change over
     search_pause_s: float = 0.1  # between attempts that failed
     neighbours: int = 6  # of the pose database, per camera

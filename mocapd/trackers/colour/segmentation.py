@@ -30,6 +30,8 @@ from mocapd.vision.white_balance import remember_illumination
 Ids = NDArray[np.uint8]
 _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _NO_DOUBT = np.ones(10, np.int64)
+_TICK_S = 1.0 / 30.0
+_GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _CLEAR_PX = 4  # coarse px from the shirt at which a colour counts as other
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
@@ -130,7 +132,8 @@ class Eye:
             return ids, softness
         inside = np.count_nonzero(ids[predicted > 0]) / rendered
         usual = memory.usual if memory.usual > 0 else inside
-        memory.usual = 0.9 * usual + 0.1 * inside
+        keep = float(np.exp(-_TICK_S / p.usual_s))
+        memory.usual = keep * usual + (1.0 - keep) * inside
         if may_relight and (inside < p.poor_classification or inside < p.sudden_loss * usual):
             best = self._relit(predicted, ids, roi, distance, prior)
             if best is not memory.appearance:
@@ -187,8 +190,8 @@ class Eye:
         learned = looks.learn(memory.appearance, sums, dt_s, p.colour_memory_s)
         W = looks.white_balance(learned, self.model.mean)
         memory.appearance = Appearance(W, learned.sums)
-        memory.references = remember_illumination(memory.references, W)
         if sure:
+            memory.references = remember_illumination(memory.references, W)
             distance = self._distances(final, 12, _NO_DOUBT)
             count_colours(
                 self.picture, roi[0], roi[1], distance, final, ids, softness, _CLEAR_PX,
@@ -227,7 +230,8 @@ class Eye:
         model = self.model.tolerating(p.shading_sd, p.colour_sd_floor)
         w, h = self.size
         best: Found | None = None
-        for W in (*memory.references, memory.appearance.W):
+        lights = [W * gain for gain in _GAINS for W in memory.references]
+        for W in lights:
             self._tables.refill(model, W, p.first_threshold, p.first_threshold)
             ids = np.empty((h, w), np.uint8)
             classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
@@ -246,6 +250,5 @@ class Eye:
 
     def relight(self, W: Floats) -> None:
         """Read the pictures in this light from now on."""
-        if W is not self.memory.appearance.W:
-            self.memory.appearance = looks.fresh(W)
+        self.memory.appearance = looks.fresh(W)
         self.memory.usual = 0.0

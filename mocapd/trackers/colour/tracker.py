@@ -102,8 +102,8 @@ class ColourTracker:
         views: list[View] = []
         if known is not None and present:
             known, views = self._follow(known, present, frames)
-        if known is None and present and frames.t_ns >= self._next_search_ns:
-            known, views = self._search(present, frames)
+        if present and frames.t_ns >= self._next_search_ns and self._doubtful(known, frames.t_ns):
+            known, views = self._search(known, views, present, frames)
             self.probe("detect")
         evidence = known is not None and known.t_ns == frames.t_ns
         tracking = self._tracking.step(frames.t_ns, evidence)
@@ -166,7 +166,7 @@ class ColourTracker:
         self.probe("fit")
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
         self.probe("arms")
-        match = fit.matched.sum() / max(fit.visible.sum(), 1.0)
+        match = _match(fit)
         # every second pixel was counted
         if match < p.live_match or 2.0 * fit.matched.sum() < p.min_shirt_px:
             return known, views
@@ -186,12 +186,42 @@ class ColourTracker:
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
+    def _doubtful(self, known: _Known | None, t_ns: int) -> bool:
+        """Whether to look for the wearer anew: nobody is known, or what is known agrees badly."""
+        if known is None or known.fit is None or known.t_ns != t_ns:
+            return True
+        return _match(known.fit) < self.params.doubt_match
+
     def _search(
-        self, present: dict[int, float], frames: FrameSet
+        self,
+        known: _Known | None,
+        views: list[View],
+        present: dict[int, float],
+        frames: FrameSet,
     ) -> tuple[_Known | None, list[View]]:
-        """Look for the wearer from nothing."""
+        """Look for the wearer from nothing; what is already known stands unless something better is found."""
         p = self.params
-        self._next_search_ns = frames.t_ns + nanoseconds(p.search_pause_s)
+        pause_s = p.search_pause_s if known is None else p.doubt_pause_s
+        self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
+        before = [eye.memory.appearance for eye in self._eyes]
+        views = [replace(v, ids=v.ids.copy(), softness=v.softness.copy()) for v in views]
+        found = self._found(present, frames)
+        if found is not None:
+            fit, seen = found
+            current = known is not None and known.t_ns == frames.t_ns and known.fit is not None
+            if not current or _match(fit) > _match(known.fit) + p.doubt_gain:
+                self._next_search_ns = frames.t_ns
+                names = tuple(self.rig.cameras[v.index].name for v in seen)
+                return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen
+        for eye, appearance in zip(self._eyes, before, strict=True):
+            eye.memory.appearance = appearance
+        return known, views
+
+    def _found(
+        self, present: dict[int, float], frames: FrameSet
+    ) -> tuple[Fit, list[View]] | None:
+        """An acceptable fit from the pose database, and the views it was fitted to."""
+        p = self.params
         sightings = [
             s
             for i in present
@@ -209,20 +239,16 @@ class ColourTracker:
         ]  # fmt: skip
         fit = detection.best_fit(self._fitter, states, flat)
         if fit is None:
-            return None, []
+            return None
         for s in sightings:
             self._eyes[s.index].relight(s.found.W)
         # read the pictures again, now with the pose as prior, and fit once more
         views = self._views(fit.state, present, (), relight=True)
         if not views:
-            return None, []
+            return None
         fit = self._fitter.fit(fit.state, views, 0.1, p.iterations, learn_shape=False)
         fit, _ = self._arms.improve(fit, views, 0.1, self._turn, learn_shape=False)
-        if not self._acceptable(fit):
-            return None, []
-        self._next_search_ns = frames.t_ns
-        names = tuple(self.rig.cameras[v.index].name for v in views)
-        return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), views
+        return (fit, views) if self._acceptable(fit) else None
 
     def _acceptable(self, fit: Fit) -> bool:
         """Whether a pose found from nothing is the shirt: enough agrees, in enough colours."""
@@ -246,7 +272,7 @@ class ColourTracker:
             view = seen.get(i)
             if known is not None and view is not None and known.fit is not None:
                 final = self._fitter.render(i, known.state, view.dt_s, view.roi)
-                sure = known.fit.matched.sum() > 0.6 * known.fit.visible.sum()
+                sure = _match(known.fit) > self.params.sure_match
                 eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
                 eye.mark_body(final, view.roi)
             elif self._known is None:
@@ -293,6 +319,11 @@ def _colours_of(sides: tuple[str, ...]) -> Ints:
         return np.empty(0, np.int64)
     colours = [standard_shirt().colour_of_patch[_PATCHES[side]] for side in sides]
     return np.unique(np.concatenate(colours)).astype(np.int64) - 1
+
+
+def _match(fit: Fit) -> float:
+    """Share of the rendered shirt whose colour the pictures have."""
+    return float(fit.matched.sum() / max(fit.visible.sum(), 1.0))
 
 
 def _check_size(frame: Frame, size_px: tuple[int, int]) -> None:

@@ -1,0 +1,131 @@
+"""What was measured, as tables, as JSON, and as a page of the docs."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mocapd.evaluate.capture_eval import CaptureResult
+from mocapd.evaluate.compare import BASELINE, FULL, PAPER, VARIANTS, Comparison
+from mocapd.evaluate.roc import Roc, correct_at
+from mocapd.evaluate.tables import number, table
+
+_COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], ...] = (
+    ("coverage_percent", "coverage [%]", 1, lambda r: 100.0 * r.score.coverage),
+    ("ghost_frames", "ghosts", 0, lambda r: float(r.score.ghost_frames)),
+    ("rms_cm", "RMS [cm]", 2, lambda r: r.score.rms_cm),
+    ("median_cm", "median [cm]", 2, lambda r: r.score.median_cm),
+    ("p95_cm", "p95 [cm]", 2, lambda r: r.score.p95_cm),
+    ("joint_angle_deg", "angle [°]", 1, lambda r: r.score.joint_angle_deg),
+    ("recovery_frames", "back after [frames]", 0, lambda r: r.recovery_frames),
+    ("step_ms", "step [ms]", 1, lambda r: r.step_ms),
+)
+FALSE_RATES = (0.005, 0.01, 0.02, 0.05, 0.1)
+_PAPER_RMS_CM = {PAPER: 4.0, BASELINE: 5.1}  # its Fig. 9, of its own recordings, over mesh vertices
+
+
+def score_table(results: Sequence[CaptureResult]) -> str:
+    """One row per capture, and a row of means for each number of cameras."""
+    rows = [
+        [result.case.name, *(number(value(result), digits) for _, _, digits, value in _COLUMNS)]
+        for result in results
+    ]
+    for name, group in _groups(results):
+        rows.append([name])
+        rows[-1] += [
+            number(_mean([value(result) for result in group]), max(digits, 1))
+            for _, _, digits, value in _COLUMNS
+        ]
+    return table(["capture", *(title for _, title, _, _ in _COLUMNS)], rows)
+
+
+def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
+    """The same, and the error of each joint; null is "nothing to tell", "never" for no recovery."""
+    captures = [
+        {
+            "capture": result.case.name,
+            "cameras": len(result.case.folder.cameras),
+            "frames": result.score.frames,
+            **{key: _plain(value(result)) for key, _, _, value in _COLUMNS},
+            "per_joint_rms_cm": {
+                name: _plain(rms) for name, rms in result.score.per_joint_rms_cm.items()
+            },
+            "jitter_ratio": _plain(result.score.jitter_ratio),
+            "jitter_mm": _plain(result.score.jitter_mm),
+        }
+        for result in results
+    ]
+    means = {
+        name: {key: _plain(_mean([value(r) for r in group])) for key, _, _, value in _COLUMNS}
+        for name, group in _groups(results)
+    }
+    return {"captures": captures, "means": means}
+
+
+def comparison_table(comparison: Comparison) -> str:
+    """RMS error [cm] per capture and variant, as in the paper's Fig. 9."""
+    captures = [result.case.name for result in comparison[FULL]]
+    rows = [
+        [name, *(number(comparison[variant][i].score.rms_cm, 2) for variant in VARIANTS)]
+        for i, name in enumerate(captures)
+    ]
+    for i, (name, _) in enumerate(_groups(comparison[FULL])):
+        groups = [_groups(comparison[variant])[i][1] for variant in VARIANTS]
+        means = [_mean([result.score.rms_cm for result in group]) for group in groups]
+        rows.append([name, *(number(mean, 2) for mean in means)])
+    return table(["RMS [cm]", *VARIANTS], rows)
+
+
+def coverage_table(comparison: Comparison) -> str:
+    """Share of the frames tracked [%] per capture and variant: an RMS error is of these alone."""
+    rows = [
+        [result.case.name]
+        + [number(100.0 * comparison[variant][i].score.coverage, 1) for variant in VARIANTS]
+        for i, result in enumerate(comparison[FULL])
+    ]
+    return table(["coverage [%]", *VARIANTS], rows)
+
+
+def roc_table(roc: Roc) -> str:
+    """Share of the shirt classified correctly at some rates of false positives."""
+    rows = [
+        [
+            f"{100 * rate:g} %",
+            number(100.0 * correct_at(roc.alone, rate), 1),
+            number(100.0 * correct_at(roc.assisted, rate), 1),
+        ]
+        for rate in FALSE_RATES
+    ]
+    return table(["false positives", "step 1 alone [%]", "pose-assisted [%]"], rows)
+
+
+def roc_json(roc: Roc) -> dict[str, Any]:
+    """The curves as lists of shares."""
+    curves = {"step_1": roc.alone, "pose_assisted": roc.assisted, "tracker": roc.tracker}
+    return {
+        name: {"false": counts.false.tolist(), "correct": counts.correct.tolist()}
+        for name, counts in curves.items()
+    }
+
+
+def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:
+    """Captures with as many cameras, where there is more than one."""
+    out = []
+    for cameras in sorted({len(result.case.folder.cameras) for result in results}, reverse=True):
+        group = [r for r in results if len(r.case.folder.cameras) == cameras]
+        if len(group) > 1:
+            out.append((f"mean of {len(group)} with {cameras} camera{'s' * (cameras > 1)}", group))
+    return out
+
+
+def _mean(values: Sequence[float | None]) -> float:
+    """Of what there is to tell; NaN if one of them was not tracked at all, or none tells anything."""
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if known else float("nan")
+
+
+def _plain(value: float | None) -> float | str | None:
+    if value is None or math.isnan(value):
+        return None
+    return "never" if math.isinf(value) else value

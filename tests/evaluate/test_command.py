@@ -1,0 +1,102 @@
+"""`mocapd eval` as a user runs it, on a capture that the simulator exported."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mocapd.sim.export import export_capture
+from tests.cli.mocapd_process import mocapd
+from tests.sim.small import LAMP_OFF_S, scenario
+
+SECONDS, APPEARS_S = 1.5, 0.2
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("captures") / "small"
+    export_capture(scenario(person_appears_s=APPEARS_S), folder, SECONDS)
+    return folder
+
+
+def test_its_help_has_an_example(clean_env: dict[str, str]) -> None:
+    outcome = mocapd(clean_env, "eval", "--help")
+    assert outcome.code == 0
+    assert "Example: mocapd eval" in outcome.out
+
+
+def test_it_prints_a_table_and_writes_the_page(
+    capture: Path, clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    words = ("eval", "small", "--tracker", "canned", "--out", tmp_path)
+    outcome = mocapd(clean_env, *words, cwd=capture.parent)
+    assert outcome.code == 0, outcome.err
+    header, rule, row = outcome.out.splitlines()
+    assert header.startswith("| capture ")
+    assert set(rule) <= set("|-: ")
+    # the canned body is there from the first frame, so the empty room has ghosts
+    told = row.split()
+    assert told[1:6:2] == ["small", "100.0", "6"]
+    assert "small" in outcome.err  # progress
+    text = (tmp_path / "evaluation.md").read_text()
+    assert outcome.out.strip() in re.sub(r"[\d.]+ \|$", told[-2] + " |", text, flags=re.M)
+    assert "mocapd eval small --tracker canned --variant full --out " in text
+
+
+def test_json_holds_the_same_figures_as_the_tables(
+    capture: Path, clean_env: dict[str, str]
+) -> None:
+    outcome = mocapd(clean_env, "eval", capture, capture, "--tracker", "canned", "--json")
+    assert outcome.code == 0, outcome.err
+    told = json.loads(outcome.out)
+    assert told["tracker"] == "canned"
+    first, second = told["captures"]
+    assert first["capture"] == "small"
+    assert first["coverage_percent"] == 100.0
+    assert first["ghost_frames"] == round(APPEARS_S * 30)
+    # scored from half a second after the person came, a lamp going out in between
+    assert first["frames"] == round((SECONDS - APPEARS_S - 0.5) * 30)
+    assert LAMP_OFF_S < SECONDS
+    assert first["recovery_frames"] == "never"  # it does not look
+    assert first["rms_cm"] > 5.0
+    assert len(first["per_joint_rms_cm"]) == 8
+    assert told["means"]["mean of 2 with 2 cameras"]["rms_cm"] == pytest.approx(first["rms_cm"])
+    assert {k: v for k, v in first.items() if k != "step_ms"} == {
+        k: v for k, v in second.items() if k != "step_ms"
+    }
+
+
+def test_a_capture_without_truth_is_one_clear_line(
+    capture: Path, clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    blind = tmp_path / "blind"
+    shutil.copytree(capture, blind)
+    (blind / "truth.npz").unlink()
+    outcome = mocapd(clean_env, "eval", capture, blind, "--tracker", "canned")
+    assert outcome.code == 66
+    assert outcome.out == ""
+    assert outcome.err.count("\n") == 1
+    assert str(blind / "truth.npz") in outcome.err
+
+
+def test_only_the_colour_tracker_has_a_baseline(capture: Path, clean_env: dict[str, str]) -> None:
+    words = ("eval", capture, "--tracker", "canned", "--compare", "baseline")
+    outcome = mocapd(clean_env, *words)
+    assert outcome.code == 78
+    assert "canned" in outcome.err
+    assert "--tracker colour" in outcome.err
+
+
+def test_truth_is_for_scoring_only(capture: Path) -> None:
+    """No module below this package knows where the truth is."""
+    package = Path(__file__).resolve().parents[2] / "mocapd"
+    readers = {
+        path.relative_to(package).parts[0]
+        for path in package.rglob("*.py")
+        if "truth.npz" in path.read_text() or '"labels"' in path.read_text()
+    }
+    assert readers <= {"evaluate", "sim", "cli"}  # the simulator writes it, the help names it
+    assert np.load(capture / "truth.npz")["visible"].any()

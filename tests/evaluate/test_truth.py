@@ -1,0 +1,84 @@
+"""Ground truth that is missing, damaged or of another kind gives one clear line."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import NAMES
+from mocapd.errors import InputError
+from mocapd.evaluate.truth import labelled_frames, load_truth
+from tests.evaluate.tracks import moving_truth
+
+
+def write_truth(folder: Path) -> Path:
+    truth = moving_truth()
+    np.savez(
+        folder / "truth.npz",
+        times=truth.times_s,
+        names=np.array(NAMES),
+        joints=truth.joints_m.astype(np.float32),
+        visible=truth.visible,
+    )
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("info", "change_s"),
+    [
+        (None, None),
+        ({"light_event": None}, None),
+        ({"light_event": {"lamp_off_s": 5.5}}, 5.5),
+        ({"light_events": {"warm": [[3.0, 1.0], [4.0, 0.0], [6.0, 1.0]], "cool": []}}, 4.0),
+        ({"light_events": {"warm": [[0.8, 0.0], [1.4, 1.0]]}}, 0.8),
+    ],
+)
+def test_the_time_of_a_lamp_going_out(
+    info: dict[str, object] | None, change_s: float | None, tmp_path: Path
+) -> None:
+    write_truth(tmp_path)
+    if info is not None:
+        (tmp_path / "info.json").write_text(json.dumps(info))
+    truth = load_truth(tmp_path)
+    assert truth.light_change_s == change_s
+    assert truth.names == NAMES
+    assert np.array_equal(truth.visible, ~np.isnan(truth.joints_m[:, 0, 0]))
+
+
+def test_a_capture_without_truth_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"truth\.npz: no ground truth.*mocapd track"):
+        load_truth(tmp_path)
+
+
+def test_a_truth_cut_short_is_named(tmp_path: Path) -> None:
+    path = write_truth(tmp_path) / "truth.npz"
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(InputError, match=r"truth\.npz: cannot be read"):
+        load_truth(tmp_path)
+
+
+def test_a_truth_that_lacks_an_array_tells_which(tmp_path: Path) -> None:
+    np.savez(tmp_path / "truth.npz", times=np.zeros(3), names=np.array(NAMES))
+    with pytest.raises(InputError, match="lacks joints, visible"):
+        load_truth(tmp_path)
+
+
+def test_a_capture_in_which_nobody_is_seen_cannot_be_scored(tmp_path: Path) -> None:
+    np.savez(
+        tmp_path / "truth.npz",
+        times=np.arange(3.0),
+        names=np.array(NAMES),
+        joints=np.full((3, len(NAMES), 3), np.nan),
+        visible=np.zeros(3, dtype=bool),
+    )
+    with pytest.raises(InputError, match="nobody is visible"):
+        load_truth(tmp_path)
+
+
+def test_labelled_frames_are_those_of_the_camera(tmp_path: Path) -> None:
+    (tmp_path / "labels").mkdir()
+    for name in ("cam0_000030", "cam0_000015", "cam1_000045", "cam0_other"):
+        (tmp_path / "labels" / f"{name}.png").touch()
+    assert labelled_frames(tmp_path, "cam0") == (15, 30)
+    assert labelled_frames(tmp_path, "cam2") == ()
