@@ -2,7 +2,7 @@
 
 import typer
 
-from mocapd.cli import cameras, check_config, demo, run, track, version, watch
+from mocapd.cli import bench, cameras, check_config, demo, run, track, version, watch
 from mocapd.cli import eval as evaluation
 
 app = typer.Typer(
@@ -14,5 +14,5 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, demo, track, evaluation, watch, cameras, check_config, version):
+for command in (run, demo, track, evaluation, bench, watch, cameras, check_config, version):
     command.add_to(app)

@@ -136,8 +136,7 @@ def _print(findings: "Findings", as_json: bool) -> None:
         return
     tables = [report.score_table(findings.results)]
     if findings.comparison:
-        tables.append(report.comparison_table(findings.comparison))
-        tables.append(report.coverage_table(findings.comparison))
+        tables += report.comparison_tables(findings.comparison)
     if findings.rocs:
         tables.append(report.roc_table(findings.roc))
     typer.echo("\n\n".join(tables))

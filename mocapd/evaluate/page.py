@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from mocapd.errors import CannotCreateError
-from mocapd.evaluate.report import comparison_table, coverage_table, roc_table, score_table
+from mocapd.evaluate.report import comparison_tables, roc_table, score_table
 from mocapd.evaluate.runs import Findings
 
 PAGE = "evaluation.md"
@@ -25,8 +25,8 @@ Written by this command, which makes every table below anew; do not edit by hand
 
 Distances of the joint centres ({joints}) to the ground truth, in metres of the world: nothing is
 aligned, scaled or smoothed before. Half a second after the person comes in is left out. *Ghosts*:
-frames with a person before there was one. *Angle*: mean error of the interior angles at neck,
-shoulders and elbows. *Back after*: frames from a lamp going out until the RMS error of a frame is
+frames with a person before there was one. *Angle*: mean error of the angles between the bones at neck,
+shoulders and elbows, or of the joints scored. *Back after*: frames from a lamp going out until the RMS error of a frame is
 under 6 cm for good; 0: it never left; `-`: steady light. *Step*: median time of the tracker for one
 frame set, on the machine that ran this and beside whatever else ran there (`mocapd bench` is the
 measure of speed).
@@ -42,9 +42,13 @@ vertices of a mesh and on recordings of its own; here it is the joints.
 
 {rms}
 
-The error is that of the frames tracked, which are these:
+An error is that of the frames tracked, which are these:
 
 {coverage}
+
+The median tells a tracker that is a little off everywhere from one that is right but for some frames:
+
+{median}
 """
 
 _SHOULDER = """
@@ -86,8 +90,8 @@ def page(findings: Findings, command: str) -> str:
         )
     ]
     if findings.comparison:
-        rms, coverage = comparison_table(findings.comparison), coverage_table(findings.comparison)
-        parts += [_COMPARISON.format(rms=rms, coverage=coverage)]
+        rms, median, coverage = comparison_tables(findings.comparison)
+        parts += [_COMPARISON.format(rms=rms, median=median, coverage=coverage)]
         parts += [_SHOULDER.format(plot=SHOULDER_PLOT)]
     if findings.rocs:
         parts.append(_ROC.format(table=roc_table(findings.roc), plot=ROC_PLOT))

@@ -41,22 +41,20 @@ def roc_plot(captures: Sequence[tuple[str, Roc]]) -> Figure:
     rows = -(-len(captures) // columns)
     size = (5.0 * columns, 3.8 * rows)
     figure = Figure(figsize=size, layout="constrained")
-    panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for panel, (name, roc) in zip(panels, captures, strict=False):
         panel.plot(roc.alone.false, roc.alone.correct, "tab:red", label="step 1: colour alone")
         panel.plot(roc.assisted.false, roc.assisted.correct, "tab:blue", label="step 3: with pose")
         if roc.tracker.shirt > 0:
             panel.plot(roc.tracker.false, roc.tracker.correct, "ko", label="the tracker as it runs")
         panel.set_title(name, fontsize=10)
+        panel.set_xlabel("false positives")
+        panel.set_ylabel("correct")
         panel.set_xlim(0.0, _DRAWN_TO)
         panel.set_ylim(0.0, 1.0)
         panel.grid(alpha=0.3)
     for panel in panels[len(captures) :]:
         panel.set_axis_off()
-    for panel in panels[-columns:]:
-        panel.set_xlabel("false positives")
-    for panel in panels[::columns]:
-        panel.set_ylabel("correct")
     panels[0].legend(loc="lower right", fontsize=9)
     return figure
 

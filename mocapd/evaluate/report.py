@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.compare import BASELINE, FULL, PAPER, VARIANTS, Comparison
+from mocapd.evaluate.compare import VARIANTS, Comparison
 from mocapd.evaluate.roc import Roc, correct_at
 from mocapd.evaluate.tables import number, table
 
@@ -22,7 +22,6 @@ _COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], .
     ("step_ms", "step [ms]", 1, lambda r: r.step_ms),
 )
 FALSE_RATES = (0.005, 0.01, 0.02, 0.05, 0.1)
-_PAPER_RMS_CM = {PAPER: 4.0, BASELINE: 5.1}  # its Fig. 9, of its own recordings, over mesh vertices
 
 
 def score_table(results: Sequence[CaptureResult]) -> str:
@@ -32,11 +31,9 @@ def score_table(results: Sequence[CaptureResult]) -> str:
         for result in results
     ]
     for name, group in _groups(results):
-        rows.append([name])
-        rows[-1] += [
-            number(_mean([value(result) for result in group]), max(digits, 1))
-            for _, _, digits, value in _COLUMNS
-        ]
+        means = [_mean([value(result) for result in group]) for _, _, _, value in _COLUMNS]
+        digits = [max(digits, 1) for _, _, digits, _ in _COLUMNS]
+        rows.append([name, *map(number, means, digits)])
     return table(["capture", *(title for _, title, _, _ in _COLUMNS)], rows)
 
 
@@ -63,28 +60,13 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
     return {"captures": captures, "means": means}
 
 
-def comparison_table(comparison: Comparison) -> str:
-    """RMS error [cm] per capture and variant, as in the paper's Fig. 9."""
-    captures = [result.case.name for result in comparison[FULL]]
-    rows = [
-        [name, *(number(comparison[variant][i].score.rms_cm, 2) for variant in VARIANTS)]
-        for i, name in enumerate(captures)
-    ]
-    for i, (name, _) in enumerate(_groups(comparison[FULL])):
-        groups = [_groups(comparison[variant])[i][1] for variant in VARIANTS]
-        means = [_mean([result.score.rms_cm for result in group]) for group in groups]
-        rows.append([name, *(number(mean, 2) for mean in means)])
-    return table(["RMS [cm]", *VARIANTS], rows)
+def comparison_tables(comparison: Comparison) -> list[str]:
+    """Per capture and variant: RMS error [cm], as in the paper's Fig. 9; its median; the coverage [%].
 
-
-def coverage_table(comparison: Comparison) -> str:
-    """Share of the frames tracked [%] per capture and variant: an RMS error is of these alone."""
-    rows = [
-        [result.case.name]
-        + [number(100.0 * comparison[variant][i].score.coverage, 1) for variant in VARIANTS]
-        for i, result in enumerate(comparison[FULL])
-    ]
-    return table(["coverage [%]", *VARIANTS], rows)
+    An error is that of the tracked frames alone, so the coverage belongs to it; the median tells a
+    tracker that is a little off everywhere from one that is right but for a few frames.
+    """
+    return [_side_by_side(comparison, key) for key in ("rms_cm", "median_cm", "coverage_percent")]
 
 
 def roc_table(roc: Roc) -> str:
@@ -107,6 +89,19 @@ def roc_json(roc: Roc) -> dict[str, Any]:
         name: {"false": counts.false.tolist(), "correct": counts.correct.tolist()}
         for name, counts in curves.items()
     }
+
+
+def _side_by_side(comparison: Comparison, key: str) -> str:
+    title, digits, value = next(column[1:] for column in _COLUMNS if column[0] == key)
+    columns = [comparison[variant] for variant in VARIANTS]
+    rows = [
+        [results[0].case.name, *(number(value(result), digits) for result in results)]
+        for results in zip(*columns, strict=True)
+    ]
+    for groups in zip(*map(_groups, columns), strict=True):
+        means = [_mean([value(result) for result in group]) for _, group in groups]
+        rows.append([groups[0][0], *(number(mean, digits) for mean in means)])
+    return table([title, *VARIANTS], rows)
 
 
 def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:

@@ -43,13 +43,15 @@ def gaussians(
     appearance: Appearance,
     model_mean: Floats,
     model_covariance: Floats,
-    sd_floor: float,
+    cloth_sd: float,
+    noise_sd: float,
     shading_sd: float,
 ) -> tuple[Floats, Floats]:
     """Means (10,3) and covariances (10,3,3) in the camera's BGR 0..1."""
     inverse = np.linalg.inv(appearance.W)
     prior_mean = (model_mean @ inverse.T)[:, _BGR]
-    prior_cov = (inverse @ model_covariance @ inverse.T)[:, _BGR][:, :, _BGR]
+    cloth = model_covariance + cloth_sd**2 * np.eye(3)
+    prior_cov = (inverse @ cloth @ inverse.T)[:, _BGR][:, :, _BGR]
     s = appearance.sums
     n = s[:, 0]
     learned = np.divide(s[:, 1:4], n[:, None], out=prior_mean.copy(), where=n[:, None] > 0)
@@ -57,7 +59,7 @@ def gaussians(
     # classified would grow by itself until it swallows skin and trousers, so the model's is kept
     trust = (n / (n + _PRIOR_PX))[:, None]
     mean = trust * learned + (1.0 - trust) * prior_mean
-    cov = prior_cov + sd_floor**2 * np.eye(3)
+    cov = prior_cov + noise_sd**2 * np.eye(3)
     return mean, cov + shading_sd**2 * mean[:, :, None] * mean[:, None, :]
 
 

@@ -16,11 +16,13 @@ class Params:
     threshold: float = 3.0  # T of the pose-assisted classifier [standard deviations]
     prior_weight: float = 6.0  # C = prior_weight / size of the predicted shirt [work px]
     first_threshold: float = 1.7  # T without a pose, whole picture
-    colour_sd_floor: float = 0.04  # sensor noise, compression and cloth [0..1]
+    cloth_sd: float = 0.04  # spread of the cloth's own colour, in white-balanced light [0..1]
+    noise_sd: float = 0.015  # sensor noise and compression [0..1]
     shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
     background_penalty: float = 1.5  # added where the static background is seen [standard deviations]
     other_penalty: float = 1.5  # added where the colour is rather seen on other things
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
+    background_jump: float = 0.25  # share of the background that changes at once when a lamp does
     poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried
     sudden_loss: float = 0.93  # or under this share of what was usual in the last seconds
     usual_s: float = 2.0  # time constant of what is usual

@@ -20,6 +20,7 @@ from mocapd.trackers.colour.segmentation_kernels import (
     colour_statistics,
     count_colours,
     learn_background,
+    snap_background,
 )
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.colour_model import ColourModel
@@ -162,7 +163,7 @@ class Eye:
         h, w = roi[3] - roi[1], roi[2] - roi[0]
         ids, softness = self._ids[: h * w].reshape(h, w), self._softness[: h * w].reshape(h, w)
         mean, covariance = looks.gaussians(
-            appearance, self.model.mean, self.model.covariance, p.colour_sd_floor, p.shading_sd
+            appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
         )
         classify(
             self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance), prior,
@@ -211,15 +212,16 @@ class Eye:
             self.memory.body[y0:y1, x0:x1] = cv2.dilate(solid, _NEAR)
 
     def learn_background(self) -> None:
-        """Follow the static background; start anew when most of it looks different (a light went out)."""
+        """Follow the static background, at once when the light on it jumps."""
         p, memory = self.params, self.memory
         arrays = (memory.background_mean, memory.background_age)
-        if memory.looks % 4 == 0:
-            share = changed(self.picture, memory.body, *arrays, p.background_tolerance)
-            if share > 0.5:
-                memory.background_age[:] = 0
-                memory.shirt_count[:] = 0.0
-                memory.other_count[:] = 0.0
+        share = changed(self.picture, memory.body, *arrays, p.background_tolerance)
+        if share > p.background_jump:
+            # a lamp went on or off: what is seen beside the body now is the background in its new
+            # light, and colours counted in the old light say nothing
+            snap_background(self.picture, memory.body, *arrays)
+            memory.shirt_count *= 0.25
+            memory.other_count *= 0.25
         learn_background(self.picture, memory.body, *arrays, 0.02, memory.looks % 2, 2)
 
     # --- without a pose ---
@@ -227,7 +229,7 @@ class Eye:
     def find(self, sizes: Ints, keep: Callable[[float], bool]) -> Found | None:
         """Where the shirt's colours are together, under each known light; None when nowhere enough."""
         p, memory = self.params, self.memory
-        model = self.model.tolerating(p.shading_sd, p.colour_sd_floor)
+        model = self.model.tolerating(p.shading_sd, p.cloth_sd)
         w, h = self.size
         best: Found | None = None
         lights = [W * gain for gain in _GAINS for W in memory.references]

@@ -286,3 +286,21 @@ def changed(
             if abs(p[0] - m[0]) > tol or abs(p[1] - m[1]) > tol or abs(p[2] - m[2]) > tol:
                 different += 1
     return different / max(n, 1)
+
+
+@njit(cache=True, nogil=True)
+def snap_background(
+    picture: NDArray[np.uint8],
+    body: NDArray[np.uint8],
+    mean: NDArray[np.float32],
+    age: NDArray[np.uint8],
+) -> None:
+    """Take the picture for the background where `body` (h,w) is 0, and forget what was behind the body."""
+    h, w, _ = picture.shape
+    for y in range(h):
+        for x in range(w):
+            if body[y, x] != 0:
+                age[y, x] = 0
+                continue
+            for c in range(3):
+                mean[y, x, c] = picture[y, x, c]

@@ -161,7 +161,12 @@ class ColourTracker:
         self.probe("classify")
         if not views:
             return known, views
-        learning = p.learn_shape and known.taught_s < p.shape_learning_s
+        learning = (
+            p.learn_shape
+            and known.taught_s < p.shape_learning_s
+            and known.fit is not None
+            and _match(known.fit) > p.shape_match
+        )
         fit = fitter.fit(predicted, views, dt_s, p.iterations, learning)
         self.probe("fit")
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)

@@ -1,0 +1,79 @@
+"""`mocapd bench`"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.errors import ConfigError
+
+_SIM = "sim:"
+_DEFAULT = "sim:living_room"
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("bench")(bench_command)
+
+
+def bench_command(
+    tracker: Annotated[
+        str | None, typer.Option(help="Which tracker [default: all that the input suits]")
+    ] = None,
+    variant: Annotated[
+        str, typer.Option(help="Which variant of the tracker, as for `mocapd track`.")
+    ] = "full",
+    capture: Annotated[
+        str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
+    ] = _DEFAULT,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Time the real daemon on simulated webcams instead.")
+    ] = False,
+    seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
+    endurance: Annotated[
+        float | None,
+        typer.Option(help="Run round and round for so long, as fast as it goes.", metavar="MIN"),
+    ] = None,
+    config: ConfigOption = None,
+    settings: SetOption = None,
+) -> None:
+    """Time trackers on decoded frames, stage by stage; or the whole daemon.
+
+    Example: mocapd bench --tracker colour --json
+    """
+    from mocapd.cli.libraries import prepare_libraries
+
+    effective = effective_config(config, settings, tracker__name=tracker).config
+    if live and not capture.startswith(_SIM):
+        raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
+    prepare_libraries(effective.cache_dir)
+
+    from mocapd.cli.progress import ProgressBars
+    from mocapd.evaluate import bench_report
+    from mocapd.evaluate.bench_input import open_input
+    from mocapd.evaluate.bench_run import Bench
+
+    own = effective.tracker
+    with ProgressBars() as progress:
+        recording = open_input(capture, effective.cache_dir, own.stature_m, variant, progress)
+        bench = Bench(recording, tracker, effective.cache_dir, own, progress)
+        if live:
+            found = bench.live(_daemon_command(capture, config, settings), seconds)
+        elif endurance is not None:
+            found = bench.endurance(endurance)
+        else:
+            found = bench.steps()
+    print(json.dumps(bench_report.as_json(found)) if as_json else bench_report.as_text(found))
+
+
+def _daemon_command(capture: str, config: Path | None, settings: list[str] | None) -> list[str]:
+    """`mocapd run` as this command was called."""
+    words = [sys.executable, "-m", "mocapd.cli.main", "run", "--capture", capture]
+    words += ["--config", str(config)] if config else []
+    for setting in settings or ():
+        words += ["--set", setting]
+    return words
