@@ -12,6 +12,7 @@ from mocapd.capture.controls import Controls
 from mocapd.errors import ConfigError
 from mocapd.outputs import osc_sink, zenoh_config
 from mocapd.pipeline.smoothing import PRESETS
+from mocapd.trackers.registry import entry
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 
@@ -60,16 +61,23 @@ class CameraSection:
 class TrackerSection(TrackingStateParams):
     """Which tracker, and what it needs to know of the wearer.
 
-    name: the tracker
+    name: the tracker: colour, or canned, a pose that moves by itself
+    variant: how the colour tracker works: full, paper (the method as published) or baseline
     stature_m: the wearer's height without shoes [m]
     colour_model: folder of images of the shirt with strokes
     coast_s: how long after the last evidence a pose is still predicted [s]
     confirm_s: how long evidence must persist before a lost person is believed to be back [s]
     """
 
-    name: str = "canned"
+    name: str = "colour"
+    variant: str = "full"
     stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
     colour_model: Path | None = None
+
+    def __post_init__(self) -> None:
+        # a class with slots is made twice, which a bare super() does not survive
+        TrackingStateParams.__post_init__(self)
+        entry(self.name, self.variant)
 
 
 @dataclass(frozen=True, slots=True)

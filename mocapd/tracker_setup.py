@@ -1,6 +1,9 @@
 """The one place where a tracker is built, and what it may know of rig, wearer and light is read."""
 
+import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -12,20 +15,40 @@ from mocapd.config_sections import CameraSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import StrokedPicture, TrackerInputs, build
+from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Rig
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
 
+_log = logging.getLogger(__name__)
+_THREADS = 2  # that make what is kept in the cache
 _PAINT = "paint the colours of the shirt again"
 
 
 def build_tracker(name: str, inputs: TrackerInputs) -> Tracker:
     """The tracker of this name, ready to step. Raises ConfigError naming what it lacks."""
-    return build(name, inputs)
+    pool = ThreadPoolExecutor(_THREADS)
+    try:
+        return build(name, replace(inputs, map_chunks=pool.map, tell=_log.warning))
+    finally:
+        # who was told to end does not wait for all that is queued
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def with_cache(inputs: TrackerInputs, cache_dir: Path, progress: Progress) -> TrackerInputs:
+    """The same, with a place for what is made once, and bars while it is made."""
+    return replace(
+        inputs,
+        cache_dir=cache_dir,
+        progress=lambda share: progress("pose database", round(100 * share), 100),
+    )
 
 
 def inputs_of_capture(
-    folder: CaptureFolder, stature_m: float, variant: str = "full"
+    folder: CaptureFolder,
+    stature_m: float,
+    variant: str = "full",
+    tracking: TrackingStateParams | None = None,
 ) -> TrackerInputs:
     """What a capture folder tells; `stature_m` is for folders that do not say."""
     return TrackerInputs(
@@ -36,6 +59,7 @@ def inputs_of_capture(
             c.name: read_stroked(c.scribble) for c in folder.cameras if c.scribble is not None
         },
         variant=variant,
+        tracking=tracking,
     )
 
 
@@ -51,6 +75,8 @@ def inputs_of_config(
         white_balance={
             c.id: read_stroked(stroked_image(c.white_balance)) for c in cameras if c.white_balance
         },
+        variant=tracker.variant,
+        tracking=tracker,
     )
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.shape import BodyShape, N_FACTORS, mean_shape, skeleton_of
+from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
@@ -86,7 +86,8 @@ def posed_vertices(surface: Surface, skeleton: Skeleton, pose: Pose, joints_m: F
     R = rotations.to_matrix(pose.quats_xyzw)
     t = joints_m - np.einsum("jab,jb->ja", R, skeleton.rest_m)
     blended_R = np.einsum("vj,jab->vab", surface.weights, R)
-    return np.einsum("vab,vb->va", blended_R, surface.vertices_m) + surface.weights @ t
+    out: Floats = np.einsum("vab,vb->va", blended_R, surface.vertices_m) + surface.weights @ t
+    return out
 
 
 # --- torso -----------------------------------------------------------------------------------
@@ -131,7 +132,8 @@ def _torso(shape: BodyShape, skeleton: Skeleton) -> _Tube:
     rings = np.stack([x, np.broadcast_to(centre[:, 1:2], x.shape), z + centre[:, 2:3]], axis=-1)
     patch = np.zeros((len(f) - 1, _TORSO_COLUMNS), dtype=np.uint8)
     mid = 0.5 * (f[:-1] + f[1:])
-    column = np.arange(_TORSO_COLUMNS) * 4 // _TORSO_COLUMNS  # quarter 0: front left, 1: front right
+    # quarter 0: front left, 1: front right
+    column = np.arange(_TORSO_COLUMNS) * 4 // _TORSO_COLUMNS
     for r, height in enumerate(mid):
         if height > 0:
             upper = [1, 2, 6, 5] if height > 0.5 else [3, 4, 8, 7]
@@ -148,14 +150,18 @@ def _torso_weights(points_m: Floats, skeleton: Skeleton) -> Floats:
     level = np.array([rest[INDEX[name], 1] for name in spine])
     weights = np.zeros((*y.shape, N_JOINTS))
     # bone b rules from its own joint to the next one; blends are centred on the joints
-    knots = np.array([level[0], 0.5 * (level[1] + level[2]), 0.5 * (level[2] + level[3]), level[3] + 0.03])
+    knots = np.array(
+        [level[0], 0.5 * (level[1] + level[2]), 0.5 * (level[2] + level[3]), level[3] + 0.03]
+    )
     for b, name in enumerate(spine):
         values = np.zeros(4)
         values[b] = 1.0
         weights[..., INDEX[name]] = np.interp(y, knots, values)
     shoulder = rest[INDEX["leftUpperArm"]]
     reach = np.clip((np.abs(x) / shoulder[0] - 0.35) / 0.5, 0.0, 1.0)
-    high = np.clip((y - (shoulder[1] - 0.05 * shoulder[1] / 0.8)) / (0.05 * shoulder[1] / 0.8), 0.0, 1.0)
+    high = np.clip(
+        (y - (shoulder[1] - 0.05 * shoulder[1] / 0.8)) / (0.05 * shoulder[1] / 0.8), 0.0, 1.0
+    )
     collar = 0.8 * reach * high
     for side, sign in (("left", 1.0), ("right", -1.0)):
         share = np.where(sign * x > 0, collar, 0.0)
@@ -273,7 +279,8 @@ def _head(shape: BodyShape, skeleton: Skeleton) -> _Tube:
     weights[..., INDEX["neck"]] = ((1 - up) * (1 - low))[:, None]
     weights[..., INDEX["upperChest"]] = ((1 - up) * low)[:, None]
     bands = len(table) - 1
-    return _Tube(rings, weights, np.zeros((bands, _ARM_COLUMNS), np.uint8), np.full(bands, SKIN, np.uint8), HEAD)
+    patch, material = np.zeros((bands, _ARM_COLUMNS), np.uint8), np.full(bands, SKIN, np.uint8)
+    return _Tube(rings, weights, patch, material, HEAD)
 
 
 def _leg(shape: BodyShape, skeleton: Skeleton, side: str) -> _Tube:
@@ -304,7 +311,8 @@ def _leg(shape: BodyShape, skeleton: Skeleton, side: str) -> _Tube:
     bands = len(spans) - 1
     material = np.full(bands, TROUSERS, np.uint8)
     material[0] = SKIN
-    return _Tube(np.array(rings), np.array(weights), np.zeros((bands, _ARM_COLUMNS), np.uint8), material, LEGS)
+    patch = np.zeros((bands, _ARM_COLUMNS), np.uint8)
+    return _Tube(np.array(rings), np.array(weights), patch, material, LEGS)
 
 
 # --- joining ---------------------------------------------------------------------------------
@@ -315,14 +323,11 @@ def _join(tubes: list[_Tube]) -> Surface:
     offset = 0
     for tube in tubes:
         R, C, _ = tube.rings_m.shape
-        points = np.concatenate(
-            [tube.rings_m.reshape(-1, 3), tube.rings_m[0].mean(0)[None], tube.rings_m[-1].mean(0)[None]]
-        )
+        ends = [tube.rings_m[i].mean(0)[None] for i in (0, -1)]
+        points = np.concatenate([tube.rings_m.reshape(-1, 3), *ends])
         flat_weights = tube.weights.reshape(R * C, -1)
         vertices.append(points)
-        weights.append(
-            np.concatenate([flat_weights, flat_weights[:1], flat_weights[-1:]])
-        )
+        weights.append(np.concatenate([flat_weights, flat_weights[:1], flat_weights[-1:]]))
         columns = np.arange(C)
         after = (columns + 1) % C
         faces, face_patch, face_material = [], [], []
@@ -333,7 +338,9 @@ def _join(tubes: list[_Tube]) -> Surface:
             face_patch += [tube.patch[r], tube.patch[r]]
             face_material += [np.full(2 * C, tube.material[r])]
         faces.append(np.stack([np.full(C, R * C), columns, after], -1))
-        faces.append(np.stack([np.full(C, R * C + 1), (R - 1) * C + after, (R - 1) * C + columns], -1))
+        faces.append(
+            np.stack([np.full(C, R * C + 1), (R - 1) * C + after, (R - 1) * C + columns], -1)
+        )
         face_patch += [tube.patch[0], tube.patch[-1]]
         face_material += [np.full(C, tube.material[0]), np.full(C, tube.material[-1])]
         triangle = np.concatenate(faces)

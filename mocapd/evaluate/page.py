@@ -19,17 +19,17 @@ Written by this command, which makes every table below anew; do not edit by hand
 {command}
 ```
 
-## Scores of `{tracker}`
+## Scores of the tracker {tracker}
 
 {scores}
 
 Distances of the joint centres ({joints}) to the ground truth, in metres of the world: nothing is
 aligned, scaled or smoothed before. Half a second after the person comes in is left out. *Ghosts*:
-frames with a person before there was one. *Angle*: mean error of the angles between the bones at neck,
-shoulders and elbows, or of the joints scored. *Back after*: frames from a lamp going out until the RMS error of a frame is
-under 6 cm for good; 0: it never left; `-`: steady light. *Step*: median time of the tracker for one
-frame set, on the machine that ran this and beside whatever else ran there (`mocapd bench` is the
-measure of speed).
+frames with a person before there was one. *Angle*: mean error of the angles between the bones at
+neck, shoulders and elbows, or at the joints scored. *Back after*: frames from a lamp going out until
+the RMS error of a frame is under 6 cm for good; 0: it never left; `-`: steady light. *Step*: median
+time of the tracker for one frame set, on the machine that ran this and beside whatever else ran there
+(`mocapd bench` is the measure of speed).
 """
 
 _COMPARISON = """

@@ -6,6 +6,7 @@ the frame before. What differs is the prior C d, taken from the pose that was tr
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -46,6 +47,7 @@ class _Eye:
 
     index: int
     camera: Camera
+    video: Path
     factor: int
     labelled: tuple[int, ...]
     colours: ColourModel
@@ -78,12 +80,12 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     inputs = inputs_of_capture(folder, stature_m)
     params, colours = Params(), colour_model(inputs.model)
     eyes: dict[str, _Eye] = {}
-    for i, camera in enumerate(folder.rig.cameras):
+    for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
         strokes = inputs.white_balance.get(camera.name)
         W = np.eye(3) if strokes is None else white_balance_of(strokes, colours, plain=True)
         factor = max(1, round(camera.size_px[0] / params.work_width_px))
-        labelled = labelled_frames(folder.path, camera.name)
-        eyes[camera.name] = _Eye(i, camera, factor, labelled, colours, W)
+        labelled = labelled_frames(folder.path, recorded.video)
+        eyes[camera.name] = _Eye(i, camera, recorded.video, factor, labelled, colours, W)
     factors = [eye.factor for eye in eyes.values()]
     fitter = Fitter(build_model(inputs.stature_m), folder.rig.cameras, factors, params)
 
@@ -96,7 +98,7 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
                 continue
             picture, rendered = eye.picture(frame), fitter.render(eye.index, state, dt_s, roi)
             if frame.seq in eye.labelled and rendered.any():
-                label = read_label(folder.path, name, frame.seq)
+                label = read_label(folder.path, eye.video, frame.seq)
                 total += _roc(eye, picture, rendered, roi, label)
                 if (name, frame.seq) in result.evidence:
                     total += _as_it_ran(result.evidence[name, frame.seq], label)

@@ -75,7 +75,7 @@ def compare(cases: Sequence[Case], tracker: str, setting: Setting) -> Findings:
 def _labelled(case: Case) -> set[int]:
     folder = case.folder
     return {
-        frame for camera in folder.cameras for frame in labelled_frames(folder.path, camera.name)
+        frame for camera in folder.cameras for frame in labelled_frames(folder.path, camera.video)
     }
 
 

@@ -60,16 +60,16 @@ def load_truth(capture: Path) -> Truth:
     return truth
 
 
-def labelled_frames(capture: Path, camera: str) -> tuple[int, ...]:
-    """The frames of a camera that have a picture of patch labels, in order."""
-    stems = (path.stem for path in (capture / "labels").glob(f"{camera}_*.png"))
-    numbers = (stem.removeprefix(f"{camera}_") for stem in stems)
+def labelled_frames(capture: Path, video: Path) -> tuple[int, ...]:
+    """The frames of a video, camN.mp4, that have a picture of patch labels, camN_FFFFFF.png; in order."""
+    stems = (path.stem for path in (capture / "labels").glob(f"{video.stem}_*.png"))
+    numbers = (stem.removeprefix(f"{video.stem}_") for stem in stems)
     return tuple(sorted(int(number) for number in numbers if number.isdigit()))
 
 
-def read_label(capture: Path, camera: str, frame: int) -> Bytes:
-    """Patch labels (h,w): 0 not shirt, 1..20 the patch at mid exposure. Raises InputError."""
-    path = capture / "labels" / f"{camera}_{frame:06d}.png"
+def read_label(capture: Path, video: Path, frame: int) -> Bytes:
+    """Patch labels (h,w) of a frame of a video: 0 not shirt, 1..20 the patch at mid exposure. Raises InputError."""
+    path = capture / "labels" / f"{video.stem}_{frame:06d}.png"
     try:
         data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:

@@ -4,7 +4,9 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -15,7 +17,7 @@ import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
 from mocapd.errors import CannotCreateError
-from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.strokes import LabelledImage
@@ -96,12 +98,13 @@ def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFil
     n = round(scenario.loop_s * scenario.fps_hz)
     first = first_frame(scenario)
     frames: dict[str, list[bytes]] = {r.camera.name: [] for r in renderers}
-    for i in range(n):
-        for k, renderer in enumerate(renderers):
-            pixels = renderer.frame(first + i)
-            frames[renderer.camera.name].append(encode_jpeg(pixels, scenario.jpeg_quality))
-            if progress is not None:
-                progress(i * len(renderers) + k + 1, n * len(renderers))
+    with ThreadPoolExecutor(len(renderers)) as pool:
+        for i in range(n):
+            shoot = partial(_shoot, first + i, scenario.jpeg_quality)
+            for k, (name, jpeg) in enumerate(zip(frames, pool.map(shoot, renderers), strict=True)):
+                frames[name].append(jpeg)
+                if progress is not None:
+                    progress(i * len(renderers) + k + 1, n * len(renderers))
     setup = setup_of(scenario, renderers)
     return _FilmFile(
         key=key,
@@ -110,6 +113,10 @@ def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFil
         scribbles={name: _png_pair(image) for name, image in setup.scribbles.items()},
         model=[_png_pair(image) for image in setup.model],
     )
+
+
+def _shoot(frame: int, quality: int, renderer: CameraRenderer) -> bytes:
+    return encode_jpeg(renderer.frame(frame), quality)
 
 
 def _png_pair(image: LabelledImage) -> tuple[bytes, bytes]:

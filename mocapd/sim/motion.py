@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local
 from mocapd.geometry import rotations
-from mocapd.sim.chain_kernels import chain_rotations, leg_rotations
+from mocapd.sim.legs import leg_rotations
 from mocapd.sim.poses import POSES, ArmDirections
 from mocapd.sim.scenario import Keyframe, Scenario
 from mocapd.sim.steps import FootTrack, foot_tracks
@@ -77,8 +77,7 @@ def pose_at(motion: Motion, t_s: float) -> Pose:
     lean = np.array([(wave * about_x).sum(), 0.0, (wave * about_z).sum()])
     local[0] = rotations.multiply(rotations.exp(np.array([0.0, yaw, 0.0])), local[0])
     local[INDEX["spine"]] = rotations.multiply(local[INDEX["spine"]], rotations.exp(lean))
-    quats = np.empty_like(local)
-    chain_rotations(motion.skeleton.parents, rotations.canonical(local), quats)
+    quats = global_from_local(motion.skeleton, local)
     rest_height = motion.skeleton.rest_m[0, 1]
     root = np.array([x, rest_height - 0.012 - crouch, z])
     _plant_feet(motion, t, root, quats)
@@ -94,7 +93,7 @@ def _plant_feet(motion: Motion, t_s: float, root_m: Floats, quats: Floats) -> No
         hip, knee, ankle = rest[joints[:3]]
         at, yaw = foot.at(t_s)
         R = leg_rotations(
-            root_m + hips @ (hip - rest[0]), knee - hip, ankle - knee, at, hips[:, 2].copy(), yaw
+            root_m + hips @ (hip - rest[0]), knee - hip, ankle - knee, at, hips[:, 2], yaw
         )
         quats[joints] = rotations.from_matrix(R[[0, 1, 2, 2]])
 

@@ -112,9 +112,9 @@ def cast_room(
     hit, normal, uv, rgb = np.empty(3), np.empty(3), np.zeros(4), np.empty(3)
     for y in range(height):
         for x in range(width):
-            u = float(directions[y, x, 0])
-            v = float(directions[y, x, 1])
-            w = float(directions[y, x, 2])
+            u = np.float64(directions[y, x, 0])
+            v = np.float64(directions[y, x, 1])
+            w = np.float64(directions[y, x, 2])
             best, near = -1, _FAR
             for g in range(len(casts)):
                 if _passes(ball, g, origin[0], origin[1], origin[2], u, v, w):

@@ -1,6 +1,6 @@
 """The trackers that exist: one line each in TRACKERS."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -12,6 +12,9 @@ from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Rig
 
 
+MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class StrokedPicture:
     """pixels (h,w,3) BGR and strokes (h,w): 0 none, 1.. the shirt's colour ids."""
@@ -20,7 +23,7 @@ class StrokedPicture:
     strokes: Bytes
 
 
-def _quiet(_: float) -> None:
+def _quiet(_: object) -> None:
     """Nobody watches."""
 
 
@@ -29,9 +32,10 @@ class TrackerInputs:
     """What may be known before the first frame; a tracker refuses what it needs and is not given.
 
     stature_m: the wearer's height [m]; model: the shirt in neutral light; white_balance: by camera,
-    the shirt in the place's own light; variant: `full`, or `paper` for the method as published;
-    cache_dir: where the pose database is kept, progress(0..1) while it is made; tracking: when a
-    person counts as lost, None for the defaults.
+    the shirt in the place's own light; variant: one of the tracker's; cache_dir: where the pose
+    database is kept, progress(0..1) while it is made, map_chunks: `map`, or that of a thread pool,
+    tell: hears a line about a cache that was made anew or cannot be kept; tracking: when a person
+    counts as lost, None for the defaults.
     """
 
     rig: Rig | None
@@ -41,6 +45,8 @@ class TrackerInputs:
     variant: str = "full"
     cache_dir: Path = field(default_factory=Path)
     progress: Callable[[float], None] = _quiet
+    map_chunks: MapChunks = map
+    tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
 
 
@@ -48,11 +54,13 @@ class TrackerInputs:
 class TrackerEntry:
     """`build` makes the tracker and raises ConfigError naming what it lacks; it imports it only then.
 
-    `sees`: whether it looks at the pictures, so that an empty room must give `lost`.
+    `sees`: whether it looks at the pictures, so that it needs calibrated cameras, and an empty room
+    must give `lost`; `variants`: the first is the usual one.
     """
 
     build: Callable[[TrackerInputs], Tracker]
     sees: bool
+    variants: tuple[str, ...] = ("full",)
 
 
 def _canned(inputs: TrackerInputs) -> Tracker:
@@ -65,13 +73,19 @@ def _colour(inputs: TrackerInputs) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
     from mocapd.trackers.colour.database_file import load_or_build
 
-    database = load_or_build(inputs.cache_dir, progress=inputs.progress).database
+    loaded = load_or_build(
+        inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks
+    )
+    if loaded.built:
+        inputs.tell(f"the pose database was made: {loaded.reason}")
+    if loaded.warning:
+        inputs.tell(loaded.warning)
     return build_colour_tracker(
         inputs.rig,
         inputs.stature_m,
         inputs.model,
         inputs.white_balance,
-        database,
+        loaded.database,
         inputs.variant,
         inputs.tracking,
     )
@@ -80,15 +94,38 @@ def _colour(inputs: TrackerInputs) -> Tracker:
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "canned": TrackerEntry(_canned, sees=False),
-        "colour": TrackerEntry(_colour, sees=True),
+        "colour": TrackerEntry(
+            _colour,
+            sees=True,
+            variants=("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant"),
+        ),
     }
 )
 
 
-def build(name: str, inputs: TrackerInputs) -> Tracker:
-    """The tracker of this name. Raises ConfigError when there is none, or it lacks an input."""
+def entry(name: str, variant: str = "full") -> TrackerEntry:
+    """The tracker of this name. Raises ConfigError when there is none, or not in this variant."""
     if name not in TRACKERS:
         raise ConfigError(
             f"there is no tracker {name!r}", "tracker.name", f"one of: {', '.join(TRACKERS)}"
         )
-    return TRACKERS[name].build(inputs)
+    found = TRACKERS[name]
+    if variant not in found.variants:
+        raise ConfigError(
+            f"the tracker {name!r} has no variant {variant!r}",
+            "tracker.variant",
+            f"one of: {', '.join(found.variants)}",
+        )
+    return found
+
+
+def build(name: str, inputs: TrackerInputs) -> Tracker:
+    """The tracker of this name. Raises ConfigError when there is none, or it lacks an input."""
+    found = entry(name, inputs.variant)
+    if found.sees and inputs.rig is None:
+        raise ConfigError(
+            f"the tracker {name!r} needs to know where the cameras are",
+            "rig",
+            "give a rig file (rig = ..., or --rig); one camera alone may go without",
+        )
+    return found.build(inputs)

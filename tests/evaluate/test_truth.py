@@ -76,9 +76,9 @@ def test_a_capture_in_which_nobody_is_seen_cannot_be_scored(tmp_path: Path) -> N
         load_truth(tmp_path)
 
 
-def test_labelled_frames_are_those_of_the_camera(tmp_path: Path) -> None:
+def test_labelled_frames_are_those_of_the_video(tmp_path: Path) -> None:
     (tmp_path / "labels").mkdir()
     for name in ("cam0_000030", "cam0_000015", "cam1_000045", "cam0_other"):
         (tmp_path / "labels" / f"{name}.png").touch()
-    assert labelled_frames(tmp_path, "cam0") == (15, 30)
-    assert labelled_frames(tmp_path, "cam2") == ()
+    assert labelled_frames(tmp_path, Path("cam0.mp4")) == (15, 30)
+    assert labelled_frames(tmp_path, Path("cam2.mp4")) == ()

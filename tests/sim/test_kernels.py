@@ -8,10 +8,10 @@ from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.body.surface import build_surface, posed_vertices
 from mocapd.geometry import rotations
-from mocapd.sim.chain_kernels import chain_rotations, leg_rotations
 from mocapd.sim.figure import build_figure
 from mocapd.sim.figure_kernels import light_vertices, skin_vertices, vertex_normals
 from mocapd.sim.lamps import lamps_of
+from mocapd.sim.legs import leg_rotations
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response_kernels import expose
 from mocapd.sim.scenario import Clothes
@@ -26,15 +26,6 @@ RNG = np.random.default_rng(3)
 def random_pose(skeleton: Skeleton) -> Pose:
     local = rotations.exp(RNG.normal(scale=0.5, size=(len(skeleton.names), 3)))
     return Pose(RNG.normal(size=3), global_from_local(skeleton, local))
-
-
-def test_chain_rotations_equal_the_body_module() -> None:
-    skeleton = skeleton_of(mean_shape(1.7))
-    for _ in range(10):
-        local = rotations.exp(RNG.normal(size=(len(skeleton.names), 3)))
-        fast = np.empty_like(local)
-        chain_rotations(skeleton.parents, local, fast)
-        assert np.allclose(rotations.canonical(fast), global_from_local(skeleton, local))
 
 
 def test_the_leg_reaches_what_is_in_reach_and_its_knee_bends_forwards() -> None:

@@ -24,7 +24,8 @@ def spiral(radius_px: int) -> NDArray[np.int32]:
     squared = (offsets**2).sum(axis=1)
     keep = (squared > 0) & (squared <= radius_px**2)
     order = np.lexsort((offsets[:, 0], offsets[:, 1], squared))
-    return offsets[order][keep[order]].astype(np.int32)
+    inside: NDArray[np.int32] = offsets[order][keep[order]].astype(np.int32)
+    return inside
 
 
 @njit(cache=True, nogil=True, inline="always")

@@ -81,7 +81,8 @@ def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.0
     weight = np.sqrt(np.minimum(n[seen], 400.0) / 400.0)[:, None]
     A = np.concatenate([weight * image, np.sqrt(ridge) * np.eye(3)])
     b = np.concatenate([weight * model_mean[seen], np.sqrt(ridge) * appearance.W.T])
-    return np.linalg.lstsq(A, b, rcond=None)[0].T
+    W: Floats = np.linalg.lstsq(A, b, rcond=None)[0].T
+    return W
 
 
 def transported(appearance: Appearance, observed: Floats, model_mean: Floats) -> Appearance:

@@ -84,7 +84,9 @@ def score_arms(
                 A[i, a, 3] = cam_t[a]
                 for b in range(3):
                     A[i, a, b] = (
-                        cam_R[a, 0] * M[i, 0, b] + cam_R[a, 1] * M[i, 1, b] + cam_R[a, 2] * M[i, 2, b]
+                        cam_R[a, 0] * M[i, 0, b]
+                        + cam_R[a, 1] * M[i, 1, b]
+                        + cam_R[a, 2] * M[i, 2, b]
                     )
                 for b in range(3):
                     A[i, a, 3] += cam_R[a, b] * J[i, b] - A[i, a, b] * rest[j, b]
@@ -112,11 +114,11 @@ def score_arms(
             radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
             xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
             yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
-            u = int(round((fx * xd + cx - offset[0] + 0.5) * scale - 0.5))
-            t = int(round((fy * yd + cy - offset[1] + 0.5) * scale - 0.5))
+            u = round((fx * xd + cx - offset[0] + 0.5) * scale - 0.5)
+            t = round((fy * yd + cy - offset[1] + 0.5) * scale - 0.5)
             if u < 0 or u >= w or t < 0 or t >= h:
                 continue
-            if Z > base_z[t, u] + 0.02:
+            if base_z[t, u] + 0.02 < Z:
                 continue
             seen = image_ids[t, u]
             size = area[v] * facing / np.sqrt(X * X + Y * Y + Z * Z)

@@ -194,7 +194,12 @@ class ArmSearch:
 
 def doubtful(side: str, fit: Fit, params: Params) -> bool:
     """Whether too little of an arm is confirmed by the pictures."""
-    return agreement(side, fit.visible, fit.matched, fit.unexplained) < params.doubtful_arm
+    return confirmed(side, fit) < params.doubtful_arm
+
+
+def confirmed(side: str, fit: Fit) -> float:
+    """0..1: share of the arm's patches that the pictures confirm."""
+    return agreement(side, fit.visible, fit.matched, fit.unexplained)
 
 
 def _part(rows: Floats, turn: int, size: int) -> Floats:

@@ -21,7 +21,8 @@ from mocapd.vision.strokes import stroke_means
 from mocapd.vision.white_balance import shade_precision, solve_white_balance
 
 VARIANTS = ("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant")
-_DYE_SD = 0.05  # spread of a printed or dyed standard colour, where no pictures of the shirt are given
+# Spread of a printed or dyed standard colour, where no pictures of the shirt are given
+_DYE_SD = 0.05
 
 
 def build_colour_tracker(
@@ -39,7 +40,9 @@ def build_colour_tracker(
             "the colour tracker needs calibrated cameras", "rig", "give a rig file (rig = ...)"
         )
     if database is None:
-        raise ConfigError("no pose database was given", "tracker.name", "this is a defect of mocapd")
+        raise ConfigError(
+            "no pose database was given", "tracker.name", "this is a defect of mocapd"
+        )
     if variant not in VARIANTS:
         raise ConfigError(
             f"there is no variant {variant!r}", "tracker.variant", f"one of: {', '.join(VARIANTS)}"
@@ -64,7 +67,10 @@ def colour_model(pictures: tuple[StrokedPicture, ...]) -> ColourModel:
     shirt = standard_shirt()
     if pictures:
         return fit_colour_model(
-            [p.pixels for p in pictures], [p.strokes for p in pictures], shirt.colour_names, shirt.version
+            [p.pixels for p in pictures],
+            [p.strokes for p in pictures],
+            shirt.colour_names,
+            shirt.version,
         )
     covariance = np.tile(np.eye(3) * _DYE_SD**2, (len(shirt.colour_names), 1, 1))
     return ColourModel(shirt.colour_names, shirt.srgb / 255.0, covariance, shirt.version)

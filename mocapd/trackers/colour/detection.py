@@ -85,9 +85,7 @@ def hypotheses(
     return out
 
 
-def best_fit(
-    fitter: Fitter, states: Sequence[MotionState], views: Sequence[View]
-) -> Fit | None:
+def best_fit(fitter: Fitter, states: Sequence[MotionState], views: Sequence[View]) -> Fit | None:
     """Fit all hypotheses a little, the best three more; the one of least cost, None when there is none."""
     if not states:
         return None

@@ -39,6 +39,8 @@ class Params:
 
     # motion: spread of the prediction over 1/30 s, growing with the square root of time
     prediction_damping: float = 0.8
+    velocity_memory: float = 0.0  # share of the last velocity kept
+    arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
     root_sd_m: float = 0.10
     hips_sd_rad: float = 0.3
     spine_sd_rad: float = 0.2

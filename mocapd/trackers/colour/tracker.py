@@ -12,7 +12,7 @@ from mocapd.body.skeleton import NAMES, PARENTS, N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.errors import ConfigError
 from mocapd.trackers.colour import detection
-from mocapd.trackers.colour.arms import SIDES, ArmSearch, doubtful
+from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View, initial_information
@@ -186,8 +186,11 @@ class ColourTracker:
         velocity /= dt_s
         velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
         velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
-        for side in switched:
-            velocity[_ARM_STEPS[side]] = 0.0  # it jumped, it did not move
+        velocity = p.velocity_memory * last.velocity + (1.0 - p.velocity_memory) * velocity
+        for side in SIDES:
+            # what is hardly seen is hardly known to move; what was changed over jumped
+            trust = np.clip((confirmed(side, fit) - 0.15) / p.arm_trust, 0.0, 1.0)
+            velocity[_ARM_STEPS[side]] *= 0.0 if side in switched else trust
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
