@@ -1,13 +1,14 @@
 """From the cameras of the configuration to sources, in the order of the rig."""
 
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 
 from mocapd.capture.base import Source
 from mocapd.capture.from_config import open_source
 from mocapd.capture.identity import PREFIX, parse_identity
 from mocapd.capture.pace import Pace
-from mocapd.capture.v4l2 import WebcamSettings
+from mocapd.capture.v4l2 import V4l2Source, WebcamSettings
 from mocapd.config_sections import CameraSection
 from mocapd.errors import ConfigError
 from mocapd.types import Rig
@@ -51,6 +52,18 @@ def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[Ca
         expected_hz = None if source.recorded else camera.fps_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
+
+
+def picture_size(camera: CameraSection) -> tuple[int, int]:
+    """Width and height [px] of the pictures to come: a recording or network camera is asked, a webcam
+    will be told. Raises MocapdError when there is no picture."""
+    source = open_source(camera.source, camera.id)
+    if isinstance(source, V4l2Source):
+        return WebcamSettings().size_px
+    with closing(source):
+        source.open()
+        height, width = source.read().pixels.shape[:2]
+    return width, height
 
 
 def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[CameraSection]:

@@ -4,23 +4,30 @@ Cameras that are all of one capture folder, or all of one simulated scenario, br
 colours with them; what the configuration gives itself wins.
 """
 
+import logging
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
-from mocapd.camera_inputs import CameraInput, camera_inputs
+from mocapd.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.capture.folder import load_folder
 from mocapd.config_sections import CameraSection, Config
 from mocapd.errors import ConfigError
+from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
+from mocapd.pipeline.rehearsal import rehearse
 from mocapd.tracker_setup import (
     Progress,
     build_tracker,
     inputs_of_capture,
     inputs_of_config,
+    with_cache,
 )
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import TrackerInputs
+from mocapd.trackers.registry import TrackerInputs, entry
 from mocapd.types import Rig
+
+_log = logging.getLogger(__name__)
 
 SIM = "sim:"  # the renderer is imported for such cameras only: it takes a second
 
@@ -59,6 +66,8 @@ def open_session(config: Config, progress: Progress) -> Session:
     if origin.startswith(SIM):
         return _simulated(config, origin, progress)
     rig, rig_source = (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
+    if rig is None and not origin and len(config.camera) == 1 and entry(config.tracker.name).sees:
+        rig, rig_source = _assumed_rig(config.camera[0]), "assumed"
     inputs = inputs_of_config(config.tracker, config.camera, rig)
     if origin:
         folder = load_folder(Path(origin))
@@ -66,7 +75,18 @@ def open_session(config: Config, progress: Progress) -> Session:
         inputs = _merged(inputs, told)
         rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
     cameras = camera_inputs(config.camera, rig)
-    return Session(cameras, rig, rig_source, build_tracker(config.tracker.name, inputs))
+    return Session(cameras, rig, rig_source, _ready_tracker(config, inputs, progress))
+
+
+def _assumed_rig(camera: CameraSection) -> Rig:
+    """Where one camera without calibration probably is; says so."""
+    _log.warning(
+        "camera %r is not calibrated: assumed are a field of view of %.0f degrees and a place %.1f m"
+        " high and %.1f m before the person, so distances and sizes will be off -- give a rig file"
+        " (rig = ..., or --rig)",
+        *(camera.id, FIELD_OF_VIEW_DEG, HEIGHT_M, DISTANCE_M),
+    )
+    return nominal_rig(camera.id, picture_size(camera))
 
 
 def _simulated(config: Config, source: str, progress: Progress) -> Session:
@@ -77,9 +97,18 @@ def _simulated(config: Config, source: str, progress: Progress) -> Session:
         inputs_of_config(config.tracker, config.camera, None),
         simulation.inputs_of_simulation(film.setup),
     )
+    tracker = _ready_tracker(config, inputs, progress)
+    # last, as they begin to play now
     cameras = simulation.simulated_inputs(config.camera, film)
-    tracker = build_tracker(config.tracker.name, inputs)
     return Session(cameras, film.setup.rig, source, tracker)
+
+
+def _ready_tracker(config: Config, inputs: TrackerInputs, progress: Progress) -> Tracker:
+    """Built, and its kernels warm."""
+    tracker = build_tracker(config.tracker.name, with_cache(inputs, config.cache_dir, progress))
+    pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
+    rehearse(tracker, inputs.rig, pictures, partial(progress, "preparing the tracker"))
+    return tracker
 
 
 def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
@@ -102,4 +131,6 @@ def _merged(own: TrackerInputs, told: TrackerInputs) -> TrackerInputs:
         rig=own.rig or told.rig,
         model=own.model or told.model,
         white_balance={**told.white_balance, **own.white_balance},
+        variant=own.variant,
+        tracking=own.tracking,
     )

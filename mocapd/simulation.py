@@ -1,5 +1,6 @@
 """Simulated webcams, `sim:SCENARIO#CAMERA`: the film they show and what their rig tells a tracker."""
 
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from mocapd.sim.setup import SimSetup
 from mocapd.sim.strokes import LabelledImage
 from mocapd.tracker_setup import Progress
 from mocapd.trackers.registry import StrokedPicture, TrackerInputs
+
+_log = logging.getLogger(__name__)
 
 SIM = "sim:"
 
@@ -56,6 +59,11 @@ def simulated_inputs(cameras: Sequence[CameraSection], film: Film) -> tuple[Came
     rig = film.setup.rig
     sizes = {camera.name: camera.size_px for camera in rig.cameras}
     epoch_ns = monotonic_ns()
+    # with this whoever watches can say where the simulated person was
+    _log.info(
+        "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
+        *(film.first, film.scenario.name, epoch_ns, film.scenario.fps_hz),
+    )
     return tuple(
         CameraInput(
             SimSource(film, camera.id, epoch_ns),

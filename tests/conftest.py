@@ -42,14 +42,25 @@ def dev_captures(shared_dir: Path) -> Callable[[str], Path]:
     return folder
 
 
+@pytest.fixture(scope="session")
+def cache_home(pytestconfig: pytest.Config) -> Path:
+    """Where child processes keep the pose database and films, so that they are made once."""
+    assert pytestconfig.cache is not None
+    return pytestconfig.cache.mkdir("mocapd")
+
+
 @pytest.fixture
-def clean_env(tmp_path: Path) -> dict[str, str]:
-    """The environment of a user with an empty home and no MOCAPD_* variable, for child processes."""
+def clean_env(tmp_path: Path, cache_home: Path) -> dict[str, str]:
+    """The environment of a user with an empty home and no MOCAPD_* variable, for child processes.
+
+    What is made once and kept is that user's already, apart from the first who needs it.
+    """
     dropped = ("MOCAPD_", "XDG_", "JOURNAL_STREAM", "STATE_DIRECTORY", "CACHE_DIRECTORY")
     env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
     home = tmp_path / "home"
     home.mkdir()
-    return env | {"HOME": str(home), "NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
+    env |= {"HOME": str(home), "XDG_CACHE_HOME": str(cache_home)}
+    return env | {"NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
 
 
 class _SkippedForNothing:

@@ -24,8 +24,8 @@ def bench_command(
         str | None, typer.Option(help="Which tracker [default: all that the input suits]")
     ] = None,
     variant: Annotated[
-        str, typer.Option(help="Which variant of the tracker, as for `mocapd track`.")
-    ] = "full",
+        str | None, typer.Option(help="Which variant of it [default: that of the config]")
+    ] = None,
     capture: Annotated[
         str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
     ] = _DEFAULT,
@@ -47,9 +47,13 @@ def bench_command(
     """
     from mocapd.cli.libraries import prepare_libraries
 
-    effective = effective_config(config, settings, tracker__name=tracker).config
+    effective = effective_config(
+        config, settings, tracker__name=tracker, tracker__variant=variant
+    ).config
     if live and not capture.startswith(_SIM):
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
+    if live and not effective.zenoh.enabled:
+        raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
 
     from mocapd.cli.progress import ProgressBars
@@ -59,21 +63,25 @@ def bench_command(
 
     own = effective.tracker
     with ProgressBars() as progress:
-        recording = open_input(capture, effective.cache_dir, own.stature_m, variant, progress)
+        recording = open_input(capture, effective.cache_dir, own.stature_m, own.variant, progress)
         bench = Bench(recording, tracker, effective.cache_dir, own, progress)
         if live:
-            found = bench.live(_daemon_command(capture, config, settings), seconds)
+            found = bench.live(_daemon_command(capture, config, settings, own.variant), seconds)
         elif endurance is not None:
             found = bench.endurance(endurance)
         else:
             found = bench.steps()
+    for name, why in found.skipped.items():
+        typer.echo(f"mocapd: {name} is left out: {why}", err=True)
     print(json.dumps(bench_report.as_json(found)) if as_json else bench_report.as_text(found))
 
 
-def _daemon_command(capture: str, config: Path | None, settings: list[str] | None) -> list[str]:
+def _daemon_command(
+    capture: str, config: Path | None, settings: list[str] | None, variant: str
+) -> list[str]:
     """`mocapd run` as this command was called."""
     words = [sys.executable, "-m", "mocapd.cli.main", "run", "--capture", capture]
     words += ["--config", str(config)] if config else []
-    for setting in settings or ():
+    for setting in (*(settings or ()), f"tracker.variant={variant}"):
         words += ["--set", setting]
     return words

@@ -3,7 +3,6 @@
 import json
 import os
 import shlex
-from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -90,7 +89,7 @@ def evaluate_captures(
     from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.page import write_page
-    from mocapd.tracker_setup import build_tracker
+    from mocapd.tracker_setup import build_tracker, with_cache
     from mocapd.trackers.base import Tracker
     from mocapd.trackers.registry import TrackerInputs
 
@@ -98,12 +97,7 @@ def evaluate_captures(
     with ProgressBars() as progress:
 
         def build(inputs: TrackerInputs) -> Tracker:
-            known = replace(
-                inputs,
-                cache_dir=effective.cache_dir,
-                progress=lambda share: progress("pose database", round(100 * share), 100),
-            )
-            return build_tracker(name, known)
+            return build_tracker(name, with_cache(inputs, effective.cache_dir, progress))
 
         setting = runs.Setting(build, effective.tracker.stature_m, joints.value, progress)
         if compare is None:

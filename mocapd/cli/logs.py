@@ -3,6 +3,7 @@
 import logging
 import os
 import sys
+from typing import TextIO
 
 # sd-daemon(3): a line that begins with <N> carries its syslog priority
 _PRIORITY = {
@@ -30,9 +31,18 @@ def stderr_is_journal() -> bool:
     return os.environ.get("JOURNAL_STREAM") == f"{stat.st_dev}:{stat.st_ino}"
 
 
+class StderrHandler(logging.StreamHandler[TextIO]):
+    """Writes to what sys.stderr is at that moment: above a progress bar or status line, if any."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """One record."""
+        self.stream = sys.stderr
+        super().emit(record)
+
+
 def set_up_logs(level: str) -> None:
     """Send every log of at least this level to stderr."""
-    handler = logging.StreamHandler(sys.stderr)
+    handler = StderrHandler()
     if stderr_is_journal():
         handler.setFormatter(JournalFormatter())
     else:

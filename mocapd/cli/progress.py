@@ -9,7 +9,7 @@ from rich.progress import (
     Progress,
     TaskID,
     TextColumn,
-    TimeRemainingColumn,
+    TimeElapsedColumn,
 )
 
 
@@ -21,7 +21,7 @@ class ProgressBars:
             TextColumn("{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
-            TimeRemainingColumn(),
+            TimeElapsedColumn(),  # moves also while a single part takes long
             console=Console(stderr=True),
         )
         self._tasks: dict[str, TaskID] = {}

@@ -1,19 +1,11 @@
 """`mocapd track`"""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
-
-
-class Variant(StrEnum):
-    """How the colour tracker works."""
-
-    FULL = "full"
-    PAPER = "paper"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -28,8 +20,9 @@ def track(
         str | None, typer.Option(help="Which tracker [default: that of the config]")
     ] = None,
     variant: Annotated[
-        Variant, typer.Option(help="The full method, or the paper's own.")
-    ] = Variant.FULL,
+        str | None,
+        typer.Option(help="full, paper (as published) or baseline [default: that of the config]"),
+    ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -40,22 +33,27 @@ def track(
     Example: mocapd track captures/office --out office.npz --tracker colour
     """
     from mocapd.cli.libraries import prepare_libraries
+    from mocapd.cli.logs import set_up_logs
 
-    effective = effective_config(config, settings, tracker__name=tracker).config
+    effective = effective_config(
+        config, settings, tracker__name=tracker, tracker__variant=variant
+    ).config
+    set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
     from mocapd.capture.folder import frame_sets, load_folder
     from mocapd.cli.progress import ProgressBars
     from mocapd.offline import check_writable, track_all, write_track
-    from mocapd.tracker_setup import build_tracker, inputs_of_capture
+    from mocapd.tracker_setup import build_tracker, inputs_of_capture, with_cache
 
     check_writable(out)
     folder = load_folder(capture)
     frames = max(camera.frames for camera in folder.cameras)
-    inputs = inputs_of_capture(folder, effective.tracker.stature_m, variant.value)
+    own = effective.tracker
+    inputs = inputs_of_capture(folder, own.stature_m, own.variant, own)
     with ProgressBars() as progress:
         result = track_all(
-            build_tracker(effective.tracker.name, inputs),
+            build_tracker(own.name, with_cache(inputs, effective.cache_dir, progress)),
             frame_sets(folder),
             lambda done: progress(f"tracking {capture.name}", done, frames),
         )

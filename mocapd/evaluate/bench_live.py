@@ -18,6 +18,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns, seconds
 from mocapd.errors import UnavailableError
 from mocapd.evaluate.bench import BYTES_PER_MB
 from mocapd.evaluate.bench_subscriber import Heard, Subscriber
+from mocapd.outputs.messages import Health
 from mocapd.types import Floats
 
 INSTANCE = "bench"
@@ -31,8 +32,8 @@ class LiveFigures:
     """What the subscriber and the system saw of a daemon in `seconds` [s], from its first frame on.
 
     start_s: from the start of the process to the first published frame [s]; rate_hz: frames
-    received per second; dropped: share of the frame sets that were displaced by newer ones before
-    they were tracked; missing: share of the published frames that did not arrive; all_cameras,
+    received per second; dropped: share of all frame sets, from the very first, that were displaced
+    by newer ones before they were tracked; missing: share of the published frames that did not arrive; all_cameras,
     live: shares of the frames with evidence of every camera, and tracked live.
 
     latency_*_ms: middle of the newest exposure to publication [ms]; arrival_*_ms: to the arrival at
@@ -81,19 +82,16 @@ def bench_live(command: Sequence[str], cameras: int, duration_s: float) -> LiveF
         opened.enter_context(subscriber)
         first = _first_frame(subscriber, daemon)
         process = psutil.Process(daemon.pid)
-        cpu_s, health = _cpu_s(process), subscriber.health()
-        start_ns = monotonic_ns()
-        subscriber.forget()
+        cpu_s, start_ns = _cpu_s(process), monotonic_ns()
         rss = _watch(process, daemon, duration_s)
         heard, cpu_s = subscriber.heard(), _cpu_s(process) - cpu_s
         lasted_s = seconds(monotonic_ns() - start_ns)
-        # health goes out once a second
-        dropped = subscriber.health().dropped - health.dropped
-    return _figures(first, started_ns, heard, lasted_s, dropped, cpu_s, rss, cameras)
+        health = subscriber.health()
+    return _figures(first, started_ns, heard, lasted_s, health, cpu_s, rss, cameras)
 
 
 def _figures(
-    first: Heard, started_ns: int, heard: Sequence[Heard], lasted_s: float, dropped: int,
+    first: Heard, started_ns: int, heard: Sequence[Heard], lasted_s: float, health: Health,
     cpu_s: float, rss: Floats, cameras: int,
 ) -> LiveFigures:  # fmt: skip
     n = len(heard)
@@ -113,7 +111,7 @@ def _figures(
         start_s=seconds(first_ns - started_ns),
         sets=sent,
         rate_hz=rate_hz,
-        dropped=dropped / (sent + dropped),
+        dropped=health.dropped / max(1, health.frame_sets),
         missing=(sent - n) / sent,
         all_cameras=sum(len(one.frame.cameras) == cameras for one in heard) / n,
         live=sum(one.frame.tracking == "live" for one in heard) / n,

@@ -14,19 +14,9 @@ _DIGITS = 3  # microseconds of a millisecond
 
 
 def as_json(found: Findings) -> dict[str, Any]:
-    """All that was measured, by tracker; `skipped` says why a tracker is absent."""
-    told: dict[str, Any] = {"input": found.recording}
-    told |= {
-        key: {name: asdict(one) for name, one in figures.items()}
-        for key, figures in (
-            ("trackers", found.steps),
-            ("endurance", found.endurance),
-            ("live", found.live),
-        )
-        if figures
-    }
-    if found.skipped:
-        told["skipped"] = found.skipped
+    """By tracker, what was measured, and on which `input`."""
+    measured: Mapping[str, Any] = {**found.steps, **found.endurance, **found.live}
+    told = {name: {"input": found.recording, **asdict(one)} for name, one in measured.items()}
     rounded: dict[str, Any] = _rounded(told)
     return rounded
 
@@ -42,7 +32,6 @@ def as_text(found: Findings) -> str:
     if found.endurance:
         parts.append(endurance_table(found.endurance))
     parts += [live_table(name, live) for name, live in found.live.items()]
-    parts += [f"Left out: {name} ({why})" for name, why in found.skipped.items()]
     return "\n\n".join(parts)
 
 

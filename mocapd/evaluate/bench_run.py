@@ -10,7 +10,7 @@ from mocapd.evaluate.bench import StepFigures, bench_tracker
 from mocapd.evaluate.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench_input import BenchInput
 from mocapd.evaluate.bench_live import LiveFigures, bench_live
-from mocapd.tracker_setup import Progress, build_tracker
+from mocapd.tracker_setup import Progress, build_tracker, with_cache
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TRACKERS
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -60,10 +60,10 @@ class Bench:
         Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
         """
         found = Findings(self.recording.name)
+        rig = self.recording.inputs.rig
         for name, tracker in self._trackers(found):
             for one in next(self.recording.chunks()):
                 tracker.step(one)
-            rig = self.recording.inputs.rig
             self.progress(f"running the daemon with {name} for {duration_s:.0f} s", 0, 1)
             found.live[name] = bench_live(
                 (*command, "--tracker", name), len(rig.cameras) if rig else 0, duration_s
@@ -73,14 +73,9 @@ class Bench:
     def _trackers(self, found: Findings) -> Iterator[tuple[str, Tracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
-            inputs = replace(
-                self.recording.inputs,
-                cache_dir=self.cache_dir,
-                progress=lambda share: self.progress("pose database", round(100 * share), 100),
-                tracking=self.tracking,
-            )
+            known = replace(self.recording.inputs, tracking=self.tracking)
             try:
-                tracker = build_tracker(name, inputs)
+                tracker = build_tracker(name, with_cache(known, self.cache_dir, self.progress))
             except ConfigError as error:
                 if self.tracker:
                     raise

@@ -13,7 +13,10 @@ _PERIOD_NS = NS_PER_S // 30
 
 
 def rehearse(
-    tracker: Tracker, rig: Rig | None, pictures: Mapping[str, Bytes], tell: Callable[[int, int], None]
+    tracker: Tracker,
+    rig: Rig | None,
+    pictures: Mapping[str, Bytes],
+    tell: Callable[[int, int], None],
 ) -> None:
     """Step it through still pictures and reset it.
 
@@ -24,6 +27,7 @@ def rehearse(
     """
     cameras = rig.cameras if rig else ()
     seen = {camera.name: _picture(camera, pictures.get(camera.name)) for camera in cameras}
+    tell(0, STEPS)
     for step in range(STEPS):
         t_ns = step * _PERIOD_NS
         frames = {name: Frame(name, step, t_ns, pixels) for name, pixels in seen.items()}

@@ -11,7 +11,6 @@ from mocapd.trackers.base import Tracker
 from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Rig
 
-
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
 
 
@@ -73,9 +72,7 @@ def _colour(inputs: TrackerInputs) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
     from mocapd.trackers.colour.database_file import load_or_build
 
-    loaded = load_or_build(
-        inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks
-    )
+    loaded = load_or_build(inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks)
     if loaded.built:
         inputs.tell(f"the pose database was made: {loaded.reason}")
     if loaded.warning:

@@ -88,6 +88,17 @@ def test_an_unknown_tracker(track: Track) -> None:
     assert_one_line(track("--tracker", "magic"), 78, "'magic'", "canned")
 
 
+def test_an_unknown_variant(track: Track) -> None:
+    outcome = track("--tracker", "colour", "--variant", "rapid")
+    assert_one_line(outcome, 78, "tracker.variant", "'rapid'", "full, paper")
+
+
+def test_several_cameras_without_a_rig(clean_env: dict[str, str], capture: Path) -> None:
+    cameras = [f"{name}={capture / name}.mp4" for name in ("cam0", "cam1")]
+    outcome = mocapd(clean_env, "run", "--camera", cameras[0], "--camera", cameras[1])
+    assert_one_line(outcome, 78, "rig", "--rig")
+
+
 def test_an_unwritable_cache(track: Track, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     outcome = track("--set", f"cache_dir={tmp_path / 'file' / 'cache'}")
@@ -109,7 +120,8 @@ def test_a_config_key_that_does_not_exist(track: Track, tmp_path: Path) -> None:
 def test_a_taken_port(clean_env: dict[str, str], capture: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        words = ("run", "--capture", capture, "--set", f"zenoh.port={port}")
+        words = ("run", "--capture", capture, "--tracker", "canned")
+        words += ("--set", f"zenoh.port={port}")
         assert_one_line(mocapd(clean_env, *words), 69, str(port))
 
 

@@ -5,12 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.setup import setup_of
+from mocapd.sim.world import World
+from mocapd.simulation import inputs_of_simulation
 from mocapd.trackers.base import Tracker
+from mocapd.trackers.colour.build import build_colour_tracker
+from mocapd.trackers.colour.database import DatabaseParams, build_database
 from mocapd.trackers.registry import TrackerInputs, build
 from mocapd.types import Frame, FrameSet
+from tests.sim import small
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
 PERIOD_NS = 33_333_333
+N_PERSON, N_EMPTY = 14, 6
 
 
 @dataclass(frozen=True)
@@ -57,7 +65,35 @@ def canned_case() -> TrackerCase:
     return TrackerCase(build("canned", TrackerInputs(None, 1.7)), sets, sets)
 
 
+def colour_case() -> TrackerCase:
+    """Two simulated webcams in a room with things in it; a pose database of a fiftieth of the size."""
+    cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
+    scenario = small.scenario(cameras=cameras)
+    renderers = camera_renderers(World(scenario))
+    known = inputs_of_simulation(setup_of(scenario, renderers))
+    assert known.rig is not None
+    tracker = build_colour_tracker(
+        known.rig,
+        known.stature_m,
+        known.model,
+        known.white_balance,
+        build_database(DatabaseParams(count=1600, cells=32)),
+    )
+    offset_ns = {"right": 11_000_000}
+    person = {r.camera.name: [r.frame(i) for i in range(N_PERSON)] for r in renderers}
+    empty = {
+        r.camera.name: [r.picture(None, np.ones(2), noise_key=i) for i in range(N_EMPTY)]
+        for r in renderers
+    }
+    return TrackerCase(
+        tracker,
+        frame_sets(person, offset_ns=offset_ns),
+        frame_sets(empty, offset_ns=offset_ns),
+    )
+
+
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
 CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "canned": canned_case,
+    "colour": colour_case,
 }

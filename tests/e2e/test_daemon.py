@@ -1,6 +1,7 @@
 """The whole way: simulated cameras, the real daemon, real Zenoh and OSC subscribers, the end."""
 
 import json
+import re
 import signal
 import socket
 import subprocess
@@ -9,28 +10,62 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from mocapd.body.skeleton import INDEX
+from mocapd.evaluate.score import JOINT_SETS
+from mocapd.sim.scenario import load_scenario
+from mocapd.sim.world import World
 from tests.cli.mocapd_process import mocapd, start
 from tests.cli.small_capture import write_capture
 
-FRAMES = 30
+FRAMES = 90
+SETTLED_S = 1.0  # from the first frame with a person on
+WORST_RMS_M = 0.06
 SCENARIO = """
 name = "small"
-loop_s = 0.5
+loop_s = 4.0
 [[cameras]]
 name = "cam0"
 position_m = [-1.4, 1.4, 2.4]
 look_at_m = [0.0, 1.0, 0.0]
-size_px = [160, 120]
+size_px = [320, 240]
 [[cameras]]
 name = "cam1"
 position_m = [1.6, 1.3, 2.2]
 look_at_m = [0.0, 1.0, 0.0]
-size_px = [160, 120]
+size_px = [320, 240]
 clock_offset_s = 0.011
+[[lights]]
+name = "warm"
+position_m = [1.5, 2.0, 1.8]
+colour = [1.0, 0.7, 0.4]
+intensity = 4.0
+[[lights]]
+name = "cool"
+position_m = [-1.5, 2.2, 1.8]
+colour = [0.7, 0.8, 1.0]
+intensity = 3.0
+[[room.things]]
+kind = "box"
+base_m = [-1.0, 0.0, -1.5]
+size_m = [0.5, 0.8, 0.5]
 [[motion.keyframes]]
 t_s = 0.0
+pose = "t_pose"
+at_m = [0.0, 0.0]
+yaw_deg = 0.0
+[[motion.keyframes]]
+t_s = 1.3
+pose = "relaxed"
+at_m = [0.1, 0.05]
+yaw_deg = 15.0
+[[motion.keyframes]]
+t_s = 2.6
+pose = "diagonal"
+at_m = [-0.1, 0.0]
+yaw_deg = -15.0
 """
 
 
@@ -45,13 +80,13 @@ class Running:
     """A daemon on two simulated cameras, with ports of its own."""
 
     def __init__(self, env: dict[str, str], scenario: Path) -> None:
-        self.env = env
+        self.env, self.scenario = env, scenario
         self.osc_port = free_port(socket.SOCK_DGRAM)
         zenoh_port = free_port(socket.SOCK_STREAM)
         self.endpoint = f"tcp/127.0.0.1:{zenoh_port}"
         self.process = start(
             env,
-            *("run", "--capture", f"sim:{scenario}", "--tracker", "canned"),
+            *("run", "--capture", f"sim:{scenario}"),
             *("--instance", "e2e", "--set", f"zenoh.port={zenoh_port}"),
             *("--set", f'osc.destinations=["127.0.0.1:{self.osc_port}"]'),
         )
@@ -64,7 +99,7 @@ class Running:
             env=self.env,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=300,
             check=False,
         )
         assert done.returncode == 0, done.stderr
@@ -78,17 +113,33 @@ class Running:
         return self.process.returncode, err
 
 
-@pytest.fixture(scope="module")
-def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The film is rendered once."""
-    return tmp_path_factory.mktemp("cache")
+def joint_errors_m(
+    frames: list[dict[str, Any]], scenario_file: Path, log: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Age (F,) [s] since the first frame, and errors (F,J) [m] against where the person was then.
+
+    The daemon logs which frame of the film was shown when; the rest is the scenario's.
+    """
+    began = re.search(r"frame (\d+) of the film .* is at (\d+) ns", log)
+    assert began, log
+    scenario = load_scenario(scenario_file)
+    world = World(scenario)
+    names = JOINT_SETS["upper"]
+    errors = []
+    for frame in frames:
+        played_s = (frame["capture_monotonic_ns"] - int(began[2])) / 1e9
+        truth = world.at(int(began[1]) / scenario.fps_hz + played_s).joints_m
+        got = np.array([frame["joints"][name]["position_m"] for name in names])
+        errors.append(np.linalg.norm(got - truth[[INDEX[name] for name in names]], axis=1))
+    times_ns = np.array([frame["capture_monotonic_ns"] for frame in frames])
+    return (times_ns - times_ns[0]) / 1e9, np.array(errors)
 
 
 @pytest.fixture
-def daemon(clean_env: dict[str, str], tmp_path: Path, cache_dir: Path) -> Iterator[Running]:
+def daemon(clean_env: dict[str, str], tmp_path: Path) -> Iterator[Running]:
     scenario = tmp_path / "small.toml"
     scenario.write_text(SCENARIO)
-    running = Running(clean_env | {"MOCAPD_CACHE_DIR": str(cache_dir)}, scenario)
+    running = Running(clean_env, scenario)
     try:
         yield running
     finally:
@@ -118,8 +169,14 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(daemon: Running) -
 
     code, err = daemon.end(signal.SIGTERM)
     assert code == 0, err
-    assert "canned live" in err
+    assert "colour live" in err
     assert "Traceback" not in err
+
+    live = [frame for frame in frames if frame["tracking"] == "live"]
+    assert len(live) > FRAMES // 2
+    ages_s, errors_m = joint_errors_m(live, daemon.scenario, err)
+    rms_m = np.sqrt(np.mean(errors_m[ages_s > SETTLED_S] ** 2))
+    assert rms_m < WORST_RMS_M, np.sqrt(np.mean(errors_m**2, axis=1)).round(3)
 
 
 def test_ctrl_c_ends_it_with_130(daemon: Running) -> None:
@@ -130,7 +187,8 @@ def test_ctrl_c_ends_it_with_130(daemon: Running) -> None:
 def test_recordings_run_to_their_end(clean_env: dict[str, str], tmp_path: Path) -> None:
     capture = write_capture(tmp_path / "capture")
     port = free_port(socket.SOCK_STREAM)
-    outcome = mocapd(clean_env, "run", "--capture", capture, "--set", f"zenoh.port={port}")
+    words = ("run", "--capture", capture, "--tracker", "canned")
+    outcome = mocapd(clean_env, *words, "--set", f"zenoh.port={port}")
     assert outcome.code == 0, outcome.err
 
 

@@ -25,6 +25,7 @@ from mocapd.types import Floats, Ints
 
 SIDES = ("left", "right")
 _LIBRARY = 2048
+_IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
 _PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
 
@@ -55,12 +56,6 @@ def arm_of(model: BodyModel, side: str) -> Arm:
         side, chain, sample, model.triangles[sample], place[bones],
         weights / weights.sum(axis=1, keepdims=True), model.colour[sample], np.flatnonzero(~mine),
     )  # fmt: skip
-
-
-def agreement(side: str, visible: Floats, matched: Floats, unexplained: Floats) -> float:
-    """0..1: share of the arm's patches that the pictures confirm (per-patch counts of a fit)."""
-    p = _PATCHES[side]
-    return float(matched[p].sum() / (visible[p].sum() + unexplained[p].sum() + 1.0))
 
 
 def candidates(
@@ -192,14 +187,16 @@ class ArmSearch:
         return fit, tuple(changed)
 
 
+def confirmed(side: str, fit: Fit) -> float:
+    """0..1: share of an arm's patches that the pictures confirm; an arm out of sight is not confirmed."""
+    p = _PATCHES[side]
+    asked = fit.visible[p].sum() + fit.unexplained[p].sum()
+    return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
+
+
 def doubtful(side: str, fit: Fit, params: Params) -> bool:
     """Whether too little of an arm is confirmed by the pictures."""
     return confirmed(side, fit) < params.doubtful_arm
-
-
-def confirmed(side: str, fit: Fit) -> float:
-    """0..1: share of the arm's patches that the pictures confirm."""
-    return agreement(side, fit.visible, fit.matched, fit.unexplained)
 
 
 def _part(rows: Floats, turn: int, size: int) -> Floats:

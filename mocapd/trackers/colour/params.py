@@ -24,9 +24,9 @@ class Params:
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
     background_jump: float = 0.25  # share of the background that changes at once when a lamp does
     poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried
-    sudden_loss: float = 0.93  # or under this share of what was usual in the last seconds
+    sudden_loss: float = 0.95  # or under this share of what was usual in the last seconds
     usual_s: float = 2.0  # time constant of what is usual
-    colour_memory_s: float = 0.7  # time constant of the learned colours
+    colour_memory_s: float = 0.4  # time constant of the learned colours
     count_memory_s: float = 2.5  # time constant of the colour counts, shirt against others
 
     # alignment
@@ -38,7 +38,7 @@ class Params:
     soft_unknown: float = 0.5  # the same where the background was never seen
 
     # motion: spread of the prediction over 1/30 s, growing with the square root of time
-    prediction_damping: float = 0.8
+    prediction_damping: float = 0.6
     velocity_memory: float = 0.0  # share of the last velocity kept
     arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
     root_sd_m: float = 0.10
@@ -55,7 +55,7 @@ class Params:
     arm_cloud: int = 128  # tries about the present pose
     arm_library: int = 256  # tries over the whole range, another part each frame
     arm_fits: int = 3  # of which so many are fitted
-    arm_gain: float = 5.0  # by how much the cost must fall to change over [disagreeing pixels]
+    arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
 
     # body shape
     learn_shape: bool = True

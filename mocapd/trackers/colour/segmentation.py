@@ -131,7 +131,7 @@ class Eye:
         ids, softness = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
             return ids, softness
-        inside = np.count_nonzero(ids[predicted > 0]) / rendered
+        inside = agreement(predicted, ids)[1] / rendered
         usual = memory.usual if memory.usual > 0 else inside
         keep = float(np.exp(-_TICK_S / p.usual_s))
         memory.usual = keep * usual + (1.0 - keep) * inside
@@ -152,7 +152,7 @@ class Eye:
         for light in lights:
             tried, _ = self._classified(light, roi, distance, prior)
             same = agreement(predicted, tried)[1]
-            if same > most:
+            if same > 1.02 * most:
                 best, most = light, same
         return best
 

@@ -1,0 +1,167 @@
+"""Slow twin of the alignment kernel: plain loops, derivatives by differences."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.model import N_POSE, BodyModel, shaped
+from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
+from mocapd.body.skeleton import N_JOINTS
+from mocapd.geometry import rotations
+from mocapd.trackers.colour.fitting import MotionState
+from mocapd.types import Bytes, Camera, Floats
+from mocapd.vision.raster_kernels import label_triangles, rasterise
+
+_STEP = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Posed:
+    """A body drawn into a small picture (h,w), with what the kernel wants to know of its pose."""
+
+    vertices: Floats
+    rest: Floats
+    R: Floats
+    joints: Floats
+    ids: Bytes
+    triangle_at: NDArray[np.int32]
+
+
+def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> Posed:
+    """The whole picture of a state, averaged down by `factor`."""
+    vertices, rest = shaped(model, state.factors)
+    R, joints, turned = np.zeros((N_JOINTS, 3, 3)), np.zeros((N_JOINTS, 3)), np.zeros((N_JOINTS, 4))
+    forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, turned)
+    xy, depth = np.empty((len(vertices), 2)), np.empty(len(vertices))
+    skin_and_project(
+        vertices, model.bones, model.weights, rest, R, joints,
+        camera.R, camera.t_m, camera.K, camera.dist, np.zeros(2), 1.0 / factor, xy, depth,
+    )  # fmt: skip
+    h, w = camera.size_px[1] // factor, camera.size_px[0] // factor
+    triangle_at, ids = np.empty((h, w), np.int32), np.empty((h, w), np.uint8)
+    rasterise(xy, depth, model.triangles, np.empty((h, w), np.float32), triangle_at)
+    label_triangles(triangle_at, model.colour, ids)
+    return Posed(vertices, rest, R, joints, ids, triangle_at)
+
+
+@dataclass(slots=True, eq=False)
+class Sums:
+    """What the kernel adds up."""
+
+    H: Floats
+    b: Floats
+    visible: Floats
+    matched: Floats
+    unexplained: Floats
+    cost: float = 0.0
+
+    @classmethod
+    def zero(cls, size: int) -> "Sums":
+        return cls(np.zeros((size, size)), np.zeros(size), np.zeros(21), np.zeros(21), np.zeros(21))
+
+
+def accumulate(
+    model: BodyModel,
+    state: MotionState,
+    drawn: Posed,
+    camera: Camera,
+    factor: int,
+    image_ids: Bytes,
+    softness: Bytes,
+    radius_px: float,
+    robust_px: float,
+    phase: int,
+    n_shape: int,
+    weight: float,
+) -> Sums:
+    """Rows of every disagreeing pixel of one colour of the checkerboard."""
+    size = N_POSE + n_shape
+    out = Sums.zero(size)
+    slopes = _slopes(model, state, camera, factor, size)
+    h, w = drawn.ids.shape
+    for y in range(h):
+        for x in range(w):
+            if (x + y) % 2 != phase:
+                continue
+            want, have = drawn.ids[y, x], image_ids[y, x]
+            if want:
+                patch = model.patch[drawn.triangle_at[y, x]]
+                out.visible[patch] += 1
+                out.matched[patch] += want == have
+            if want == have:
+                continue
+            if want:
+                strength = weight * (softness[y, x] / 255.0 if have == 0 else 1.0)
+                to = _nearest(image_ids, x, y, want, radius_px)
+                if to is None:
+                    out.cost += strength * robust_px**2
+                else:
+                    away = np.array([to[0] - x, to[1] - y], float)
+                    _add(out, slopes[drawn.triangle_at[y, x]], away, strength, robust_px)
+            if have:
+                to = _nearest(drawn.ids, x, y, have, radius_px)
+                if to is None:
+                    out.cost += weight * robust_px**2
+                else:
+                    t = drawn.triangle_at[to[1], to[0]]
+                    out.unexplained[model.patch[t]] += 1
+                    _add(out, slopes[t], np.array([x - to[0], y - to[1]], float), weight, robust_px)
+    return out
+
+
+def _add(out: Sums, slope: Floats, away: Floats, strength: float, robust_px: float) -> None:
+    """One row: r px to go along a direction, by Geman and McClure's weights."""
+    r = np.hypot(*away)
+    f = robust_px**2 / (robust_px**2 + r**2)
+    row = slope @ (away / r)
+    out.cost += strength * r**2 * f
+    out.b += strength * f**2 * row * r
+    out.H += strength * f**2 * np.outer(row, row)
+
+
+def _nearest(ids: Bytes, x: int, y: int, k: int, radius_px: float) -> tuple[int, int] | None:
+    """The nearest pixel of a colour; of several, the upper, then the left one."""
+    rows, columns = np.nonzero(ids == k)
+    squared = (rows - y) ** 2 + (columns - x) ** 2
+    near = squared <= radius_px**2
+    if not near.any():
+        return None
+    best = np.lexsort((columns[near], rows[near], squared[near]))[0]
+    return int(columns[near][best]), int(rows[near][best])
+
+
+def _slopes(model: BodyModel, state: MotionState, camera: Camera, factor: int, size: int) -> Floats:
+    """(T,size,2): how the centre of each triangle moves in the picture [work px], without distortion."""
+    out = np.empty((len(model.triangles), size, 2))
+    for k in range(size):
+        ends = []
+        for h in (-_STEP, _STEP):
+            step = np.zeros(size)
+            step[k] = h
+            ends.append(_centres_px(model, state, camera, factor, step))
+        out[:, k] = (ends[1] - ends[0]) / (2 * _STEP)
+    return out
+
+
+def _centres_px(
+    model: BodyModel, state: MotionState, camera: Camera, factor: int, step: Floats
+) -> Floats:
+    root, local = np.empty(3), np.empty((N_JOINTS, 4))
+    retract(
+        state.root_m, state.local_xyzw, step[:N_POSE],
+        model.group_of_joint, model.share_of_joint, root, local,
+    )  # fmt: skip
+    factors = state.factors.copy()
+    factors[: len(step) - N_POSE] += step[N_POSE:]
+    vertices, rest = shaped(model, factors)
+    R, joints, turned = np.zeros((N_JOINTS, 3, 3)), np.zeros((N_JOINTS, 3)), np.zeros((N_JOINTS, 4))
+    forward_kinematics(model.parents, rest, root, local, R, joints, turned)
+    centre = vertices[model.triangles].mean(axis=1)[:, None]
+    bones = model.triangle_bones
+    each = joints[bones] + rotations.rotate(turned[bones], centre - rest[bones])
+    world = (model.triangle_weights[..., None] * each).sum(axis=1)
+    seen = world @ camera.R.T + camera.t_m
+    focal = np.array([camera.K[0, 0], camera.K[1, 1]]) / factor
+    pixels: Floats = focal * seen[:, :2] / seen[:, 2:]
+    return pixels

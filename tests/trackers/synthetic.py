@@ -1,0 +1,66 @@
+"""Synthetic evidence: webcams around a body, and the id maps they would see of a pose."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.body.model import N_POSE, N_SHAPE, build_model
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.geometry import rotations
+from mocapd.trackers.colour.fitting import Fitter, MotionState, View, initial_information
+from mocapd.trackers.colour.key_poses import arm_rotations
+from mocapd.trackers.colour.params import Params
+from mocapd.types import Floats
+from tests.geometry.rigs import looking_at
+
+STATURE_M = 1.75
+MODEL = build_model(STATURE_M)
+CAMERAS = tuple(
+    looking_at(name, np.array(eye_m), np.array([0.0, 1.1, 0.0]))
+    for name, eye_m in (
+        ("left", (-1.3, 1.4, 2.3)), ("right", (1.5, 1.3, 2.2)), ("behind", (0.4, 1.7, -2.7)),
+    )
+)  # fmt: skip
+FACTOR = 2  # frames of 640x480 are averaged down to 320x240
+
+
+def fitter(n_cameras: int, params: Params | None = None) -> Fitter:
+    cameras = CAMERAS[:n_cameras]
+    return Fitter(MODEL, cameras, [FACTOR] * n_cameras, params if params is not None else Params())
+
+
+def standing(left: str = "goalpost", right: str = "side_low", yaw_rad: float = 0.2) -> MotionState:
+    """At rest in the middle; arms are poses of `key_poses`."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    local[0] = rotations.exp(np.array([0.0, yaw_rad, 0.0]))
+    local[INDEX["leftUpperArm"]], local[INDEX["leftLowerArm"]] = arm_rotations(left)
+    mirror = np.array([1.0, -1.0, -1.0, 1.0])
+    upper, lower = arm_rotations(right)
+    local[INDEX["rightUpperArm"]], local[INDEX["rightLowerArm"]] = upper * mirror, lower * mirror
+    return MotionState(
+        np.array([0.05, 0.98, -0.1]),
+        local,
+        np.zeros(N_POSE),
+        np.ones(N_SHAPE),
+        initial_information(),
+    )
+
+
+def stepped(of: Fitter, state: MotionState, step: Floats) -> MotionState:
+    """The state moved by a pose step (N_POSE,)."""
+    root, local = of.moved(replace(state, velocity=step), 1.0)
+    return replace(state, root_m=root, local_xyzw=local)
+
+
+def views_of(
+    by: Fitter, state: MotionState, dts_s: Sequence[float] = (0.0, 0.0, 0.0), margin: int = 28
+) -> list[View]:
+    """What every camera sees of a state, perfectly classified before a known background."""
+    out = []
+    for i in range(len(by.cameras)):
+        roi = by.region(i, state, dts_s[i], margin)
+        assert roi is not None
+        ids = by.render(i, state, dts_s[i], roi).copy()
+        out.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dts_s[i]))
+    return out

@@ -1,0 +1,220 @@
+"""The alignment kernel against its slow twin, and the fit that is built on it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.model import N_POSE, N_SHAPE
+from mocapd.body.posing_kernels import joint_shape_derivatives
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.geometry import rotations
+from mocapd.trackers.colour.alignment_kernels import accumulate, spiral
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View
+from mocapd.types import Bytes
+from tests.trackers import naive_alignment
+from tests.trackers.naive_alignment import Posed, Sums, posed
+from tests.trackers.synthetic import CAMERAS, MODEL, fitter, standing, stepped, views_of
+
+TICK_S = 1.0 / 30.0
+# joints that the shirt tells of
+UPPER = [
+    j for name, j in INDEX.items() if not any(s in name for s in ("Leg", "Foot", "Toes", "head"))
+]
+
+
+def test_the_spiral_goes_outwards_through_every_offset_once() -> None:
+    offsets = spiral(6).astype(int)
+    squared = (offsets**2).sum(axis=1)
+    assert (np.diff(squared) >= 0).all()
+    assert squared[0] == 1
+    everywhere = {(x, y) for x in range(-6, 7) for y in range(-6, 7) if 0 < x * x + y * y <= 36}
+    assert {tuple(offset) for offset in offsets.tolist()} == everywhere
+    assert len(offsets) == len(everywhere)
+
+
+# --- the kernel ------------------------------------------------------------------------------
+
+COARSE = 8  # pictures of 80x60, for the slow twin
+ROBUST_PX, RADIUS_PX, WEIGHT = 2.4, 4, 0.06
+
+
+def accumulated(
+    state: MotionState, drawn: Posed, image_ids: Bytes, softness: Bytes, phase: int, n_shape: int
+) -> Sums:
+    out = Sums.zero(N_POSE + n_shape)
+    d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
+    joint_shape_derivatives(MODEL.parents, MODEL.d_rest, drawn.R, d_joints)
+    camera, offsets = CAMERAS[0], spiral(20)
+    within = int(((offsets.astype(int) ** 2).sum(axis=1) <= RADIUS_PX**2).sum())
+    out.cost = accumulate(
+        drawn.ids, drawn.triangle_at, image_ids, softness, offsets, within, ROBUST_PX, phase,
+        MODEL.triangles, MODEL.patch, drawn.vertices, MODEL.d_vertices, MODEL.triangle_bones,
+        MODEL.triangle_weights, drawn.rest, MODEL.d_rest, MODEL.parents, MODEL.joint_of_group,
+        MODEL.group_of_joint, MODEL.share_of_joint, drawn.R, drawn.joints, d_joints, n_shape,
+        camera.R, camera.t_m, camera.K[0, 0] / COARSE, camera.K[1, 1] / COARSE, WEIGHT,
+        out.H, out.b, out.visible, out.matched, out.unexplained,
+    )  # fmt: skip
+    return out
+
+
+@pytest.mark.parametrize(("phase", "n_shape"), [(0, N_SHAPE), (1, 0)])
+def test_accumulate_equals_the_naive_twin(phase: int, n_shape: int) -> None:
+    """The twin's derivatives are differences with h = 1e-6: rows agree to 1e-10 / 1e-6 = 1e-4 px and
+    better, against rows of tens of px per radian or metre, hundreds of them added up."""
+    rng = np.random.default_rng(phase)
+    truth, camera = standing(), CAMERAS[0]
+    factors = 1.0 + rng.uniform(-0.05, 0.05, N_SHAPE)
+    state = replace(stepped(fitter(1), truth, rng.normal(0.0, 0.08, N_POSE)), factors=factors)
+    image_ids = posed(MODEL, truth, camera, COARSE).ids
+    wrong = rng.random(image_ids.shape) < 0.1
+    image_ids[wrong] = rng.integers(0, 11, wrong.sum())
+    softness = rng.integers(0, 256, image_ids.shape).astype(np.uint8)
+    drawn = posed(MODEL, state, camera, COARSE)
+    got = accumulated(state, drawn, image_ids, softness, phase, n_shape)
+    wanted = naive_alignment.accumulate(
+        MODEL, state, drawn, camera, COARSE, image_ids, softness,
+        RADIUS_PX, ROBUST_PX, phase, n_shape, WEIGHT,
+    )  # fmt: skip
+    for name in ("visible", "matched", "unexplained"):
+        np.testing.assert_array_equal(getattr(got, name), getattr(wanted, name))
+    assert got.cost == pytest.approx(wanted.cost, rel=1e-12)
+    assert got.unexplained.sum() > 50
+    scale = np.abs(wanted.H).max()
+    np.testing.assert_allclose(np.triu(got.H), np.triu(wanted.H), atol=1e-6 * scale)
+    np.testing.assert_allclose(got.b, wanted.b, atol=1e-6 * np.abs(wanted.b).max())
+
+
+def test_perfect_agreement_asks_for_no_step() -> None:
+    state = standing()
+    drawn = posed(MODEL, state, CAMERAS[0], COARSE)
+    sure = np.full(drawn.ids.shape, 255, np.uint8)
+    got = accumulated(state, drawn, drawn.ids.copy(), sure, 0, N_SHAPE)
+    assert got.cost == 0.0
+    assert not got.b.any()
+    assert not got.unexplained.any()
+    assert got.visible.sum() > 50
+    np.testing.assert_array_equal(got.matched, got.visible)
+
+
+def test_softness_weighs_what_the_picture_denies() -> None:
+    """A body before nothing but unclassified pixels costs as much as those deny it."""
+    state = standing()
+    drawn = posed(MODEL, state, CAMERAS[0], COARSE)
+    nothing = np.zeros_like(drawn.ids)
+    costs = [
+        accumulated(state, drawn, nothing, np.full_like(drawn.ids, s), 0, 0).cost
+        for s in (0, 51, 255)
+    ]
+    assert costs[0] == 0.0
+    assert costs[1] == pytest.approx(0.2 * costs[2])
+    assert costs[2] > 0.0
+
+
+# --- the fit ---------------------------------------------------------------------------------
+
+
+def errors(by: Fitter, got: MotionState, truth: MotionState) -> tuple[float, float]:
+    """RMS over the upper joints [m], mean over their bones [rad]."""
+    joints, turned = by.joints(got)
+    true_joints, true_turned = by.joints(truth)
+    apart = np.linalg.norm(joints - true_joints, axis=1)[UPPER]
+    return float(np.sqrt((apart**2).mean())), float(
+        rotations.angle_rad(turned, true_turned)[UPPER].mean()
+    )
+
+
+def beside(by: Fitter, truth: MotionState, seed: int) -> MotionState:
+    """A few centimetres and degrees away, as a prediction is."""
+    rng = np.random.default_rng(seed)
+    step = np.concatenate([rng.normal(0.0, 0.03, 3), rng.normal(0.0, 0.08, N_POSE - 3)])
+    return stepped(by, truth, step)
+
+
+def fitted(by: Fitter, start: MotionState, views: list[View]) -> Fit:
+    return by.fit(start, views, TICK_S, 8, learn_shape=False)
+
+
+# What remains of a fit to perfect ids. A pixel of the work picture is 9 mm wide at the body, and a
+# pixel either agrees or does not: the last step is as long as a pixel. One camera knows the distance
+# only from the size, to about a pixel in the body's 150.
+LEFT_M = {1: 0.045, 2: 0.014, 3: 0.012}
+LEFT_RAD = {1: np.radians(7.0), 2: np.radians(6.0), 3: np.radians(5.0)}
+
+
+@pytest.mark.parametrize("n_cameras", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_known_shift_of_the_pose_is_recovered(n_cameras: int, seed: int) -> None:
+    by, truth = fitter(n_cameras), standing()
+    views, start = views_of(by, truth), beside(by, truth, seed)
+    before_m, before_rad = errors(by, start, truth)
+    fit = fitted(by, start, views)
+    after_m, after_rad = errors(by, fit.state, truth)
+    assert before_m > 0.03
+    assert after_m < min(LEFT_M[n_cameras], 0.7 * before_m)
+    assert after_rad < min(LEFT_RAD[n_cameras], before_rad)
+    assert fit.matched.sum() > 0.88 * fit.visible.sum()
+
+
+def test_the_cost_falls() -> None:
+    by, truth = fitter(2), standing()
+    views, start = views_of(by, truth), beside(by, truth, 4)
+    costs = []
+    for iterations in (1, 8):
+        state = by.fit(start, views, TICK_S, iterations, learn_shape=False).state
+        # asked again of that state, by one iteration of the same radius
+        costs.append(by.fit(state, views, TICK_S, 1, learn_shape=False).cost)
+    first = by.fit(start, views, TICK_S, 1, learn_shape=False).cost
+    assert costs[1] < costs[0] < first
+    assert costs[1] < 0.2 * first
+
+
+def test_missing_and_wrong_pixels_do_not_matter_much() -> None:
+    """A fifth of the pixels unclassified over uncertain background, and some of a wrong colour."""
+    by, truth = fitter(2), standing()
+    rng = np.random.default_rng(0)
+    views = []
+    for view in views_of(by, truth):
+        ids, softness = view.ids.copy(), view.softness.copy()
+        missing = rng.random(ids.shape) < 0.2
+        ids[missing], softness[missing] = 0, 64
+        wrong = rng.random(ids.shape) < 0.005
+        ids[wrong] = rng.integers(1, 11, wrong.sum())
+        views.append(replace(view, ids=ids, softness=softness))
+    for seed in range(3):
+        fit = fitted(by, beside(by, truth, seed), views)
+        after_m, _ = errors(by, fit.state, truth)
+        assert after_m < 0.02
+
+
+def test_each_camera_is_fitted_at_its_own_instant() -> None:
+    """A body that moves, seen by free-running cameras: the pose is that of the asked instant."""
+    by = fitter(2)
+    velocity = np.zeros(N_POSE)
+    velocity[0] = 4.0  # m/s to the side: 6 cm between the cameras
+    truth = replace(standing(), velocity=velocity)
+    views = views_of(by, truth, dts_s=(0.0, 0.016))
+    own, _ = errors(by, fitted(by, truth, views).state, truth)
+    together = [replace(view, dt_s=0.0) for view in views]
+    mixed, _ = errors(by, fitted(by, truth, together).state, truth)
+    assert own < LEFT_M[2]
+    assert mixed > 0.025
+
+
+def test_proportions_are_learned() -> None:
+    by = fitter(3)
+    wide = replace(standing("side_low", "side_high"), factors=np.ones(N_SHAPE))
+    wide.factors[4], wide.factors[3] = 1.15, 1.1  # torso width, forearms
+    views, state = views_of(by, wide), replace(wide, factors=np.ones(N_SHAPE))
+    for _ in range(4):
+        state = by.fit(state, views, TICK_S, 5, learn_shape=True).state
+    assert abs(state.factors[4] - 1.15) < 0.05
+    assert abs(state.factors[3] - 1.1) < 0.05
+    assert np.abs(np.delete(state.factors, [3, 4]) - 1.0).max() < 0.1
+
+
+def test_a_fit_without_views_stays_where_it_is() -> None:
+    by, state = fitter(1), standing("t_pose", "t_pose")
+    fit = fitted(by, state, [])
+    assert fit.cost == 0.0
+    assert errors(by, fit.state, state)[0] < 0.02
