@@ -134,7 +134,7 @@ def forward_kinematics(
         out_R[j, 2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=True)
 def skin_and_project(
     vertices: Array,
     bones: NDArray[np.int32],
@@ -211,7 +211,7 @@ def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) 
                     out[n, j, i] = value
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath=True)
 def surface_row(
     point: Array,
     point_bones: NDArray[np.int32],

@@ -22,7 +22,7 @@ class EnduranceFigures:
     """minutes: how long it ran [min]; sets: frame sets tracked in this time.
 
     median_ms, p95_ms: of a step, in each quarter of the run [ms]; rss_mb: resident memory in the
-    middle of each quarter [MB]; rss_slope_mb_per_min: its trend after the first quarter [MB/min].
+    middle of each quarter [MB]; rss_slope_mb_per_min: its trend over the second half [MB/min].
     """
 
     minutes: float
@@ -62,7 +62,7 @@ def endure(
 def _figures(step_ms: Floats, rss: Floats) -> EnduranceFigures:
     quarters = [part for part in np.array_split(step_ms, 4) if len(part)]
     memory = [part for part in np.array_split(rss, 4) if len(part)]
-    settled = rss[len(rss) // 4 :]
+    settled = rss[len(rss) // 2 :]
     slope = float(np.polyfit(settled[:, 0], settled[:, 1], 1)[0]) if len(settled) > 1 else 0.0
     return EnduranceFigures(
         minutes=float(rss[-1, 0]),

@@ -39,7 +39,7 @@ class LiveFigures:
     latency_*_ms: middle of the newest exposure to publication [ms]; arrival_*_ms: to the arrival at
     the subscriber [ms]; cpu_share: processor time of the daemon per time, 1 is one core;
     cpu_ms: the same per frame set [ms]; rss_mb: greatest resident memory [MB];
-    rss_slope_mb_per_min: its trend after the first quarter [MB/min].
+    rss_slope_mb_per_min: its trend over the second half [MB/min].
     """
 
     seconds: float
@@ -105,7 +105,7 @@ def _figures(
     rate_hz = (n - 1) * NS_PER_S / float(arrived[-1] - arrived[0])
     # frames before the first that was heard went out while the subscriber was still connecting
     first_ns = first.frame.publish_monotonic_ns - round(first.frame.seq * NS_PER_S / rate_hz)
-    settled = rss[len(rss) // 4 :]
+    settled = rss[len(rss) // 2 :]
     return LiveFigures(
         seconds=lasted_s,
         start_s=seconds(first_ns - started_ns),

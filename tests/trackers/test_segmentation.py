@@ -205,6 +205,14 @@ def test_a_lamp_that_goes_out_changes_the_background_and_snapping_follows_it() -
     assert (age[body == 0] == 50).all()
 
 
+def test_with_nobody_known_a_jump_of_the_light_leaves_nothing_known() -> None:
+    """Whoever steps into the light as it goes on must not be taken for background."""
+    mean, age = np.zeros((H, W, 3), np.float32), np.full((H, W), 50, np.uint8)
+    lit = np.full((H, W, 3), 200, np.uint8)
+    snap_background(lit, np.zeros((H, W), np.uint8), mean, age)
+    assert not age.any()
+
+
 def test_changed_looks_at_known_background_only() -> None:
     mean, age = np.zeros((H, W, 3), np.float32), np.full((H, W), 5, np.uint8)
     white = np.full((H, W, 3), 255, np.uint8)

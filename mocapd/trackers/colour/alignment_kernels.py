@@ -47,7 +47,36 @@ def _nearest(
     return -1
 
 
+_CELL = 8  # px of the grid that tells which colours are within reach
+
+
 @njit(cache=True, nogil=True)
+def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
+    """Bit k of a cell of _CELL px is set where colour k may be within `radius` [px] of the cell: spares
+    the search where it must fail."""
+    h, w = ids.shape
+    gh, gw = h // _CELL + 1, w // _CELL + 1
+    own = np.zeros((gh, gw), np.int32)
+    for y in range(h):
+        for x in range(w):
+            k = ids[y, x]
+            if k > 0:
+                own[y // _CELL, x // _CELL] |= np.int32(1) << k
+    reach = int(np.ceil(radius / _CELL))
+    rows = np.zeros((gh, gw), np.int32)
+    for gy in range(gh):
+        for gx in range(gw):
+            for o in range(max(0, gx - reach), min(gw, gx + reach + 1)):
+                rows[gy, gx] |= own[gy, o]
+    out = np.zeros((gh, gw), np.int32)
+    for gy in range(gh):
+        for o in range(max(0, gy - reach), min(gh, gy + reach + 1)):
+            for gx in range(gw):
+                out[gy, gx] |= rows[o, gx]
+    return out
+
+
+@njit(cache=True, nogil=True, fastmath=True)
 def accumulate(
     model_ids: NDArray[np.uint8],
     triangle_at: NDArray[np.int32],
@@ -55,8 +84,10 @@ def accumulate(
     softness: NDArray[np.uint8],
     offsets: NDArray[np.int32],
     n_offsets: int,
+    radius_px: float,
     robust_px: float,
     phase: int,
+    row_step: int,
     triangles: NDArray[np.int32],
     patch: NDArray[np.uint8],
     vertices: Array,
@@ -89,7 +120,8 @@ def accumulate(
     softness (h,w): weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for
     sure background, less where something may hide the shirt). fx, fy [work px]. visible, matched
     (21,): rendered pixels and those whose colour the picture has there, per patch; unexplained
-    (21,): per patch, picture pixels drawn to it. Every second pixel is looked at (`phase` 0 or 1).
+    (21,): per patch, picture pixels drawn to it. Every second pixel of every `row_step`-th row is looked at, from
+    `phase` 0 or 1 on; sums are scaled to all rows. offsets[:n_offsets] are those within radius_px.
     """
     h, w = model_ids.shape
     P = H.shape[0]
@@ -99,21 +131,27 @@ def accumulate(
     g = np.empty(3)
     cost = 0.0
     r2_robust = robust_px * robust_px
-    for y in range(h):
+    weight *= row_step
+    counted = float(row_step)
+    near_image = colours_in_reach(image_ids, radius_px)
+    near_model = colours_in_reach(model_ids, radius_px)
+    for y in range(phase if row_step > 1 else 0, h, row_step):
         for x in range((y + phase) & 1, w, 2):
             k_model = model_ids[y, x]
             k_image = image_ids[y, x]
             if k_model > 0:
-                visible[patch[triangle_at[y, x]]] += 1.0
+                visible[patch[triangle_at[y, x]]] += counted
             if k_model == k_image:
                 if k_model > 0:
-                    matched[patch[triangle_at[y, x]]] += 1.0
+                    matched[patch[triangle_at[y, x]]] += counted
                 continue
             for direction in range(2):
                 if direction == 0:
                     if k_model == 0:
                         continue
-                    i = _nearest(image_ids, x, y, k_model, offsets, n_offsets)
+                    i = -1
+                    if near_image[y // _CELL, x // _CELL] >> k_model & 1:
+                        i = _nearest(image_ids, x, y, k_model, offsets, n_offsets)
                     row_weight = weight
                     if k_image == 0:
                         row_weight *= softness[y, x] / 255.0
@@ -125,14 +163,16 @@ def accumulate(
                 else:
                     if k_image == 0:
                         continue
-                    i = _nearest(model_ids, x, y, k_image, offsets, n_offsets)
+                    i = -1
+                    if near_model[y // _CELL, x // _CELL] >> k_image & 1:
+                        i = _nearest(model_ids, x, y, k_image, offsets, n_offsets)
                     if i < 0:
                         cost += weight * r2_robust
                         continue
                     dx, dy = -offsets[i, 0], -offsets[i, 1]
                     t = triangle_at[y - dy, x - dx]
                     row_weight = weight
-                    unexplained[patch[t]] += 1.0
+                    unexplained[patch[t]] += counted
                 r2 = float(dx * dx + dy * dy)
                 r = np.sqrt(r2)
                 # Geman-McClure

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.types import Floats
+from mocapd.types import Floats, Singles
 
 N = 10
 _BGR = np.array([2, 1, 0])
@@ -63,12 +63,13 @@ def gaussians(
     return mean, cov + shading_sd**2 * mean[:, :, None] * mean[:, None, :]
 
 
-def whitening(mean: Floats, covariance: Floats) -> Floats:
+def whitening(mean: Floats, covariance: Floats) -> Singles:
     """affine (10,3,4) for `classify`: |A (b,g,r,1)| is the Mahalanobis distance of a BGR 0..255 pixel."""
     # rows of the inverse Cholesky factor; the last row carries the sharpest test, so it goes first
     L = np.linalg.cholesky(covariance)
     A = np.linalg.inv(L)[:, ::-1]
-    return np.ascontiguousarray(np.concatenate([A / 255.0, -(A @ mean[:, :, None])], axis=2))
+    affine = np.concatenate([A / 255.0, -(A @ mean[:, :, None])], axis=2)
+    return np.ascontiguousarray(affine.astype(np.float32))
 
 
 def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.02) -> Floats:

@@ -264,7 +264,7 @@ class Fitter:
                 camera, factor = self.cameras[view.index], self.factors[view.index]
                 cost += accumulate(
                     ids, triangle_at, view.ids, view.softness, self._spiral, n_offsets,
-                    0.6 * radius, iteration & 1, m.triangles, m.patch, vertices, m.d_vertices,
+                    radius, 0.6 * radius, iteration & 1, 2 if iteration < iterations - 1 else 1, m.triangles, m.patch, vertices, m.d_vertices,
                     m.triangle_bones, m.triangle_weights, rest, m.d_rest, m.parents,
                     m.joint_of_group, m.group_of_joint, m.share_of_joint, self._R, self._joints,
                     self._d_joints, n_shape, camera.R, camera.t_m,

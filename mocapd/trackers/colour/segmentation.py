@@ -33,7 +33,7 @@ _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _NO_DOUBT = np.ones(10, np.int64)
 _TICK_S = 1.0 / 30.0
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
-_CLEAR_PX = 4  # coarse px from the shirt at which a colour counts as other
+_FARTHEST = 14  # coarse px from its predicted place at which a colour is looked for
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
 
@@ -127,7 +127,7 @@ class Eye:
         prior = p.prior_weight / (1.6 * np.sqrt(rendered) + 1.0)
         divisor = _NO_DOUBT.copy()
         divisor[doubted] = 3
-        distance = self._distances(predicted, int(min(0.5 * p.threshold / prior, 40)), divisor)
+        distance = self._distances(predicted, int(min(0.5 * p.threshold / prior, _FARTHEST)), divisor)
         ids, softness = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
             return ids, softness
@@ -148,7 +148,8 @@ class Eye:
         colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, seen)
         best, most = memory.appearance, agreement(predicted, ids)[1]
         lights = [looks.transported(memory.appearance, seen, self.model.mean)]
-        lights += [looks.fresh(W) for W in memory.references]
+        if most < self.params.poor_classification * np.count_nonzero(predicted):
+            lights += [looks.fresh(W) for W in memory.references]
         for light in lights:
             tried, _ = self._classified(light, roi, distance, prior)
             same = agreement(predicted, tried)[1]
@@ -193,9 +194,8 @@ class Eye:
         memory.appearance = Appearance(W, learned.sums)
         if sure:
             memory.references = remember_illumination(memory.references, W)
-            distance = self._distances(final, 12, _NO_DOUBT)
             count_colours(
-                self.picture, roi[0], roi[1], distance, final, ids, softness, _CLEAR_PX,
+                self.picture, roi[0], roi[1], memory.body, final, ids, softness,
                 memory.shirt_count, memory.other_count,
             )  # fmt: skip
         if memory.looks % 8 == 0:

@@ -46,15 +46,14 @@ def count_colours(
     picture: NDArray[np.uint8],
     x0: int,
     y0: int,
-    distance: NDArray[np.uint8],
+    body: NDArray[np.uint8],
     model_ids: NDArray[np.uint8],
     image_ids: NDArray[np.uint8],
     softness: NDArray[np.uint8],
-    clearance: int,
     shirt_count: NDArray[np.float32],
     other_count: NDArray[np.float32],
 ) -> None:
-    """Count colours seen on the shirt, and on moving things at least `clearance` coarse px away from it."""
+    """Count colours seen on the shirt, and on moving things outside of `body` (H,W), the widened shirt."""
     h, w = model_ids.shape
     for y in range(0, h, 2):
         for x in range(0, w, 2):
@@ -62,12 +61,8 @@ def count_colours(
             if k > 0:
                 if image_ids[y, x] == k:
                     shirt_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
-            elif softness[y, x] != 255:
-                near = 255
-                for c in range(10):
-                    near = min(near, distance[y >> 1, x >> 1, c])
-                if near >= clearance:
-                    other_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
+            elif softness[y, x] != 255 and body[y0 + y, x0 + x] == 0:
+                other_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
 
 
 @njit(cache=True, nogil=True)
@@ -76,7 +71,7 @@ def classify(
     x0: int,
     y0: int,
     distance: NDArray[np.uint8],
-    affine: Array,
+    affine: NDArray[np.float32],
     prior: float,
     threshold: float,
     mean: NDArray[np.float32],
@@ -98,59 +93,79 @@ def classify(
     affine (10,3,4): whitened distance of colour k is |A (b,g,r,1)|. A pixel that looks like the
     static background pays `background_penalty`; one whose colour is rather seen on other things
     than on the shirt pays up to `other_penalty` (counts per colour bin). softness: how firmly an unclassified pixel denies
-    the shirt, 255 where background is seen.
+    the shirt, 255 where background is seen, and out of reach of every colour.
     """
     h, w = ids.shape
-    t2 = threshold * threshold
+    h2, w2, _ = distance.shape
     sure, soft, unknown = (
         np.uint8(255),
         np.uint8(255 * soft_unclassified),
         np.uint8(255 * soft_unknown),
     )
-    tol = tolerance * 255.0
-    for y in range(h):
-        for x in range(w):
-            b = float(picture[y0 + y, x0 + x, 0])
-            g = float(picture[y0 + y, x0 + x, 1])
-            r = float(picture[y0 + y, x0 + x, 2])
-            penalty = 0.0
-            softness[y, x] = unknown
-            if age[y0 + y, x0 + x] >= 6:
-                m = mean[y0 + y, x0 + x]
-                if abs(b - m[0]) < tol and abs(g - m[1]) < tol and abs(r - m[2]) < tol:
-                    penalty = background_penalty
-                    softness[y, x] = sure
-                else:
-                    softness[y, x] = soft
-            bin_ = bin_of(picture[y0 + y, x0 + x])
-            other = other_count[bin_]
-            penalty += other_penalty * other / (other + shirt_count[bin_] + np.float32(8.0))
-            best = threshold
-            best_k = 0
-            d = distance[y >> 1, x >> 1]
+    tol = np.float32(tolerance * 255.0)
+    step = np.float32(2.0 * prior)
+    top = np.float32(threshold)
+    behind = np.float32(background_penalty)
+    elsewhere = np.float32(other_penalty)
+    near = np.empty(10, np.int64)
+    price = np.empty(10, np.float32)
+    for cy in range(h2):
+        for cx in range(w2):
+            n = 0
             for k in range(10):
-                if d[k] == FAR:
-                    continue
-                base = penalty + prior * 2.0 * d[k]
-                room = best - base
-                if room <= 0.0:
-                    continue
-                room2 = room * room
-                a = affine[k]
-                u = a[0, 0] * b + a[0, 1] * g + a[0, 2] * r + a[0, 3]
-                s = u * u
-                if s >= room2:
-                    continue
-                u = a[1, 0] * b + a[1, 1] * g + a[1, 2] * r + a[1, 3]
-                s += u * u
-                if s >= room2:
-                    continue
-                u = a[2, 0] * b + a[2, 1] * g + a[2, 2] * r + a[2, 3]
-                s += u * u
-                if s < room2:
-                    best = base + np.sqrt(s)
-                    best_k = k + 1
-            ids[y, x] = best_k
+                d = distance[cy, cx, k]
+                if d != FAR and step * d < top:
+                    near[n] = k
+                    price[n] = step * d
+                    n += 1
+            for y in range(2 * cy, min(2 * cy + 2, h)):
+                for x in range(2 * cx, min(2 * cx + 2, w)):
+                    if n == 0:
+                        ids[y, x] = 0
+                        softness[y, x] = sure
+                        continue
+                    v, u = y0 + y, x0 + x
+                    b = np.float32(picture[v, u, 0])
+                    g = np.float32(picture[v, u, 1])
+                    r = np.float32(picture[v, u, 2])
+                    penalty = np.float32(0.0)
+                    softness[y, x] = unknown
+                    if age[v, u] >= 6:
+                        if (
+                            abs(b - mean[v, u, 0]) < tol
+                            and abs(g - mean[v, u, 1]) < tol
+                            and abs(r - mean[v, u, 2]) < tol
+                        ):
+                            penalty = behind
+                            softness[y, x] = sure
+                        else:
+                            softness[y, x] = soft
+                    bin_ = bin_of(picture[v, u])
+                    other = other_count[bin_]
+                    penalty += elsewhere * other / (other + shirt_count[bin_] + np.float32(8.0))
+                    best = top
+                    best_k = 0
+                    for i in range(n):
+                        k = near[i]
+                        base = penalty + price[i]
+                        room = best - base
+                        if room <= 0.0:
+                            continue
+                        room2 = room * room
+                        z = affine[k, 0, 0] * b + affine[k, 0, 1] * g + affine[k, 0, 2] * r + affine[k, 0, 3]
+                        s = z * z
+                        if s >= room2:
+                            continue
+                        z = affine[k, 1, 0] * b + affine[k, 1, 1] * g + affine[k, 1, 2] * r + affine[k, 1, 3]
+                        s += z * z
+                        if s >= room2:
+                            continue
+                        z = affine[k, 2, 0] * b + affine[k, 2, 1] * g + affine[k, 2, 2] * r + affine[k, 2, 3]
+                        s += z * z
+                        if s < room2:
+                            best = base + np.sqrt(s)
+                            best_k = k + 1
+                    ids[y, x] = best_k
 
 
 @njit(cache=True, nogil=True)
@@ -272,19 +287,19 @@ def changed(
     age: NDArray[np.uint8],
     tolerance: float,
 ) -> float:
-    """Share of the known background, body left out, that no longer looks as learned; looks at every eighth pixel."""
+    """Share of the known background, body left out, that no longer looks as learned, from every 24th pixel."""
     h, w, _ = picture.shape
     n = different = 0
-    tol = tolerance * 255.0
-    for y in range(0, h, 4):
-        for x in range(0, w, 2):
+    tol = np.float32(tolerance * 255.0)
+    for y in range(0, h, 6):
+        for x in range(0, w, 4):
             if body[y, x] != 0 or age[y, x] < 6:
                 continue
             n += 1
-            m = mean[y, x]
-            p = picture[y, x]
-            if abs(p[0] - m[0]) > tol or abs(p[1] - m[1]) > tol or abs(p[2] - m[2]) > tol:
-                different += 1
+            for c in range(3):
+                if abs(np.float32(picture[y, x, c]) - mean[y, x, c]) > tol:
+                    different += 1
+                    break
     return different / max(n, 1)
 
 
@@ -295,11 +310,15 @@ def snap_background(
     mean: NDArray[np.float32],
     age: NDArray[np.uint8],
 ) -> None:
-    """Take the picture for the background where `body` (h,w) is 0, and forget what was behind the body."""
+    """Take the picture for the background where `body` (h,w) is 0, and forget what was behind the body.
+
+    With nobody known anything is forgotten: somebody unseen may stand in the picture.
+    """
     h, w, _ = picture.shape
+    nobody = not body.any()
     for y in range(h):
         for x in range(w):
-            if body[y, x] != 0:
+            if nobody or body[y, x] != 0:
                 age[y, x] = 0
                 continue
             for c in range(3):

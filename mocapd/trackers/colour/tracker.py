@@ -281,8 +281,8 @@ class ColourTracker:
             if known is not None and view is not None and known.fit is not None:
                 final = self._fitter.render(i, known.state, view.dt_s, view.roi)
                 sure = _match(known.fit) > self.params.sure_match
-                eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
                 eye.mark_body(final, view.roi)
+                eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
             elif self._known is None:
                 eye.mark_body(None, (0, 0, 0, 0))
         self.probe("learn")
