@@ -15,6 +15,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
 from mocapd.types import Frame
 
+_MOST_SKIPPED = 8  # frames in one read; who decodes more slowly than the film plays sees some of it
 _MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
 
 
@@ -126,7 +127,9 @@ class FileSource:
                 raise CameraLost("closed", self.name)
             self._grab(capture)
             if self._pace.live:
-                while monotonic_ns() > self._due_ns(self._index + 1):
+                for _ in range(_MOST_SKIPPED):
+                    if monotonic_ns() <= self._due_ns(self._index + 1):
+                        break
                     self._grab(capture)
                 wait_ns = self._due_ns(self._index) - monotonic_ns()
                 if self._closed.wait(max(0, wait_ns) / NS_PER_S):

@@ -63,15 +63,20 @@ def draw(
         # barycentric coordinates are affine in x and y
         ub_dx, ub_dy = -(ay - cy) * inverse, (ax - cx) * inverse
         uc_dx, uc_dy = (ay - by) * inverse, -(ax - bx) * inverse
+        dz_b, dz_c = zb - za, zc - za
         for y in range(y0, y1 + 1):
             ub = ub_dx * (x0 - ax) + ub_dy * (y - ay)
             uc = uc_dx * (x0 - ax) + uc_dy * (y - ay)
+            inside = False
             for x in range(x0, x1 + 1):
                 if ub >= -1e-9 and uc >= -1e-9 and ub + uc <= 1.0 + 1e-9:
-                    z = np.float32(za + ub * (zb - za) + uc * (zc - za))
+                    inside = True
+                    z = np.float32(za + ub * dz_b + uc * dz_c)
                     if z < zbuffer[y, x]:
                         zbuffer[y, x] = z
                         triangle_at[y, x] = t
+                elif inside:
+                    break  # a triangle is convex
                 ub += ub_dx
                 uc += uc_dx
 

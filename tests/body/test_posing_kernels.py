@@ -54,7 +54,7 @@ def test_quaternion_kernels_equal_the_geometry_module() -> None:
     out, vector = np.empty(4), np.empty(3)
     for scale in (0.0, 1e-12, 1e-5, 9e-5, 1.1e-4, 0.3, 3.1):
         v = scale * rotations.rotate(rotations.exp(rng.normal(size=3)), np.array([1.0, 0.0, 0.0]))
-        quat_exp(*v, out)
+        quat_exp(v[0], v[1], v[2], out)
         np.testing.assert_allclose(out, rotations.exp(v), rtol=1e-12, atol=1e-15)
         quat_log(out, vector)
         np.testing.assert_allclose(vector, v, rtol=1e-9, atol=1e-18)

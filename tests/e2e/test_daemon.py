@@ -94,16 +94,23 @@ class Running:
     def subscribe(self) -> dict[str, Any]:
         """What a subscriber in another process received."""
         words = (self.endpoint, str(self.osc_port), str(FRAMES))
-        done = subprocess.run(
+        with subprocess.Popen(
             [sys.executable, "-m", "tests.e2e.subscriber", *words],
             env=self.env,
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
-            timeout=300,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        received: dict[str, Any] = json.loads(done.stdout)
+        ) as subscriber:
+            while True:
+                try:
+                    out, err = subscriber.communicate(timeout=1.0)
+                    break
+                except subprocess.TimeoutExpired:
+                    if self.process.poll() is not None:
+                        subscriber.kill()
+                        pytest.fail(f"the daemon ended: {self.process.communicate()[1]}")
+        assert subscriber.returncode == 0, err
+        received: dict[str, Any] = json.loads(out)
         return received
 
     def end(self, number: signal.Signals) -> tuple[int, str]:

@@ -125,7 +125,7 @@ def test_the_daemon_publishes_lost_while_it_plays_them_at_their_own_pace(
         out, _ = watch.communicate()
     assert daemon.returncode == 0, log
     frames = [json.loads(line) for line in out.splitlines()]
-    assert len(frames) >= 5
+    assert len(frames) >= 3
     assert {frame["tracking"] for frame in frames} == {"lost"}
     assert not any(frame["joints"] for frame in frames)
     assert ("not calibrated" in log) == (len(files) == 1)

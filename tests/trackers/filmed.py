@@ -57,12 +57,12 @@ def film() -> Filmed:
     world = World(scenario)
     renderers = camera_renderers(world)
     levels = np.ones(len(table["lights"]))
-    pictures, empty, joints = [], [], []
-    for i in range(N):
-        pictures.append({r.camera.name: _still(r.frame(i)) for r in renderers})
-        joints.append(world.at(renderers[0].exposure_s(i)).joints_m)
-    for i in range(10):
-        empty.append({r.camera.name: _still(r.picture(None, levels, N + i)) for r in renderers})
+    pictures = [{r.camera.name: _still(r.frame(i)) for r in renderers} for i in range(N)]
+    joints = [world.at(renderers[0].exposure_s(i)).joints_m for i in range(N)]
+    empty = [
+        {r.camera.name: _still(r.picture(None, levels, N + i)) for r in renderers}
+        for i in range(10)
+    ]
     return Filmed(scenario, renderers, pictures, empty, joints)
 
 

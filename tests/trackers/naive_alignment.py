@@ -72,23 +72,25 @@ def accumulate(
     radius_px: float,
     robust_px: float,
     phase: int,
+    row_step: int,
     n_shape: int,
     weight: float,
 ) -> Sums:
-    """Rows of every disagreeing pixel of one colour of the checkerboard."""
+    """Rows of every disagreeing pixel of one colour of the checkerboard, of every `row_step`-th row."""
     size = N_POSE + n_shape
     out = Sums.zero(size)
     slopes = _slopes(model, state, camera, factor, size)
+    weight *= row_step
     h, w = drawn.ids.shape
-    for y in range(h):
+    for y in range(phase if row_step > 1 else 0, h, row_step):
         for x in range(w):
             if (x + y) % 2 != phase:
                 continue
             want, have = drawn.ids[y, x], image_ids[y, x]
             if want:
                 patch = model.patch[drawn.triangle_at[y, x]]
-                out.visible[patch] += 1
-                out.matched[patch] += want == have
+                out.visible[patch] += row_step
+                out.matched[patch] += row_step * (want == have)
             if want == have:
                 continue
             if want:
@@ -105,7 +107,7 @@ def accumulate(
                     out.cost += weight * robust_px**2
                 else:
                     t = drawn.triangle_at[to[1], to[0]]
-                    out.unexplained[model.patch[t]] += 1
+                    out.unexplained[model.patch[t]] += row_step
                     _add(out, slopes[t], np.array([x - to[0], y - to[1]], float), weight, robust_px)
     return out
 

@@ -130,7 +130,7 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
             point += weight * (joints[bone] + rotations.rotate(turned[bone], middle - rest[bone]))
             posed_normal += weight * rotations.rotate(turned[bone], normal)
         seen_from = camera.R @ point + camera.t_m
-        facing = -float((camera.R @ posed_normal) @ seen_from) / np.linalg.norm(seen_from)
+        facing = -float((camera.R @ posed_normal) @ seen_from / np.linalg.norm(seen_from))
         if facing <= 0.0:
             continue
         work = (project(camera, point) + 0.5) / FACTOR - 0.5 - np.array(view.roi[:2])

@@ -17,7 +17,7 @@ from mocapd.trackers.colour.segmentation_kernels import (
     learn_background,
     snap_background,
 )
-from mocapd.types import Bytes, Floats, Ints
+from mocapd.types import Bytes, Floats, Ints, Singles
 
 H, W = 36, 48
 TOLERANCE = 0.05
@@ -42,7 +42,7 @@ def picture_of(ids: Bytes, seed: int, noise: float = 0.02) -> Bytes:
     return (np.clip(rgb, 0.0, 1.0)[..., ::-1] * 255).round().astype(np.uint8)
 
 
-def affine() -> Floats:
+def affine() -> Singles:
     start = looks.fresh(np.eye(3))
     mean, covariance = looks.gaussians(start, MODEL_MEAN, MODEL_COVARIANCE, 0.04, 0.015, 0.25)
     return looks.whitening(mean, covariance)
@@ -85,10 +85,10 @@ def test_distances_equal_the_naive_twin(seed: int, shape: tuple[int, int]) -> No
 
 def naive_classify(
     picture: Bytes, at: tuple[int, int], distance: Bytes, prior: float, threshold: float,
-    mean: Floats, age: Ints, counts: tuple[Floats, Floats], penalties: tuple[float, float],
+    mean: Singles, age: Bytes, counts: tuple[Singles, Singles], penalties: tuple[float, float],
 ) -> tuple[Floats, Bytes]:  # fmt: skip
     """Costs (h,w,11) with the threshold as the cost of nothing, and where background is seen (h,w):
-    2 yes, 1 no, 0 unknown."""
+    2 yes, or no colour is expected so near; 1 no; 0 unknown."""
     h, w = 2 * distance.shape[0], 2 * distance.shape[1]
     part = (slice(at[1], at[1] + h), slice(at[0], at[0] + w))
     bgr = picture[part].astype(float)
@@ -104,7 +104,9 @@ def naive_classify(
     shirt, other = (count[bins] for count in counts)
     costs += (penalties[1] * other / (other + shirt + 8.0))[..., None]
     nothing = np.full((h, w, 1), threshold)
-    return np.concatenate([nothing, costs], axis=2), np.where(same, 2, np.where(known, 1, 0))
+    out_of_reach = ((d == FAR) | (2.0 * prior * d >= threshold)).all(axis=2)
+    background = np.where(same | out_of_reach, 2, np.where(known, 1, 0))
+    return np.concatenate([nothing, costs], axis=2), background
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -115,7 +117,7 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     h, w, at = H, W, (6, 4)
     distance = np.empty((h // 2, w // 2, 10), np.uint8)
     predicted = np.roll(truth, 2, axis=1)[at[1] : at[1] + h, at[0] : at[0] + w]
-    colour_distances(np.ascontiguousarray(predicted), 12, np.ones(10, np.int64), distance)
+    colour_distances(np.ascontiguousarray(predicted), 4, np.ones(10, np.int64), distance)
     mean = (picture + rng.normal(0.0, 12.0, picture.shape)).astype(np.float32)
     age = rng.integers(0, 12, picture.shape[:2]).astype(np.uint8)
     counts = [
@@ -226,26 +228,23 @@ def test_changed_looks_at_known_background_only() -> None:
 # --- statistics ------------------------------------------------------------------------------
 
 
-def test_colours_are_counted_on_the_shirt_and_well_away_from_it() -> None:
+def test_colours_are_counted_on_the_shirt_and_away_from_the_body() -> None:
     model, seen = blobs(3), blobs(3)
     seen[::5] = 0
-    picture = picture_of(blobs(4), 4)
+    picture = picture_of(blobs(4, H + 6, W + 8), 4)
+    body = (np.random.default_rng(1).random(picture.shape[:2]) < 0.5).astype(np.uint8)
     softness = np.where(np.random.default_rng(0).random((H, W)) < 0.5, 255, 60).astype(np.uint8)
-    at = (0, 0)
-    distance = np.empty((H // 2, W // 2, 10), np.uint8)
-    colour_distances(model, 12, np.ones(10, np.int64), distance)
-    clearance = 3
     shirt, other = np.zeros(1 << 15, np.float32), np.zeros(1 << 15, np.float32)
-    count_colours(picture, *at, distance, model, seen, softness, clearance, shirt, other)
+    count_colours(picture, 4, 2, body, model, seen, softness, shirt, other)
     wanted_shirt, wanted_other = np.zeros(1 << 15), np.zeros(1 << 15)
     for y in range(0, H, 2):
         for x in range(0, W, 2):
-            b, g, r = (int(value) for value in picture[y, x])
+            b, g, r = (int(value) for value in picture[2 + y, 4 + x])
             bin_ = (b // 8) * 1024 + (g // 8) * 32 + r // 8
-            assert bin_ == bin_of(picture[y, x])
+            assert bin_ == bin_of(picture[2 + y, 4 + x])
             if model[y, x]:
                 wanted_shirt[bin_] += seen[y, x] == model[y, x]
-            elif softness[y, x] != 255 and distance[y // 2, x // 2].min() >= clearance:
+            elif softness[y, x] != 255 and not body[2 + y, 4 + x]:
                 wanted_other[bin_] += 1
     np.testing.assert_array_equal(shirt, wanted_shirt)
     np.testing.assert_array_equal(other, wanted_other)

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
 from scipy.stats import qmc
 
 from mocapd.body.joint_limits import from_swing_twist, standard_limits
@@ -59,7 +58,12 @@ def arm_of(model: BodyModel, side: str) -> Arm:
 
 
 def candidates(
-    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], cloud: Floats, library: Floats
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    cloud: Floats,
+    library: Floats,
 ) -> Floats:
     """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose.
 
@@ -99,7 +103,12 @@ def _shortest(a: Floats, b: Floats) -> Floats:
 
 
 def best_arm_poses(
-    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hypotheses: Floats, keep: int
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    keep: int,
 ) -> list[MotionState]:
     """The `keep` best of the hypotheses, as states, best first."""
     model = fitter.model
@@ -128,7 +137,8 @@ def best_arm_poses(
         local[arm.chain[:3]] = hypotheses[n]
         # a hypothesis close to one already kept would end where that one ends
         if any(
-            np.abs((local[arm.chain[1:3]] * kept.local_xyzw[arm.chain[1:3]]).sum(axis=1)).min() > 0.985
+            np.abs((local[arm.chain[1:3]] * kept.local_xyzw[arm.chain[1:3]]).sum(axis=1)).min()
+            > 0.985
             for kept in out
         ):
             continue

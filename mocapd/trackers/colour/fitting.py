@@ -70,12 +70,10 @@ class Fit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartialRender:
-    """Part of the body drawn in one camera, with the posed joints and scratch buffers of the same size."""
+    """Part of the body drawn in one camera, with the posed joints."""
 
     ids: NDArray[np.uint8]
     zbuffer: NDArray[np.float32]
-    scratch_z: NDArray[np.float32]
-    scratch_triangle: NDArray[np.int32]
     R: Floats
     joints: Floats
     quats: Floats
@@ -107,9 +105,9 @@ class Fitter:
         V = len(model.vertices_m)
         self._xy, self._depth = np.empty((V, 2)), np.empty(V)
         self._zbuffer = np.empty(_MAX_WORK_PX, np.float32)
-        self._scratch_z = np.empty(_MAX_WORK_PX, np.float32)
-        self._triangle_at = np.empty(_MAX_WORK_PX, np.int32)
-        self._ids = np.empty(_MAX_WORK_PX, np.uint8)
+        # by camera, so that the last rendering of each can be used again
+        self._triangle_at = [np.empty(_MAX_WORK_PX, np.int32) for _ in cameras]
+        self._ids = [np.empty(_MAX_WORK_PX, np.uint8) for _ in cameras]
         p = params
         self._prediction_sd = np.concatenate([
             np.full(3, p.root_sd_m),
@@ -164,11 +162,16 @@ class Fitter:
         )  # fmt: skip
         return self._joints.copy(), self._global.copy()
 
+    def _pose(self, root: Floats, local: Floats, rest: Floats) -> None:
+        forward_kinematics(
+            self.model.parents, rest, root, local, self._R, self._joints, self._global
+        )
+
     def _project(
         self, index: int, root: Floats, local: Floats, vertices: Floats, rest: Floats, roi: Roi
     ) -> None:
         m, camera, factor = self.model, self.cameras[index], self.factors[index]
-        forward_kinematics(m.parents, rest, root, local, self._R, self._joints, self._global)
+        self._pose(root, local, rest)
         skin_and_project(
             vertices, m.bones, m.weights, rest, self._R, self._joints,
             camera.R, camera.t_m, camera.K, camera.dist,
@@ -190,12 +193,21 @@ class Fitter:
         x1, y1 = min(w, int(hi[0]) + margin), min(h, int(hi[1]) + margin)
         return (x0, y0, x1, y1) if x1 - x0 >= 16 and y1 - y0 >= 16 else None
 
-    def render(
-        self, index: int, state: MotionState, dt_s: float, roi: Roi
-    ) -> NDArray[np.uint8]:
+    def render(self, index: int, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:
         """The id map (h,w) of the state in this camera at dt_s. The array is the fitter's own buffer."""
         vertices, rest = shaped(self.model, state.factors)
         return self._rendered(index, *self.moved(state, dt_s), vertices, rest, roi)[0]
+
+    def last_rendered(self, index: int, roi: Roi) -> NDArray[np.uint8]:
+        """The id map that `fit` or `render` drew last in this camera and region; the fitter's own buffer."""
+        return self._buffers(index, roi)[0]
+
+    def _buffers(self, index: int, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        h, w = roi[3] - roi[1], roi[2] - roi[0]
+        return (
+            self._ids[index][: h * w].reshape(h, w),
+            self._triangle_at[index][: h * w].reshape(h, w),
+        )
 
     def render_parts(
         self, index: int, state: MotionState, dt_s: float, roi: Roi, triangles: NDArray[np.int64]
@@ -205,23 +217,18 @@ class Fitter:
         vertices, rest = shaped(m, state.factors)
         self._project(index, *self.moved(state, dt_s), vertices, rest, roi)
         h, w = roi[3] - roi[1], roi[2] - roi[0]
-        ids = self._ids[: h * w].reshape(h, w)
-        triangle_at = self._triangle_at[: h * w].reshape(h, w)
+        ids, triangle_at = self._buffers(index, roi)
         zbuffer = self._zbuffer[: h * w].reshape(h, w)
         rasterise(self._xy, self._depth, m.triangles[triangles], zbuffer, triangle_at)
         label_triangles(triangle_at, m.colour[triangles], ids)
-        scratch = self._scratch_z[: h * w].reshape(h, w)
-        return PartialRender(
-            ids, zbuffer, scratch, triangle_at, self._R, self._joints, self._global
-        )
+        return PartialRender(ids, zbuffer, self._R, self._joints, self._global)
 
     def _rendered(
         self, index: int, root: Floats, local: Floats, vertices: Floats, rest: Floats, roi: Roi
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         self._project(index, root, local, vertices, rest, roi)
         h, w = roi[3] - roi[1], roi[2] - roi[0]
-        ids = self._ids[: h * w].reshape(h, w)
-        triangle_at = self._triangle_at[: h * w].reshape(h, w)
+        ids, triangle_at = self._buffers(index, roi)
         zbuffer = self._zbuffer[: h * w].reshape(h, w)
         rasterise(self._xy, self._depth, self.model.triangles, zbuffer, triangle_at)
         label_triangles(triangle_at, self.model.colour, ids)
@@ -236,8 +243,13 @@ class Fitter:
         dt_s: float,
         iterations: int,
         learn_shape: bool,
+        rendered: bool = False,
     ) -> Fit:
-        """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit."""
+        """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
+
+        rendered: `render` has just drawn the prediction into every view, so that the first
+        iteration need not draw it again.
+        """
         p, m = self.params, self.model
         state = prediction
         n_shape = N_SHAPE if learn_shape else 0
@@ -251,6 +263,7 @@ class Fitter:
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
             radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
+            row_step = 2 if iteration < iterations - 1 else 1  # all rows where it counts
             n_offsets = int(np.searchsorted(self._spiral_r2, radius * radius, side="right"))
             H = np.zeros((P, P))
             b = np.zeros(P)
@@ -259,12 +272,18 @@ class Fitter:
             vertices, rest = shaped(m, state.factors)
             for view in views:
                 root, local = self.moved(state, view.dt_s)
-                ids, triangle_at = self._rendered(view.index, root, local, vertices, rest, view.roi)
+                if rendered and iteration == 0:
+                    ids, triangle_at = self._buffers(view.index, view.roi)
+                    self._pose(root, local, rest)
+                else:
+                    ids, triangle_at = self._rendered(
+                        view.index, root, local, vertices, rest, view.roi
+                    )
                 joint_shape_derivatives(m.parents, m.d_rest, self._R, self._d_joints)
                 camera, factor = self.cameras[view.index], self.factors[view.index]
                 cost += accumulate(
                     ids, triangle_at, view.ids, view.softness, self._spiral, n_offsets,
-                    radius, 0.6 * radius, iteration & 1, 2 if iteration < iterations - 1 else 1, m.triangles, m.patch, vertices, m.d_vertices,
+                    radius, 0.6 * radius, iteration & 1, row_step, m.triangles, m.patch, vertices, m.d_vertices,
                     m.triangle_bones, m.triangle_weights, rest, m.d_rest, m.parents,
                     m.joint_of_group, m.group_of_joint, m.share_of_joint, self._R, self._joints,
                     self._d_joints, n_shape, camera.R, camera.t_m,
@@ -276,12 +295,14 @@ class Fitter:
             A = H.copy()
             A[diagonal, diagonal] += prior + self._rest_information
             b[:N_POSE] += prior * self.step_between(start, pose)
-            b[:N_POSE] += self._rest_information * self.step_between((state.root_m, self._identity), pose)
+            b[:N_POSE] += self._rest_information * self.step_between(
+                (state.root_m, self._identity), pose
+            )
             self._add_limits(state.local_xyzw, A, b)
             if learn_shape:
                 A[N_POSE:, N_POSE:] += prediction.information
                 b[N_POSE:] += prediction.information @ (prediction.factors - state.factors)
-            step = np.linalg.solve(A, b)
+            step = np.asarray(np.linalg.solve(A, b), dtype=np.float64)
             state = self._stepped(state, step)
         return Fit(state, visible, matched, unexplained, H, cost)
 
@@ -316,5 +337,3 @@ class Fitter:
         Hpp = H[:N_POSE, :N_POSE] + np.diag(self._rest_information + 1e-3)
         Hps = H[:N_POSE, N_POSE:]
         return H[N_POSE:, N_POSE:] - Hps.T @ np.linalg.solve(Hpp, Hps)
-
-

@@ -19,18 +19,18 @@ class Params:
     cloth_sd: float = 0.04  # spread of the cloth's own colour, in white-balanced light [0..1]
     noise_sd: float = 0.015  # sensor noise and compression [0..1]
     shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
-    background_penalty: float = 1.5  # added where the static background is seen [standard deviations]
+    background_penalty: float = 1.5  # added where static background is seen [standard deviations]
     other_penalty: float = 1.5  # added where the colour is rather seen on other things
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
     background_jump: float = 0.25  # share of the background that changes at once when a lamp does
     poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried
-    sudden_loss: float = 0.95  # or under this share of what was usual in the last seconds
+    sudden_loss: float = 0.93  # or under this share of what was usual in the last seconds
     usual_s: float = 2.0  # time constant of what is usual
     colour_memory_s: float = 0.4  # time constant of the learned colours
     count_memory_s: float = 2.5  # time constant of the colour counts, shirt against others
 
     # alignment
-    iterations: int = 5
+    iterations: int = 4
     first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated

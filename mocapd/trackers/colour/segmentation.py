@@ -127,7 +127,9 @@ class Eye:
         prior = p.prior_weight / (1.6 * np.sqrt(rendered) + 1.0)
         divisor = _NO_DOUBT.copy()
         divisor[doubted] = 3
-        distance = self._distances(predicted, int(min(0.5 * p.threshold / prior, _FARTHEST)), divisor)
+        distance = self._distances(
+            predicted, int(min(0.5 * p.threshold / prior, _FARTHEST)), divisor
+        )
         ids, softness = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
             return ids, softness
@@ -238,7 +240,11 @@ class Eye:
             ids = np.empty((h, w), np.uint8)
             classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
             suppress_background(
-                self.picture, memory.background_mean, memory.background_age, p.background_tolerance, ids
+                self.picture,
+                memory.background_mean,
+                memory.background_age,
+                p.background_tolerance,
+                ids,
             )
             x0, y0, x1, y1, evenness = find_shirt(ids, sizes)
             if keep(evenness) and (best is None or evenness > best.evenness):

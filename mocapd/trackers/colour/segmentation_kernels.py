@@ -152,15 +152,30 @@ def classify(
                         if room <= 0.0:
                             continue
                         room2 = room * room
-                        z = affine[k, 0, 0] * b + affine[k, 0, 1] * g + affine[k, 0, 2] * r + affine[k, 0, 3]
+                        z = (
+                            affine[k, 0, 0] * b
+                            + affine[k, 0, 1] * g
+                            + affine[k, 0, 2] * r
+                            + affine[k, 0, 3]
+                        )
                         s = z * z
                         if s >= room2:
                             continue
-                        z = affine[k, 1, 0] * b + affine[k, 1, 1] * g + affine[k, 1, 2] * r + affine[k, 1, 3]
+                        z = (
+                            affine[k, 1, 0] * b
+                            + affine[k, 1, 1] * g
+                            + affine[k, 1, 2] * r
+                            + affine[k, 1, 3]
+                        )
                         s += z * z
                         if s >= room2:
                             continue
-                        z = affine[k, 2, 0] * b + affine[k, 2, 1] * g + affine[k, 2, 2] * r + affine[k, 2, 3]
+                        z = (
+                            affine[k, 2, 0] * b
+                            + affine[k, 2, 1] * g
+                            + affine[k, 2, 2] * r
+                            + affine[k, 2, 3]
+                        )
                         s += z * z
                         if s < room2:
                             best = base + np.sqrt(s)

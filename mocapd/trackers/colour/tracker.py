@@ -5,21 +5,32 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE, build_model, shape_of
+from mocapd.body.model import N_SHAPE, build_model, shape_of
 from mocapd.body.shape import skeleton_of
 from mocapd.body.shirt import standard_shirt
-from mocapd.body.skeleton import NAMES, PARENTS, N_JOINTS
+from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.errors import ConfigError
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View, initial_information
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View, initial_information
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
-from mocapd.types import BodyState, Bytes, Floats, Frame, FrameSet, Ints, Pose, Rig, Skeleton, Track, Tracking
+from mocapd.types import (
+    BodyState,
+    Floats,
+    Frame,
+    FrameSet,
+    Ints,
+    Pose,
+    Rig,
+    Skeleton,
+    Track,
+    Tracking,
+)
 from mocapd.vision.colour_model import ColourModel
 
 _TICK_S = 1.0 / 30.0
@@ -90,6 +101,7 @@ class ColourTracker:
         self._taught_s = 0.0
         self._next_search_ns = 0
         self._turn = 0
+        self._redraw = True
 
     def step(self, frames: FrameSet) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
@@ -113,7 +125,7 @@ class ColourTracker:
         if known is not None:
             self._factors, self._information = known.state.factors, known.state.information
             self._taught_s = known.taught_s
-        self._learn(views, known if evidence else None, present, frames)
+        self._learn(views, known if evidence else None, present)
         self.probe("background")
         return self._track(tracking, frames, views)
 
@@ -167,9 +179,11 @@ class ColourTracker:
             and known.fit is not None
             and _match(known.fit) > p.shape_match
         )
-        fit = fitter.fit(predicted, views, dt_s, p.iterations, learning)
+        fit = fitter.fit(predicted, views, dt_s, p.iterations, learning, rendered=True)
         self.probe("fit")
+        before = fit
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
+        self._redraw = fit is not before or any(doubtful(s, before, p) for s in SIDES)
         self.probe("arms")
         match = _match(fit)
         # every second pixel was counted
@@ -213,11 +227,11 @@ class ColourTracker:
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
         before = [eye.memory.appearance for eye in self._eyes]
         views = [replace(v, ids=v.ids.copy(), softness=v.softness.copy()) for v in views]
-        found = self._found(present, frames)
+        found = self._found(present)
         if found is not None:
             fit, seen = found
-            current = known is not None and known.t_ns == frames.t_ns and known.fit is not None
-            if not current or _match(fit) > _match(known.fit) + p.doubt_gain:
+            held = known.fit if known is not None and known.t_ns == frames.t_ns else None
+            if held is None or _match(fit) > _match(held) + p.doubt_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
                 return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen
@@ -225,9 +239,7 @@ class ColourTracker:
             eye.memory.appearance = appearance
         return known, views
 
-    def _found(
-        self, present: dict[int, float], frames: FrameSet
-    ) -> tuple[Fit, list[View]] | None:
+    def _found(self, present: dict[int, float]) -> tuple[Fit, list[View]] | None:
         """An acceptable fit from the pose database, and the views it was fitted to."""
         p = self.params
         sightings = [
@@ -246,6 +258,7 @@ class ColourTracker:
             for s in sightings
         ]  # fmt: skip
         fit = detection.best_fit(self._fitter, states, flat)
+        self._redraw = True
         if fit is None:
             return None
         for s in sightings:
@@ -270,16 +283,17 @@ class ColourTracker:
             and 2.0 * fit.matched.sum() >= p.min_shirt_px
         )
 
-    def _learn(
-        self, views: list[View], known: _Known | None, present: dict[int, float], frames: FrameSet
-    ) -> None:
+    def _learn(self, views: list[View], known: _Known | None, present: dict[int, float]) -> None:
         """Follow light and background in every camera that has a frame."""
         seen = {v.index: v for v in views}
         for i in present:
             eye = self._eyes[i]
             view = seen.get(i)
             if known is not None and view is not None and known.fit is not None:
-                final = self._fitter.render(i, known.state, view.dt_s, view.roi)
+                if self._redraw:
+                    final = self._fitter.render(i, known.state, view.dt_s, view.roi)
+                else:  # the last iteration's drawing differs by a fraction of a pixel
+                    final = self._fitter.last_rendered(i, view.roi)
                 sure = _match(known.fit) > self.params.sure_match
                 eye.mark_body(final, view.roi)
                 eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
@@ -301,7 +315,9 @@ class ColourTracker:
         state = known.state
         away_s = seconds(frames.t_ns - known.t_ns)
         if away_s > 0.0:  # coasting: it moves on for a moment, then stays
-            root, local = self._fitter.moved(state, min(away_s, 0.1), self.params.prediction_damping)
+            root, local = self._fitter.moved(
+                state, min(away_s, 0.1), self.params.prediction_damping
+            )
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)
         confidence = joint_confidence(known.fit, len(known.cameras), away_s)
