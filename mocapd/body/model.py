@@ -85,7 +85,7 @@ def build_model(stature_m: float) -> BodyModel:
         triangle_bones=triangle_bones,
         triangle_weights=triangle_weights,
         rest_m=skeleton_of(mean_shape(stature_m)).rest_m,
-        d_vertices=d_vertices[:, used],
+        d_vertices=np.ascontiguousarray(d_vertices[:, used]),
         d_rest=d_rest,
         parents=PARENTS,
         group_of_joint=group_of_joint,
@@ -97,8 +97,9 @@ def build_model(stature_m: float) -> BodyModel:
 def shaped(model: BodyModel, factors: Floats) -> tuple[Floats, Floats]:
     """T-pose vertices (V,3) and joints (J,3) of a body with these factors: linear in them."""
     offset = factors - 1.0
-    vertices = model.vertices_m + np.tensordot(offset, model.d_vertices, axes=1)
-    return vertices, model.rest_m + np.tensordot(offset, model.d_rest, axes=1)
+    vertices = offset @ model.d_vertices.reshape(N_SHAPE, -1)
+    rest = offset @ model.d_rest.reshape(N_SHAPE, -1)
+    return model.vertices_m + vertices.reshape(-1, 3), model.rest_m + rest.reshape(-1, 3)
 
 
 def shape_of(model: BodyModel, factors: Floats) -> BodyShape:

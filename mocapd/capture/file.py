@@ -15,7 +15,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
 from mocapd.types import Frame
 
-_MOST_SKIPPED = 8  # frames in one read; who decodes more slowly than the film plays sees some of it
+_SKIPPING_NS = 100_000_000  # in one read; who decodes more slowly than the film plays sees some of it
 _MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
 
 
@@ -127,9 +127,8 @@ class FileSource:
                 raise CameraLost("closed", self.name)
             self._grab(capture)
             if self._pace.live:
-                for _ in range(_MOST_SKIPPED):
-                    if monotonic_ns() <= self._due_ns(self._index + 1):
-                        break
+                until_ns = monotonic_ns() + _SKIPPING_NS
+                while self._due_ns(self._index + 1) < monotonic_ns() < until_ns:
                     self._grab(capture)
                 wait_ns = self._due_ns(self._index) - monotonic_ns()
                 if self._closed.wait(max(0, wait_ns) / NS_PER_S):

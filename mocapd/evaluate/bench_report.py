@@ -75,13 +75,13 @@ def endurance_table(endurance: Mapping[str, EnduranceFigures]) -> str:
     rows = []
     for name, one in endurance.items():
         what = f"{name}, {one.minutes:.1f} min, {one.sets} sets"
-        for i, (median, p95, rss) in enumerate(
-            zip(one.median_ms, one.p95_ms, one.rss_mb, strict=False), start=1
-        ):
-            cells = (number(median, 2), number(p95, 2), number(rss, 0))
+        columns = zip(one.median_ms, one.p95_ms, one.cpu_ms, one.rss_mb, strict=False)
+        for i, (*times_ms, rss) in enumerate(columns, start=1):
+            cells = (*(number(value, 2) for value in times_ms), number(rss, 0))
             rows.append((f"{what}, quarter {i}", *cells))
-        rows.append((f"{what}, trend", "", "", f"{number(one.rss_slope_mb_per_min, 2)} MB/min"))
-    return table(("run", "median ms", "p95 ms", "RSS MB"), rows)
+        trend = f"{number(one.rss_slope_mb_per_min, 2)} MB/min"
+        rows.append((f"{what}, trend", "", "", "", trend))
+    return table(("run", "median ms", "p95 ms", "CPU ms", "RSS MB"), rows)
 
 
 def live_table(name: str, live: LiveFigures) -> str:

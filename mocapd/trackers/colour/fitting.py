@@ -263,7 +263,7 @@ class Fitter:
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
             radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
-            row_step = 2 if iteration < iterations - 1 else 1  # all rows where it counts
+            row_step = p.early_row_step if iteration < iterations - 1 else p.last_row_step
             n_offsets = int(np.searchsorted(self._spiral_r2, radius * radius, side="right"))
             H = np.zeros((P, P))
             b = np.zeros(P)

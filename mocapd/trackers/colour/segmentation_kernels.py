@@ -128,26 +128,11 @@ def classify(
                     b = np.float32(picture[v, u, 0])
                     g = np.float32(picture[v, u, 1])
                     r = np.float32(picture[v, u, 2])
-                    penalty = np.float32(0.0)
-                    softness[y, x] = unknown
-                    if age[v, u] >= 6:
-                        if (
-                            abs(b - mean[v, u, 0]) < tol
-                            and abs(g - mean[v, u, 1]) < tol
-                            and abs(r - mean[v, u, 2]) < tol
-                        ):
-                            penalty = behind
-                            softness[y, x] = sure
-                        else:
-                            softness[y, x] = soft
-                    bin_ = bin_of(picture[v, u])
-                    other = other_count[bin_]
-                    penalty += elsewhere * other / (other + shirt_count[bin_] + np.float32(8.0))
                     best = top
                     best_k = 0
                     for i in range(n):
                         k = near[i]
-                        base = penalty + price[i]
+                        base = price[i]
                         room = best - base
                         if room <= 0.0:
                             continue
@@ -180,6 +165,23 @@ def classify(
                         if s < room2:
                             best = base + np.sqrt(s)
                             best_k = k + 1
+                    # the penalties are the same for every colour, so they cannot change the winner
+                    known = age[v, u] >= 6
+                    still = (
+                        known
+                        and abs(b - mean[v, u, 0]) < tol
+                        and abs(g - mean[v, u, 1]) < tol
+                        and abs(r - mean[v, u, 2]) < tol
+                    )
+                    softness[y, x] = sure if still else (soft if known else unknown)
+                    if best_k > 0:
+                        bin_ = bin_of(picture[v, u])
+                        other = other_count[bin_]
+                        best += elsewhere * other / (other + shirt_count[bin_] + np.float32(8.0))
+                        if still:
+                            best += behind
+                        if best >= top:
+                            best_k = 0
                     ids[y, x] = best_k
 
 
