@@ -15,7 +15,9 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
 from mocapd.types import Frame
 
-_SKIPPING_NS = 100_000_000  # in one read; who decodes more slowly than the film plays sees some of it
+_SKIPPING_NS = (
+    100_000_000  # in one read; who decodes more slowly than the film plays sees some of it
+)
 _MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
 
 

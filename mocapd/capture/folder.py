@@ -112,7 +112,7 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
         fps_hz=fps_hz,
         time_offset_s=_number(entry, "time_offset_s", 0.0, where),
         frames=info.frames,
-        scribble=_stroked(folder / "scribble" / f"{name}.png"),
+        scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
     )
 
 

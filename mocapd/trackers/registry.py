@@ -70,11 +70,12 @@ def _canned(inputs: TrackerInputs) -> Tracker:
 
 def _colour(inputs: TrackerInputs) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
-    from mocapd.trackers.colour.database_file import load_or_build
+    from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build
 
+    stale = (inputs.cache_dir / FILE_NAME).exists()
     loaded = load_or_build(inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks)
-    if loaded.built:
-        inputs.tell(f"the pose database was made: {loaded.reason}")
+    if loaded.built and stale:
+        inputs.tell(f"{loaded.reason}, so it was made anew")
     if loaded.warning:
         inputs.tell(loaded.warning)
     return build_colour_tracker(

@@ -10,7 +10,8 @@ from mocapd.config_sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session import cameras_of, open_session
 from mocapd.tracker_setup import inputs_of_capture, inputs_of_config, read_model, stroked_folder
-from tests.cli.small_capture import camera_entry, write_capture, write_rig, write_stroked
+from mocapd.trackers.registry import TRACKERS
+from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
 
 @pytest.fixture
@@ -52,6 +53,41 @@ def test_webcams_need_no_rig_where_the_tracker_needs_none() -> None:
     session = open_session(config, quiet)
     assert session.rig is None
     assert session.cameras[0].expected_hz == 30.0
+
+
+def test_one_camera_without_a_rig_is_tried_where_it_probably_stands(
+    capture: Path, cache_home: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    camera = CameraSection("webcam", str(capture / "cam0.mp4"))
+    session = open_session(Config(camera=(camera,), cache_dir=cache_home / "mocapd"), quiet)
+    assert session.rig is not None
+    assert session.rig_source == "assumed"
+    assert [(one.name, one.size_px) for one in session.rig.cameras] == [("webcam", SIZE_PX)]
+    assert "'webcam' is not calibrated" in caplog.text
+    assert session.tracker.name == "colour"
+
+
+def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
+    capture: Path,
+) -> None:
+    cameras = tuple(CameraSection(name, str(capture / f"{name}.mp4")) for name in ("cam0", "cam1"))
+    with pytest.raises(ConfigError, match="--rig"):
+        open_session(Config(camera=cameras, cache_dir=capture), quiet)
+    assert not list(capture.glob("pose_database*"))
+
+
+def test_the_colour_tracker_is_the_usual_one_in_any_of_its_variants() -> None:
+    assert TrackerSection().name == "colour"
+    for variant in TRACKERS["colour"].variants:
+        assert inputs_of_config(TrackerSection(variant=variant), (), None).variant == variant
+    with pytest.raises(ConfigError, match=r"tracker\.variant: .*'canned' has no variant 'paper'"):
+        TrackerSection(name="canned", variant="paper")
+
+
+def test_what_the_config_says_of_losing_track_reaches_the_tracker() -> None:
+    inputs = inputs_of_config(TrackerSection(coast_s=0.9, confirm_s=0.2), (), None)
+    assert inputs.tracking is not None
+    assert (inputs.tracking.coast_s, inputs.tracking.confirm_s) == (0.9, 0.2)
 
 
 def test_simulated_cameras_mix_with_no_others() -> None:

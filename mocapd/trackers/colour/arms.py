@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from mocapd.body.joint_limits import from_swing_twist, standard_limits
 from mocapd.body.model import BodyModel, shaped
@@ -150,7 +149,7 @@ def arm_library(size: int, side: str) -> Floats:
     """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
     limits = standard_limits()
     first = 3 if side == "left" else 6  # rotation groups of body.model: upper arm, forearm
-    u = qmc.Halton(6, scramble=False).random(size + 1)[1:]
+    u = _halton(size)
     out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
     for place, group, span in ((1, first, slice(0, 3)), (2, first + 1, slice(3, 6))):
         lower, upper = limits.lower_rad[group], limits.upper_rad[group]
@@ -166,7 +165,7 @@ class ArmSearch:
         self.fitter, self.params = fitter, params
         self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
         self._library = {side: arm_library(_LIBRARY, side) for side in SIDES}
-        u = qmc.Halton(6, scramble=False).random(_LIBRARY + 1)[1:]
+        u = _halton(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
 
@@ -212,3 +211,15 @@ def doubtful(side: str, fit: Fit, params: Params) -> bool:
 def _part(rows: Floats, turn: int, size: int) -> Floats:
     first = (turn * size) % len(rows)
     return rows[first : first + size]
+
+
+def _halton(size: int) -> Floats:
+    """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960)."""
+    out = np.zeros((size, 6))
+    for column, base in enumerate((2, 3, 5, 7, 11, 13)):
+        n, f = np.arange(1, size + 1), 1.0
+        while n.any():
+            f /= base
+            out[:, column] += f * (n % base)
+            n //= base
+    return out

@@ -15,7 +15,7 @@ from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View, initial_information
+from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View, initial_information
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
@@ -333,8 +333,14 @@ class ColourTracker:
         return Track(
             body,
             evidence={self.rig.cameras[v.index].name: v.ids.copy() for v in views},
-            roi_px={self.rig.cameras[v.index].name: v.roi for v in views},
+            roi_px={self.rig.cameras[v.index].name: self._frame_roi(v) for v in views},
         )
+
+    def _frame_roi(self, view: View) -> Roi:
+        """A view's region in pixels of the frame itself."""
+        factor = self._eyes[view.index].factor
+        x0, y0, x1, y1 = (factor * edge for edge in view.roi)
+        return x0, y0, x1, y1
 
 
 def _colours_of(sides: tuple[str, ...]) -> Ints:
