@@ -33,7 +33,9 @@ class Params:
     iterations: int = 4
     first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
-    early_row_step: int = 2  # every second row counts; in the last iteration every `last_row_step`-th
+    early_row_step: int = (
+        2  # every second row counts, in the last iteration every `last_row_step`-th
+    )
     last_row_step: int = 1
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
