@@ -116,8 +116,6 @@ def test_a_pose_database_that_is_half_written(
     second = mocapd(clean_env, *words)
     assert second.code == 0
     assert str(database) not in second.err
-    assert "pose database" in first.err  # its bar
-    assert "pose database" not in second.err
 
 
 def test_an_unwritable_cache(track: Track, tmp_path: Path) -> None:

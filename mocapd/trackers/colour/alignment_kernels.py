@@ -47,6 +47,8 @@ def _nearest(
     return -1
 
 
+# parameters of trunk, left arm, right arm, shape (body.model.GROUPS)
+_SPANS = np.array([[0, 9], [9, 18], [18, 27], [27, 34]])
 _CELL = 8  # px of the grid that tells which colours are within reach
 
 
@@ -129,6 +131,7 @@ def accumulate(
     point = np.empty(3)
     d_point = np.empty((max(n_shape, 1), 3))
     g = np.empty(3)
+    used = np.zeros(_SPANS.shape[0], np.bool_)
     cost = 0.0
     r2_robust = robust_px * robust_px
     weight *= row_step
@@ -228,11 +231,21 @@ def accumulate(
                     n_shape,
                     row,
                 )
-                for p in range(P):
-                    wp = row_weight * row[p]
-                    if wp == 0.0:
+                # most rows are empty but for the trunk, one arm and the shape: whole spans are skipped
+                for i in range(_SPANS.shape[0]):
+                    first, last = _SPANS[i, 0], min(_SPANS[i, 1], P)
+                    empty = True
+                    for p in range(first, last):
+                        empty = empty and row[p] == 0.0
+                    used[i] = not empty
+                for i in range(_SPANS.shape[0]):
+                    if not used[i]:
                         continue
-                    b[p] += wp * r
-                    for q in range(p, P):
-                        H[p, q] += wp * row[q]
+                    for p in range(_SPANS[i, 0], min(_SPANS[i, 1], P)):
+                        wp = row_weight * row[p]
+                        b[p] += wp * r
+                        for j in range(i, _SPANS.shape[0]):
+                            if used[j]:
+                                for q in range(max(p, _SPANS[j, 0]), min(_SPANS[j, 1], P)):
+                                    H[p, q] += wp * row[q]
     return cost

@@ -8,7 +8,7 @@ class Params:
     """Parameters of the full tracker; work pixels are those of frames averaged down to `work_width_px`."""
 
     work_width_px: int = 320
-    margin_px: int = 28  # looked at around the predicted body [work px]
+    margin_px: int = 22  # looked at around the predicted body [work px]
     doubt_margin_px: int = 50  # the same while an arm is in doubt
 
     # classification, paper section 5.2; thresholds are lower than the paper's 3 and 5 because the
@@ -33,10 +33,8 @@ class Params:
     iterations: int = 4
     first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
-    early_row_step: int = (
-        2  # every second row counts, in the last iteration every `last_row_step`-th
-    )
-    last_row_step: int = 1
+    early_row_step: int = 2  # rows of the picture from one that counts to the next
+    last_row_step: int = 1  # the same in the last iteration
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
     soft_unknown: float = 0.5  # the same where the background was never seen
