@@ -139,8 +139,8 @@ def test_a_config_key_that_does_not_exist(track: Track, tmp_path: Path) -> None:
 def test_a_taken_port(clean_env: dict[str, str], capture: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        words = ("run", "--capture", capture, "--tracker", "canned")
-        words += ("--set", f"zenoh.port={port}")
+        setting = f"zenoh.port={port}"
+        words = ("run", "--capture", capture, "--tracker", "canned", "--set", setting)
         assert_one_line(mocapd(clean_env, *words), 69, str(port))
 
 

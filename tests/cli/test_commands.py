@@ -102,8 +102,8 @@ def test_logs_carry_priorities_in_the_journal(clean_env: dict[str, str], tmp_pat
     with log.open("w") as stream:
         stat = os.fstat(stream.fileno())
         env = clean_env | {"JOURNAL_STREAM": f"{stat.st_dev}:{stat.st_ino}"}
-        words = ("run", "--capture", capture, "--tracker", "canned")
-        words += ("--set", "zenoh.enabled=false")
+        setting = "zenoh.enabled=false"
+        words = ("run", "--capture", capture, "--tracker", "canned", "--set", setting)
         done = subprocess.run([*COMMAND, *words], env=env, stderr=stream, timeout=60, check=False)
     assert done.returncode == 0
     lines = log.read_text().splitlines()

@@ -79,10 +79,11 @@ def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.0
     if seen.sum() < 3:
         return appearance.W
     image = (appearance.sums[seen, 1:4] / n[seen, None])[:, _BGR]
-    weight = np.sqrt(np.minimum(n[seen], 400.0) / 400.0)[:, None]
-    A = np.concatenate([weight * image, np.sqrt(ridge) * np.eye(3)])
-    b = np.concatenate([weight * model_mean[seen], np.sqrt(ridge) * appearance.W.T])
-    W: Floats = np.linalg.lstsq(A, b, rcond=None)[0].T
+    # normal equations: three unknowns a row, and the ridge keeps them well conditioned
+    weighted = (np.minimum(n[seen], 400.0) / 400.0)[:, None] * image
+    moments = weighted.T @ image + ridge * np.eye(3)
+    target = weighted.T @ model_mean[seen] + ridge * appearance.W.T
+    W: Floats = np.asarray(np.linalg.solve(moments, target)).T
     return W
 
 

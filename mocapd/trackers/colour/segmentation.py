@@ -33,7 +33,6 @@ _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _NO_DOUBT = np.ones(10, np.int64)
 _TICK_S = 1.0 / 30.0
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
-_W_EVERY = 4  # looks: W only stands in for colours that are not seen, which changes slowly
 _FARTHEST = 14  # coarse px from its predicted place at which a colour is looked for
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
@@ -193,13 +192,10 @@ class Eye:
         sums = np.zeros((10, 4))
         colour_statistics(self.picture, roi[0], roi[1], final, ids, True, sums)
         learned = looks.learn(memory.appearance, sums, dt_s, p.colour_memory_s)
-        memory.appearance = learned
-        if memory.looks % _W_EVERY == 0:
-            W = looks.white_balance(learned, self.model.mean)
-            memory.appearance = Appearance(W, learned.sums)
-            if sure:
-                memory.references = remember_illumination(memory.references, W)
+        W = looks.white_balance(learned, self.model.mean)
+        memory.appearance = Appearance(W, learned.sums)
         if sure:
+            memory.references = remember_illumination(memory.references, W)
             count_colours(
                 self.picture, roi[0], roi[1], memory.body, final, ids, softness,
                 memory.shirt_count, memory.other_count,
