@@ -169,6 +169,15 @@ class ArmSearch:
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
 
+    def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
+        """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
+        doubtful arm must not wait for them to be compiled or loaded."""
+        for side, arm in self.arms.items():
+            tries = candidates(
+                self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
+            )
+            best_arm_poses(self.fitter, state, arm, views, tries, 1)
+
     def improve(
         self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
     ) -> tuple[Fit, tuple[str, ...]]:

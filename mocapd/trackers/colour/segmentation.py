@@ -226,6 +226,12 @@ class Eye:
             memory.other_count *= 0.25
         learn_background(self.picture, memory.body, *arrays, 0.02, memory.looks % 2, 2)
 
+    def rehearse(self) -> None:
+        """Run what ordinary frames do not reach once, then forget."""
+        memory = self.memory
+        snap_background(self.picture, memory.body, memory.background_mean, memory.background_age)
+        self.reset()
+
     # --- without a pose ---
 
     def find(self, sizes: Ints, keep: Callable[[float], bool]) -> Found | None:

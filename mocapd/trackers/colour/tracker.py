@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_SHAPE, build_model, shape_of
+from mocapd.body.model import N_POSE, N_SHAPE, build_model, shape_of
 from mocapd.body.shape import skeleton_of
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.errors import ConfigError
+from mocapd.geometry import rotations
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
@@ -82,7 +83,24 @@ class ColourTracker:
         self._arms = ArmSearch(self._fitter, p)
         self._tracking = TrackingState(tracking)
         self.probe: Callable[[str], None] = _silent
+        self._rehearse()
         self.reset()
+
+    def _rehearse(self) -> None:
+        """Compile or load the kernels that only rare frames reach."""
+        eye = self._eyes[0]
+        eye.rehearse()
+        w, h = eye.size
+        nothing = np.zeros((h, w), np.uint8)
+        rest = self._fitter.model.rest_m
+        state = MotionState(
+            rest[0].copy(),
+            np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)),
+            np.zeros(N_POSE),
+            np.ones(N_SHAPE),
+            initial_information(),
+        )
+        self._arms.rehearse(state, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
 
     @property
     def skeleton(self) -> Skeleton:
