@@ -40,7 +40,7 @@ def test_it_prints_a_table_and_writes_the_page(
     # the canned body is there from the first frame, so the empty room has ghosts
     told = row.split()
     assert told[1:6:2] == ["small", "100.0", "6"]
-    assert "small" in outcome.err  # progress
+    assert "evaluation.md: written" in outcome.err
     text = (tmp_path / "evaluation.md").read_text()
     assert outcome.out.strip() in re.sub(r"[\d.]+ \|$", told[-2] + " |", text, flags=re.M)
     assert "mocapd eval small --tracker canned --variant full --out " in text
