@@ -128,7 +128,18 @@ def classify(
                     b = np.float32(picture[v, u, 0])
                     g = np.float32(picture[v, u, 1])
                     r = np.float32(picture[v, u, 2])
-                    best = top
+                    known = age[v, u] >= 6
+                    still = (
+                        known
+                        and abs(b - mean[v, u, 0]) < tol
+                        and abs(g - mean[v, u, 1]) < tol
+                        and abs(r - mean[v, u, 2]) < tol
+                    )
+                    softness[y, x] = sure if still else (soft if known else unknown)
+                    # the penalties are the same for every colour, so they lower the threshold and
+                    # cannot change the winner
+                    limit = top - behind if still else top
+                    best = limit
                     best_k = 0
                     for i in range(n):
                         k = near[i]
@@ -165,22 +176,11 @@ def classify(
                         if s < room2:
                             best = base + np.sqrt(s)
                             best_k = k + 1
-                    # the penalties are the same for every colour, so they cannot change the winner
-                    known = age[v, u] >= 6
-                    still = (
-                        known
-                        and abs(b - mean[v, u, 0]) < tol
-                        and abs(g - mean[v, u, 1]) < tol
-                        and abs(r - mean[v, u, 2]) < tol
-                    )
-                    softness[y, x] = sure if still else (soft if known else unknown)
                     if best_k > 0:
                         bin_ = bin_of(picture[v, u])
                         other = other_count[bin_]
                         best += elsewhere * other / (other + shirt_count[bin_] + np.float32(8.0))
-                        if still:
-                            best += behind
-                        if best >= top:
+                        if best >= limit:
                             best_k = 0
                     ids[y, x] = best_k
 
@@ -196,24 +196,29 @@ def colour_distances(
     """
     h2, w2, _ = out.shape
     buffer = np.empty((h2, w2), np.int32)
+    box = np.empty((10, 4), np.int64)  # of each colour: first and last column, first and last row
+    for k in range(10):
+        box[k, 0], box[k, 1], box[k, 2], box[k, 3] = w2, -1, h2, -1
+    for y in range(h2):
+        for x in range(w2):
+            k = ids[2 * y, 2 * x]
+            if k > 0:
+                box[k - 1, 0] = min(box[k - 1, 0], x)
+                box[k - 1, 1] = max(box[k - 1, 1], x)
+                box[k - 1, 2] = min(box[k - 1, 2], y)
+                box[k - 1, 3] = y
+    out[:] = FAR
     nearest = limit
     for k in range(10):
         limit = nearest * divisor[k]
         big = 3 * limit + 1
-        x_lo, x_hi, y_lo, y_hi = w2, -1, h2, -1
-        for y in range(h2):
-            for x in range(w2):
-                if ids[2 * y, 2 * x] == k + 1:
-                    buffer[y, x] = 0
-                    x_lo, x_hi = min(x_lo, x), max(x_hi, x)
-                    y_lo, y_hi = min(y_lo, y), y
-                else:
-                    buffer[y, x] = big
-                out[y, x, k] = FAR
-        if x_hi < 0:
+        if box[k, 1] < 0:
             continue
-        x_lo, x_hi = max(0, x_lo - limit), min(w2 - 1, x_hi + limit)
-        y_lo, y_hi = max(0, y_lo - limit), min(h2 - 1, y_hi + limit)
+        x_lo, x_hi = max(0, box[k, 0] - limit), min(w2 - 1, box[k, 1] + limit)
+        y_lo, y_hi = max(0, box[k, 2] - limit), min(h2 - 1, box[k, 3] + limit)
+        for y in range(y_lo, y_hi + 1):
+            for x in range(x_lo, x_hi + 1):
+                buffer[y, x] = 0 if ids[2 * y, 2 * x] == k + 1 else big
         for y in range(y_lo, y_hi + 1):
             for x in range(x_lo, x_hi + 1):
                 v = buffer[y, x]
