@@ -42,6 +42,21 @@ def quat_log(q: Array, out: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
+def quat_matrix(q: Array, out: Array) -> None:
+    """Unit quaternion to a matrix (3,3)."""
+    x, y, z, w = q[0], q[1], q[2], q[3]
+    out[0, 0] = 1 - 2 * (y * y + z * z)
+    out[0, 1] = 2 * (x * y - z * w)
+    out[0, 2] = 2 * (x * z + y * w)
+    out[1, 0] = 2 * (x * y + z * w)
+    out[1, 1] = 1 - 2 * (x * x + z * z)
+    out[1, 2] = 2 * (y * z - x * w)
+    out[2, 0] = 2 * (x * z - y * w)
+    out[2, 1] = 2 * (y * z + x * w)
+    out[2, 2] = 1 - 2 * (x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
 def retract(
     root: Array,
     local: Array,
@@ -122,16 +137,7 @@ def forward_kinematics(
                 out_joints[j, i] = out_joints[p, i]
                 for k in range(3):
                     out_joints[j, i] += out_R[p, i, k] * (rest[j, k] - rest[p, k])
-        x, y, z, w = out_global[j, 0], out_global[j, 1], out_global[j, 2], out_global[j, 3]
-        out_R[j, 0, 0] = 1 - 2 * (y * y + z * z)
-        out_R[j, 0, 1] = 2 * (x * y - z * w)
-        out_R[j, 0, 2] = 2 * (x * z + y * w)
-        out_R[j, 1, 0] = 2 * (x * y + z * w)
-        out_R[j, 1, 1] = 1 - 2 * (x * x + z * z)
-        out_R[j, 1, 2] = 2 * (y * z - x * w)
-        out_R[j, 2, 0] = 2 * (x * z - y * w)
-        out_R[j, 2, 1] = 2 * (y * z + x * w)
-        out_R[j, 2, 2] = 1 - 2 * (x * x + y * y)
+        quat_matrix(out_global[j], out_R[j])
 
 
 @njit(cache=True, nogil=True, fastmath=True)

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import quat_multiply
+from mocapd.body.posing_kernels import quat_matrix, quat_multiply
 
 Array = NDArray[np.float64]
 
@@ -70,16 +70,7 @@ def score_arms(
                     J[i, a] = J[i - 1, a]
                     for b in range(3):
                         J[i, a] += M[i - 1, a, b] * (rest[j, b] - rest[chain[i - 1], b])
-            x, y, z, s = G[i, 0], G[i, 1], G[i, 2], G[i, 3]
-            M[i, 0, 0] = 1 - 2 * (y * y + z * z)
-            M[i, 0, 1] = 2 * (x * y - z * s)
-            M[i, 0, 2] = 2 * (x * z + y * s)
-            M[i, 1, 0] = 2 * (x * y + z * s)
-            M[i, 1, 1] = 1 - 2 * (x * x + z * z)
-            M[i, 1, 2] = 2 * (y * z - x * s)
-            M[i, 2, 0] = 2 * (x * z - y * s)
-            M[i, 2, 1] = 2 * (y * z + x * s)
-            M[i, 2, 2] = 1 - 2 * (x * x + y * y)
+            quat_matrix(G[i], M[i])
             for a in range(3):
                 A[i, a, 3] = cam_t[a]
                 for b in range(3):

@@ -35,7 +35,7 @@ class Sighting:
 
 def sight(index: int, eye: Eye, database: PoseDatabase, params: Params) -> Sighting | None:
     """Look for the shirt in one camera's present picture."""
-    found = eye.find(WINDOWS, lambda evenness: evenness >= params.found_evenness)
+    found = eye.find(WINDOWS)
     if found is None:
         return None
     id_map, scale, (cx, cy) = crop_id_map(found.ids)

@@ -1,6 +1,5 @@
 """One camera's eye: work pictures, colour ids under the present light, and what is learned of light and background."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import cv2
@@ -234,7 +233,7 @@ class Eye:
 
     # --- without a pose ---
 
-    def find(self, sizes: Ints, keep: Callable[[float], bool]) -> Found | None:
+    def find(self, sizes: Ints) -> Found | None:
         """Where the shirt's colours are together, under each known light; None when nowhere enough."""
         p, memory = self.params, self.memory
         model = self.model.tolerating(p.shading_sd, p.cloth_sd)
@@ -253,7 +252,7 @@ class Eye:
                 ids,
             )
             x0, y0, x1, y1, evenness = find_shirt(ids, sizes)
-            if keep(evenness) and (best is None or evenness > best.evenness):
+            if evenness >= p.found_evenness and (best is None or evenness > best.evenness):
                 grow = (x1 - x0) // 2
                 roi = (
                     max(0, x0 - grow) & ~1, max(0, y0 - grow) & ~1,
