@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.shape import FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS
-from mocapd.body.surface import LEGS, mean_surface, shape_derivatives
+from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM, mean_surface, shape_derivatives
 from mocapd.types import Floats, Ints
 
 _BONES = 4  # skin weights kept per point
@@ -49,6 +49,10 @@ class BodyModel:
     rest_m: Floats  # (J,3)
     d_vertices: Floats  # (N,V,3)
     d_rest: Floats  # (N,J,3)
+    centres_m: Floats  # (T,3) of the triangles
+    d_centres: Floats  # (N,T,3)
+    sleeves: Ints  # (S,) the triangles of both sleeves, by colour
+    sleeve_start: Ints  # (12,) first place in `sleeves` of each colour 0..10, and the end
     parents: Ints  # (J,)
     group_of_joint: Ints  # (J,), -1: does not move
     share_of_joint: Floats  # (J,)
@@ -73,20 +77,28 @@ def build_model(stature_m: float) -> BodyModel:
         for name in names:
             group_of_joint[INDEX[name]] = g
             share[INDEX[name]] = 1.0 / len(names)
+    colour = standard_shirt().colour_of_patch[surface.patch[keep]]
+    part = surface.part[keep]
+    of_arms = np.flatnonzero(((part == LEFT_ARM) | (part == RIGHT_ARM)) & (colour > 0))
+    sleeves = of_arms[np.argsort(colour[of_arms], kind="stable")]
     return BodyModel(
         stature_m=stature_m,
         vertices_m=surface.vertices_m[used],
         bones=bones,
         weights=weights,
         triangles=triangles,
-        colour=standard_shirt().colour_of_patch[surface.patch[keep]],
+        colour=colour,
         patch=surface.patch[keep],
-        part=surface.part[keep],
+        part=part,
         triangle_bones=triangle_bones,
         triangle_weights=triangle_weights,
         rest_m=skeleton_of(mean_shape(stature_m)).rest_m,
         d_vertices=np.ascontiguousarray(d_vertices[:, used]),
         d_rest=d_rest,
+        sleeves=sleeves,
+        sleeve_start=np.searchsorted(colour[sleeves], np.arange(12)),
+        centres_m=surface.vertices_m[used][triangles].mean(axis=1),
+        d_centres=np.ascontiguousarray(d_vertices[:, used][:, triangles].mean(axis=2)),
         parents=PARENTS,
         group_of_joint=group_of_joint,
         share_of_joint=share,

@@ -6,7 +6,8 @@ from mocapd.body.model import N_POSE, N_SHAPE, BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.geometry.rotations import inverse, rotate
 from mocapd.offline import RecordedTrack
-from mocapd.trackers.colour.fitting import Fitter, MotionState, initial_information
+from mocapd.trackers.colour.fitting import Fitter
+from mocapd.trackers.colour.motion_state import MotionState, initial_information, step_between
 from mocapd.types import Floats
 
 
@@ -32,7 +33,9 @@ def states(fitter: Fitter, track: RecordedTrack) -> list[MotionState]:
         local = local_from_global(skeleton, turned)
         velocity = np.zeros(N_POSE)
         if out:
-            step = fitter.step_between((joints[0], local), (out[-1].root_m, out[-1].local_xyzw))
+            step = step_between(
+                fitter.model, (joints[0], local), (out[-1].root_m, out[-1].local_xyzw)
+            )
             velocity = step / max(track.times_s[i] - track.times_s[i - 1], 1e-3)
         factors = proportions(fitter.model, joints, turned)
         out.append(MotionState(joints[0], local, velocity, factors, initial_information()))

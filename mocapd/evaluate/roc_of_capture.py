@@ -28,7 +28,8 @@ from mocapd.evaluate.roc import (
 from mocapd.evaluate.truth import labelled_frames, read_label
 from mocapd.tracker_setup import inputs_of_capture
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.trackers.colour.fitting import Fitter, MotionState
+from mocapd.trackers.colour.fitting import Fitter
+from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet
 from mocapd.vision.classify_kernels import sum_colours
@@ -93,10 +94,13 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     for frames, state in _tracked(result, fitter):
         for name, frame in frames.frames.items():
             eye, dt_s = eyes[name], seconds(frame.t_ns - frames.t_ns)
-            roi = fitter.region(eye.index, state, dt_s, params.margin_px)
+            roi = fitter.drawings[eye.index].region(state, dt_s, params.margin_px)
             if roi is None:
                 continue
-            picture, rendered = eye.picture(frame), fitter.render(eye.index, state, dt_s, roi)
+            picture, rendered = (
+                eye.picture(frame),
+                fitter.drawings[eye.index].render(state, dt_s, roi),
+            )
             if frame.seq in eye.labelled and rendered.any():
                 label = read_label(folder.path, eye.video, frame.seq)
                 total += _roc(eye, picture, rendered, roi, label)

@@ -53,10 +53,10 @@ def draw(
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
         if area >= 0.0:
             continue
-        x0 = max(0, int(np.ceil(min(ax, bx, cx))))
-        x1 = min(w - 1, int(np.floor(max(ax, bx, cx))))
-        y0 = max(0, int(np.ceil(min(ay, by, cy))))
-        y1 = min(h - 1, int(np.floor(max(ay, by, cy))))
+        x0 = max(0, int(np.ceil(min(ax, min(bx, cx)))))
+        x1 = min(w - 1, int(np.floor(max(ax, max(bx, cx)))))
+        y0 = max(0, int(np.ceil(min(ay, min(by, cy)))))
+        y1 = min(h - 1, int(np.floor(max(ay, max(by, cy)))))
         if x0 > x1 or y0 > y1:
             continue
         inverse = 1.0 / area
@@ -69,7 +69,7 @@ def draw(
             uc = uc_dx * (x0 - ax) + uc_dy * (y - ay)
             inside = False
             for x in range(x0, x1 + 1):
-                if ub >= -1e-9 and uc >= -1e-9 and ub + uc <= 1.0 + 1e-9:
+                if min(ub, min(uc, 1.0 - ub - uc)) >= -1e-9:
                     inside = True
                     z = np.float32(za + ub * dz_b + uc * dz_c)
                     if z < zbuffer[y, x]:

@@ -19,7 +19,13 @@ from mocapd.evaluate.roc import (
 )
 from mocapd.geometry.rotations import IDENTITY_XYZW, exp
 from mocapd.offline import RecordedTrack
-from mocapd.trackers.colour.fitting import Fitter, MotionState, initial_information
+from mocapd.trackers.colour.fitting import Fitter
+from mocapd.trackers.colour.motion_state import (
+    MotionState,
+    initial_information,
+    moved,
+    step_between,
+)
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes
 from mocapd.vision.colour_model import ColourModel
@@ -149,7 +155,7 @@ def test_a_recorded_pose_becomes_the_state_it_was(fitter: Fitter) -> None:
     for state, truth in ((first, before), (second, after)):
         assert fitter.joints(state)[0] == pytest.approx(fitter.joints(truth)[0], abs=1e-9)
     # back at this velocity for the time between them
-    root, local = fitter.moved(second, -0.1)
+    root, local = moved(fitter.model, second, -0.1)
     assert root == pytest.approx(before.root_m, abs=1e-9)
-    step = fitter.step_between((root, local), (before.root_m, before.local_xyzw))
+    step = step_between(fitter.model, (root, local), (before.root_m, before.local_xyzw))
     assert np.abs(step).max() < 1e-6

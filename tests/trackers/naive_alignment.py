@@ -9,7 +9,7 @@ from mocapd.body.model import N_POSE, BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.fitting import MotionState
+from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 
@@ -24,6 +24,7 @@ class Posed:
     rest: Floats
     R: Floats
     joints: Floats
+    xy: Floats
     ids: Bytes
     triangle_at: NDArray[np.int32]
 
@@ -42,7 +43,7 @@ def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> 
     triangle_at, ids = np.empty((h, w), np.int32), np.empty((h, w), np.uint8)
     rasterise(xy, depth, model.triangles, np.empty((h, w), np.float32), triangle_at)
     label_triangles(triangle_at, model.colour, ids)
-    return Posed(vertices, rest, R, joints, ids, triangle_at)
+    return Posed(vertices, rest, R, joints, xy, ids, triangle_at)
 
 
 @dataclass(slots=True, eq=False)
@@ -69,52 +70,88 @@ def accumulate(
     factor: int,
     image_ids: Bytes,
     softness: Bytes,
+    grid_px: float,
     radius_px: float,
     robust_px: float,
     phase: int,
-    row_step: int,
+    every: int,
+    stiffness: float,
     n_shape: int,
     weight: float,
 ) -> Sums:
-    """Rows of every disagreeing pixel of one colour of the checkerboard, of every `row_step`-th row."""
+    """Rows of every disagreeing pixel, and of edges in place; `every` 2: of one colour of the
+    checkerboard. Lengths are in work px, of which a pixel of these pictures has `grid_px`."""
     size = N_POSE + n_shape
     out = Sums.zero(size)
-    slopes = _slopes(model, state, camera, factor, size)
-    weight *= row_step
+    slopes = grid_px * _slopes(model, state, camera, factor, size)
+    units = every * grid_px**2 / 2.0
+    weight *= units
+    reach = radius_px / grid_px
     h, w = drawn.ids.shape
-    for y in range(phase if row_step > 1 else 0, h, row_step):
+    for y in range(h):
         for x in range(w):
-            if (x + y) % 2 != phase:
+            if every == 2 and (x + y) % 2 != phase:
                 continue
             want, have = drawn.ids[y, x], image_ids[y, x]
             if want:
                 patch = model.patch[drawn.triangle_at[y, x]]
-                out.visible[patch] += row_step
-                out.matched[patch] += row_step * (want == have)
+                out.visible[patch] += units
+                out.matched[patch] += units * (want == have)
             if want == have:
+                edge = _edge(drawn.ids, x, y)
+                if stiffness and want and edge.any() and (x + y) // 2 % 2 == 0:
+                    row = slopes[drawn.triangle_at[y, x]] @ (edge / np.hypot(*edge))
+                    out.H += 2.0 * stiffness * weight * np.outer(row, row)
                 continue
             if want:
                 strength = weight * (softness[y, x] / 255.0 if have == 0 else 1.0)
-                to = _nearest(image_ids, x, y, want, radius_px)
+                to = _nearest(image_ids, x, y, want, reach)
                 if to is None:
                     out.cost += strength * robust_px**2
                 else:
-                    away = np.array([to[0] - x, to[1] - y], float)
+                    away = grid_px * np.array([to[0] - x, to[1] - y], float)
                     _add(out, slopes[drawn.triangle_at[y, x]], away, strength, robust_px)
             if have:
-                to = _nearest(drawn.ids, x, y, have, radius_px)
-                if to is None:
-                    out.cost += weight * robust_px**2
+                to = _nearest(drawn.ids, x, y, have, reach)
+                t = _hidden(model, drawn, x, y, have, reach) if to is None else None
+                if to is not None:
+                    t, place = drawn.triangle_at[to[1], to[0]], np.array(to, float)
+                elif t is not None:
+                    place = _middle(model, drawn, t)
                 else:
-                    t = drawn.triangle_at[to[1], to[0]]
-                    out.unexplained[model.patch[t]] += row_step
-                    _add(out, slopes[t], np.array([x - to[0], y - to[1]], float), weight, robust_px)
+                    out.cost += weight * robust_px**2
+                    continue
+                out.unexplained[model.patch[t]] += units
+                _add(out, slopes[t], grid_px * (np.array([x, y]) - place), weight, robust_px)
     return out
+
+
+def _edge(ids: Bytes, x: int, y: int) -> Floats:
+    """Across a border of the id map, where both sides of it are in the picture."""
+    h, w = ids.shape
+    if not (0 < x < w - 1 and 0 < y < h - 1):
+        return np.zeros(2)
+    other = ids != ids[y, x]
+    right, left = float(other[y, x + 1]), float(other[y, x - 1])
+    below, above = float(other[y + 1, x]), float(other[y - 1, x])
+    return np.array([right - left, below - above])
+
+
+def _middle(model: BodyModel, drawn: Posed, t: int) -> Floats:
+    middle: Floats = drawn.xy[model.triangles[t]].mean(axis=0)
+    return middle
+
+
+def _hidden(model: BodyModel, drawn: Posed, x: int, y: int, k: int, radius_px: float) -> int | None:
+    """The triangle of a sleeve of colour k whose middle is nearest, though it may not be seen."""
+    mine = [int(t) for t in model.sleeves if model.colour[t] == k]
+    apart = [np.hypot(*(_middle(model, drawn, t) - (x, y))) for t in mine]
+    return mine[int(np.argmin(apart))] if mine and min(apart) < radius_px else None
 
 
 def _add(out: Sums, slope: Floats, away: Floats, strength: float, robust_px: float) -> None:
     """One row: r px to go along a direction, by Geman and McClure's weights."""
-    r = np.hypot(*away)
+    r = max(float(np.hypot(*away)), 1e-3)
     f = robust_px**2 / (robust_px**2 + r**2)
     row = slope @ (away / r)
     out.cost += strength * r**2 * f

@@ -8,8 +8,9 @@ import numpy as np
 from mocapd.body.model import N_POSE, N_SHAPE, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.fitting import Fitter, MotionState, View, initial_information
+from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.key_poses import arm_rotations
+from mocapd.trackers.colour.motion_state import MotionState, initial_information, moved
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats
 from tests.geometry.rigs import looking_at
@@ -49,7 +50,7 @@ def standing(left: str = "goalpost", right: str = "side_low", yaw_rad: float = 0
 
 def stepped(of: Fitter, state: MotionState, step: Floats) -> MotionState:
     """The state moved by a pose step (N_POSE,)."""
-    root, local = of.moved(replace(state, velocity=step), 1.0)
+    root, local = moved(of.model, replace(state, velocity=step), 1.0)
     return replace(state, root_m=root, local_xyzw=local)
 
 
@@ -58,9 +59,9 @@ def views_of(
 ) -> list[View]:
     """What every camera sees of a state, perfectly classified before a known background."""
     out = []
-    for i in range(len(by.cameras)):
-        roi = by.region(i, state, dts_s[i], margin)
+    for i, drawing in enumerate(by.drawings):
+        roi = drawing.region(state, dts_s[i], margin)
         assert roi is not None
-        ids = by.render(i, state, dts_s[i], roi).copy()
+        ids = drawing.render(state, dts_s[i], roi).copy()
         out.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dts_s[i]))
     return out

@@ -21,7 +21,8 @@ from mocapd.trackers.colour.arms import (
     confirmed,
     doubtful,
 )
-from mocapd.trackers.colour.fitting import Fitter, MotionState, View
+from mocapd.trackers.colour.fitting import Fitter, View
+from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats
 from tests.trackers.synthetic import FACTOR, MODEL, fitter, standing, views_of
@@ -57,7 +58,7 @@ def test_candidates_hold_the_mirror_images_in_depth(side: str) -> None:
     arm, views = arm_of(MODEL, side), views_of(by, state)
     found = candidates(by, state, arm, views, NO_CLOUD, NO_LIBRARY)
     assert len(found) == 4
-    camera = by.cameras[0]
+    camera = by.drawings[0].camera
     here = arm_joints(by, state, side)
     np.testing.assert_allclose(
         found[0], state.local_xyzw[[INDEX[side + bone] for bone in BONES]], atol=1e-12
@@ -114,8 +115,8 @@ def test_the_library_fills_the_joint_limits(side: str) -> None:
 
 def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
     """Area of the samples seen where the picture has their colour, less half of what it denies."""
-    arm, camera = arm_of(MODEL, side), by.cameras[view.index]
-    base = by.render_parts(view.index, state, view.dt_s, view.roi, arm.others)
+    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
+    base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     nearest = base.zbuffer.copy()
     corners = shaped(MODEL, state.factors)[0][arm.corners]
     rest = MODEL.rest_m
@@ -150,11 +151,11 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
 
 
 def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Floats) -> Floats:
-    arm, camera = arm_of(MODEL, side), by.cameras[view.index]
+    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
     corners = shaped(MODEL, state.factors)[0][arm.corners]
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1)
-    base = by.render_parts(view.index, state, view.dt_s, view.roi, arm.others)
+    base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     out = np.zeros(len(hypotheses))
     score_arms(
         hypotheses, arm.chain, MODEL.parents, MODEL.rest_m, base.R, base.joints, base.quats,

@@ -29,7 +29,8 @@ def behind_a_board(n_cameras: int) -> Fit:
     arm = by.joints(state)[0][[INDEX["rightUpperArm"], INDEX["rightHand"]]]
     views: list[View] = []
     for view in views_of(by, state):
-        shoulder, wrist = project(by.cameras[view.index], arm)[:, 0] / by.factors[view.index]
+        drawing = by.drawings[view.index]
+        shoulder, wrist = project(drawing.camera, arm)[:, 0] / drawing.factor
         x = np.arange(view.roi[0], view.roi[2])
         beyond = x < shoulder if wrist < shoulder else x > shoulder
         ids, softness = view.ids.copy(), view.softness.copy()

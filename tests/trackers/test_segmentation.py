@@ -5,17 +5,13 @@ import pytest
 
 from mocapd.body.shirt import standard_shirt
 from mocapd.trackers.colour import appearance as looks
+from mocapd.trackers.colour.background_kernels import changed, learn_background
+from mocapd.trackers.colour.background_light import relight_background
+from mocapd.trackers.colour.cell_kernels import CELL, FAR, bin_of, classify, colour_distances
 from mocapd.trackers.colour.segmentation_kernels import (
-    FAR,
     agreement,
-    bin_of,
-    changed,
-    classify,
-    colour_distances,
     colour_statistics,
     count_colours,
-    learn_background,
-    snap_background,
 )
 from mocapd.types import Bytes, Floats, Ints, Singles
 
@@ -51,23 +47,37 @@ def affine() -> Singles:
 # --- classification --------------------------------------------------------------------------
 
 
-def naive_distances(ids: Bytes, limit: int, divisor: Ints) -> Bytes:
-    """Chamfer 3-4 distance of each coarse pixel to each colour, in coarse px, FAR beyond the limit.
+NOBODY = (
+    np.zeros((3, 2)),
+    np.zeros((1, 3), np.int32),
+    np.zeros(0, np.int64),
+    np.zeros(1, np.uint8),
+)
+
+
+def naive_distances(
+    ids: Bytes, middles: list[tuple[float, float, int]], limit: int, divisor: Ints
+) -> Bytes:
+    """Chamfer 3-4 distance of each cell to each colour in px, FAR beyond the limit.
 
     On an empty grid the chamfer distance of an offset is 4 for each diagonal step and 3 for each
-    straight one.
+    straight one. middles: x, y and colour of surface points that count though they may be hidden.
     """
-    coarse = ids[::2, ::2]
-    h, w = coarse.shape
-    out = np.full((h, w, 10), FAR, np.uint8)
-    rows, columns = np.mgrid[:h, :w]
+    h, w = ids.shape
+    h4, w4 = -(-h // CELL), -(-w // CELL)
+    out = np.full((h4, w4, 10), FAR, np.uint8)
+    rows, columns = np.mgrid[:h4, :w4]
     for k in range(10):
-        best = np.full((h, w), 10**6)
-        for y, x in np.argwhere(coarse == k + 1):
-            dy, dx = np.abs(rows - y), np.abs(columns - x)
+        places = [(2 * y, 2 * x) for y, x in np.argwhere(ids[::2, ::2] == k + 1)]
+        places += [(round(y), round(x)) for x, y, c in middles if c == k + 1]
+        best = np.full((h4, w4), 10**6)
+        for y, x in places:
+            if not (0 <= y < h and 0 <= x < w):
+                continue
+            dy, dx = np.abs(rows - y // CELL), np.abs(columns - x // CELL)
             np.minimum(best, 3 * np.maximum(dy, dx) + np.minimum(dy, dx), out=best)
         within = best <= 3 * limit * divisor[k]
-        out[..., k][within] = (best // (3 * divisor[k]))[within]
+        out[..., k][within] = np.minimum(CELL * best // (3 * divisor[k]), FAR - 1)[within]
     return out
 
 
@@ -77,10 +87,15 @@ def test_distances_equal_the_naive_twin(seed: int, shape: tuple[int, int]) -> No
     ids = blobs(seed, *shape)
     divisor = np.ones(10, np.int64)
     divisor[[2, 7]] = 3
-    limit = 5
-    out = np.full(((shape[0] + 1) // 2, (shape[1] + 1) // 2, 10), 77, np.uint8)
-    colour_distances(ids, limit, divisor, out)
-    np.testing.assert_array_equal(out, naive_distances(ids, limit, divisor))
+    limit = 3
+    rng = np.random.default_rng(seed)
+    xy = rng.uniform(-10.0, 60.0, (15, 2))
+    triangles = np.arange(15, dtype=np.int32).reshape(5, 3)
+    colour, sleeves = rng.integers(1, 11, 5).astype(np.uint8), np.array([0, 1, 3, 4])
+    middles = [(*xy[triangles[t]].mean(axis=0), int(colour[t])) for t in sleeves]
+    out = np.full((-(-shape[0] // CELL), -(-shape[1] // CELL), 10), 77, np.uint8)
+    colour_distances(ids, xy, triangles, sleeves, colour, limit, divisor, out)
+    np.testing.assert_array_equal(out, naive_distances(ids, middles, limit, divisor))
 
 
 def naive_classify(
@@ -89,13 +104,13 @@ def naive_classify(
 ) -> tuple[Floats, Bytes]:  # fmt: skip
     """Costs (h,w,11) with the threshold as the cost of nothing, and where background is seen (h,w):
     2 yes, or no colour is expected so near; 1 no; 0 unknown."""
-    h, w = 2 * distance.shape[0], 2 * distance.shape[1]
+    h, w = CELL * distance.shape[0], CELL * distance.shape[1]
     part = (slice(at[1], at[1] + h), slice(at[0], at[0] + w))
     bgr = picture[part].astype(float)
     homogeneous = np.concatenate([bgr, np.ones((h, w, 1))], axis=2)
     whitened = np.einsum("kij,hwj->hwki", affine(), homogeneous)
-    d = np.kron(distance, np.ones((2, 2, 1))).astype(float)
-    costs = np.linalg.norm(whitened, axis=3) + 2.0 * prior * d
+    d = np.kron(distance, np.ones((CELL, CELL, 1))).astype(float)
+    costs = np.linalg.norm(whitened, axis=3) + prior * d
     costs[d == FAR] = np.inf
     known = age[part] >= 6
     same = known & (np.abs(bgr - mean[part]) < TOLERANCE * 255).all(axis=2)
@@ -104,7 +119,7 @@ def naive_classify(
     shirt, other = (count[bins] for count in counts)
     costs += (penalties[1] * other / (other + shirt + 8.0))[..., None]
     nothing = np.full((h, w, 1), threshold)
-    out_of_reach = ((d == FAR) | (2.0 * prior * d >= threshold)).all(axis=2)
+    out_of_reach = ((d == FAR) | (prior * d >= threshold)).all(axis=2)
     background = np.where(same | out_of_reach, 2, np.where(known, 1, 0))
     return np.concatenate([nothing, costs], axis=2), background
 
@@ -115,9 +130,9 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     truth = blobs(seed, H + 10, W + 14)
     picture = picture_of(truth, seed, noise=0.06)
     h, w, at = H, W, (6, 4)
-    distance = np.empty((h // 2, w // 2, 10), np.uint8)
+    distance = np.empty((h // CELL, w // CELL, 10), np.uint8)
     predicted = np.roll(truth, 2, axis=1)[at[1] : at[1] + h, at[0] : at[0] + w]
-    colour_distances(np.ascontiguousarray(predicted), 4, np.ones(10, np.int64), distance)
+    colour_distances(np.ascontiguousarray(predicted), *NOBODY, 2, np.ones(10, np.int64), distance)
     mean = (picture + rng.normal(0.0, 12.0, picture.shape)).astype(np.float32)
     age = rng.integers(0, 12, picture.shape[:2]).astype(np.uint8)
     counts = [
@@ -146,8 +161,8 @@ def test_the_prior_tells_two_patches_of_one_look_apart() -> None:
     ids[5:15, 4:10] = ids[5:15, 30:36] = 6
     picture = picture_of(ids, 0)
     predicted = np.where(np.arange(40) < 20, ids, 0).astype(np.uint8)
-    distance = np.empty((10, 20, 10), np.uint8)
-    colour_distances(predicted, 6, np.ones(10, np.int64), distance)
+    distance = np.empty((5, 10, 10), np.uint8)
+    colour_distances(predicted, *NOBODY, 3, np.ones(10, np.int64), distance)
     got, softness = np.empty_like(ids), np.empty_like(ids)
     no_count = np.zeros(1 << 15, np.float32)
     classify(
@@ -200,18 +215,35 @@ def test_a_lamp_that_goes_out_changes_the_background_and_snapping_follows_it() -
     mean, age = bright.astype(np.float32), np.full((H, W), 50, np.uint8)
     assert changed(bright, body, mean, age, TOLERANCE) == 0.0
     assert changed(dark, body, mean, age, TOLERANCE) == 1.0
-    snap_background(dark, body, mean, age)
+    mean[body == 1] = 120.0
+    relight_background(dark, body, mean, age)
     assert changed(dark, body, mean, age, TOLERANCE) == 0.0
     np.testing.assert_array_equal(mean[body == 0], dark[body == 0])
-    assert not age[body == 1].any()  # what is behind the body is not known in the new light
     assert (age[body == 0] == 50).all()
+    # behind the body the background is as much darker as around it, and gives way when it is seen
+    np.testing.assert_allclose(mean[body == 1], 40.0, rtol=0.02)
+    assert (age[body == 1] == 8).all()
+
+
+def test_the_light_behind_the_body_is_that_of_its_surroundings() -> None:
+    """One half of the room goes dark: so does what is behind the body there."""
+    h, w = 240, 320
+    left = np.arange(w)[None, :, None] < w // 2
+    lit, now = np.full((h, w, 3), 160, np.uint8), np.empty((h, w, 3), np.uint8)
+    now[:] = np.where(left, 160, 40)
+    body = np.zeros((h, w), np.uint8)
+    body[80:180, 30:70] = body[80:180, 250:290] = 1
+    mean, age = lit.astype(np.float32), np.full((h, w), 50, np.uint8)
+    relight_background(now, body, mean, age)
+    assert mean[80:180, 30:70].mean() == pytest.approx(160.0, rel=0.05)
+    assert mean[80:180, 250:290].mean() == pytest.approx(40.0, rel=0.1)
 
 
 def test_with_nobody_known_a_jump_of_the_light_leaves_nothing_known() -> None:
     """Whoever steps into the light as it goes on must not be taken for background."""
     mean, age = np.zeros((H, W, 3), np.float32), np.full((H, W), 50, np.uint8)
     lit = np.full((H, W, 3), 200, np.uint8)
-    snap_background(lit, np.zeros((H, W), np.uint8), mean, age)
+    relight_background(lit, np.zeros((H, W), np.uint8), mean, age)
     assert not age.any()
 
 

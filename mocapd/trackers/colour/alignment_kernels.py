@@ -47,8 +47,30 @@ def _nearest(
     return -1
 
 
-# parameters of trunk, left arm, right arm, shape (body.model.GROUPS)
-_SPANS = np.array([[0, 9], [9, 18], [18, 27], [27, 34]])
+@njit(cache=True, nogil=True)
+def _nearest_hidden(
+    x: int,
+    y: int,
+    reach: float,
+    xy: Array,
+    triangles: NDArray[np.int32],
+    sleeves: Ints,
+    sleeve_start: Ints,
+    k: int,
+) -> int:
+    """Place in `sleeves` of the triangle of colour k whose middle is nearest, seen or not; or -1."""
+    best, found = reach * reach, -1
+    for s in range(sleeve_start[k], sleeve_start[k + 1]):
+        t = sleeves[s]
+        dx = x - (xy[triangles[t, 0], 0] + xy[triangles[t, 1], 0] + xy[triangles[t, 2], 0]) / 3.0
+        dy = y - (xy[triangles[t, 0], 1] + xy[triangles[t, 1], 1] + xy[triangles[t, 2], 1]) / 3.0
+        r2 = dx * dx + dy * dy
+        if r2 < best:
+            best, found = r2, s
+    return found
+
+
+_BLOCK = 128  # rows that are multiplied at a time
 _CELL = 8  # px of the grid that tells which colours are within reach
 
 
@@ -86,14 +108,19 @@ def accumulate(
     softness: NDArray[np.uint8],
     offsets: NDArray[np.int32],
     n_offsets: int,
+    grid_px: float,
     radius_px: float,
     robust_px: float,
     phase: int,
-    row_step: int,
+    every: int,
+    stiffness: float,
+    xy: Array,
     triangles: NDArray[np.int32],
+    sleeves: Ints,
+    sleeve_start: Ints,
     patch: NDArray[np.uint8],
-    vertices: Array,
-    d_vertices: Array,
+    centres: Array,
+    d_centres: Array,
     triangle_bones: NDArray[np.int32],
     triangle_weights: Array,
     rest: Array,
@@ -117,29 +144,32 @@ def accumulate(
     matched: Array,
     unexplained: Array,
 ) -> float:
-    """Add this camera's rows to H (P,P) upper triangle and b (P,); return the summed robust cost.
+    """Add this camera's rows to H (P,P) and b (P,); return the summed robust cost.
 
-    softness (h,w): weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for
-    sure background, less where something may hide the shirt). fx, fy [work px]. visible, matched
-    (21,): rendered pixels and those whose colour the picture has there, per patch; unexplained
-    (21,): per patch, picture pixels drawn to it. Every second pixel of every `row_step`-th row is looked at, from
-    `phase` 0 or 1 on; sums are scaled to all rows. offsets[:n_offsets] are those within radius_px.
+    The four pictures (h,w) are grids of `grid_px` work px; lengths, fx and fy are in work px.
+    softness: weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for sure
+    background, less where something may hide the shirt). visible, matched (21,): rendered pixels
+    and those whose colour the picture has there, per patch; unexplained (21,): per patch, picture
+    pixels drawn to it; all in units of two work px. `every` 1: all pixels of the grid are looked
+    at; 2: one colour of its checkerboard, given by `phase`. offsets[:n_offsets] are those within
+    radius_px.
     """
     h, w = model_ids.shape
     P = H.shape[0]
     row = np.empty(P)
-    point = np.empty(3)
-    d_point = np.empty((max(n_shape, 1), 3))
+    rows = np.empty((_BLOCK, P + 1))
+    n_rows = 0
+    square = np.zeros((P + 1, P + 1))
     g = np.empty(3)
-    used = np.zeros(_SPANS.shape[0], np.bool_)
     cost = 0.0
     r2_robust = robust_px * robust_px
-    weight *= row_step
-    counted = float(row_step)
-    near_image = colours_in_reach(image_ids, radius_px)
-    near_model = colours_in_reach(model_ids, radius_px)
-    for y in range(phase if row_step > 1 else 0, h, row_step):
-        for x in range((y + phase) & 1, w, 2):
+    counted = 0.5 * every * grid_px * grid_px
+    weight *= counted
+    reach = radius_px / grid_px
+    near_image = colours_in_reach(image_ids, reach)
+    near_model = colours_in_reach(model_ids, reach)
+    for y in range(h):
+        for x in range((y + phase) % every, w, every):
             k_model = model_ids[y, x]
             k_image = image_ids[y, x]
             if k_model > 0:
@@ -147,9 +177,23 @@ def accumulate(
             if k_model == k_image:
                 if k_model > 0:
                     matched[patch[triangle_at[y, x]]] += counted
-                continue
+                # an edge that is in place holds the body there: without it the few pixels that
+                # disagree by less than their width would move it by all of that width
+                if stiffness == 0.0 or k_model == 0 or (x + y) // 2 & 1:  # half of them will do
+                    continue
+                if x == 0 or y == 0 or x == w - 1 or y == h - 1:
+                    continue
+                ex = int(model_ids[y, x + 1] != k_model) - int(model_ids[y, x - 1] != k_model)
+                ey = int(model_ids[y + 1, x] != k_model) - int(model_ids[y - 1, x] != k_model)
+                if ex == 0 and ey == 0:
+                    continue
             for direction in range(2):
-                if direction == 0:
+                if k_model == k_image:
+                    if direction == 1:
+                        continue
+                    dx, dy = float(ex), float(ey)
+                    t, row_weight = triangle_at[y, x], 2.0 * stiffness * weight
+                elif direction == 0:
                     if k_model == 0:
                         continue
                     i = -1
@@ -161,7 +205,7 @@ def accumulate(
                     if i < 0:
                         cost += row_weight * r2_robust
                         continue
-                    dx, dy = offsets[i, 0], offsets[i, 1]
+                    dx, dy = float(offsets[i, 0]), float(offsets[i, 1])
                     t = triangle_at[y, x]
                 else:
                     if k_image == 0:
@@ -169,32 +213,49 @@ def accumulate(
                     i = -1
                     if near_model[y // _CELL, x // _CELL] >> k_image & 1:
                         i = _nearest(model_ids, x, y, k_image, offsets, n_offsets)
-                    if i < 0:
-                        cost += weight * r2_robust
-                        continue
-                    dx, dy = -offsets[i, 0], -offsets[i, 1]
-                    t = triangle_at[y - dy, x - dx]
+                    if i >= 0:
+                        dx, dy = -float(offsets[i, 0]), -float(offsets[i, 1])
+                        t = triangle_at[y + offsets[i, 1], x + offsets[i, 0]]
+                    else:
+                        s = _nearest_hidden(
+                            x, y, reach, xy, triangles, sleeves, sleeve_start, k_image
+                        )
+                        if s < 0:
+                            cost += weight * r2_robust
+                            continue
+                        t = sleeves[s]
+                        dx = (
+                            x
+                            - (
+                                xy[triangles[t, 0], 0]
+                                + xy[triangles[t, 1], 0]
+                                + xy[triangles[t, 2], 0]
+                            )
+                            / 3.0
+                        )
+                        dy = (
+                            y
+                            - (
+                                xy[triangles[t, 0], 1]
+                                + xy[triangles[t, 1], 1]
+                                + xy[triangles[t, 2], 1]
+                            )
+                            / 3.0
+                        )
                     row_weight = weight
                     unexplained[patch[t]] += counted
-                r2 = float(dx * dx + dy * dy)
-                r = np.sqrt(r2)
+                length = max(np.sqrt(dx * dx + dy * dy), 1e-3)
+                r = grid_px * length
+                r2 = r * r
                 # Geman-McClure
                 f = r2_robust / (r2_robust + r2)
-                cost += row_weight * r2 * f
-                row_weight *= f * f
-                nx, ny = dx / r, dy / r
-                for c in range(3):
-                    point[c] = (
-                        vertices[triangles[t, 0], c]
-                        + vertices[triangles[t, 1], c]
-                        + vertices[triangles[t, 2], c]
-                    ) / 3.0
-                    for n in range(n_shape):
-                        d_point[n, c] = (
-                            d_vertices[n, triangles[t, 0], c]
-                            + d_vertices[n, triangles[t, 1], c]
-                            + d_vertices[n, triangles[t, 2], c]
-                        ) / 3.0
+                if k_model == k_image:
+                    r = 0.0
+                else:
+                    cost += row_weight * r2 * f
+                    row_weight *= f * f
+                nx, ny = dx / length, dy / length
+                point = centres[t]
                 X = Y = Z = 0.0
                 for bb in range(triangle_bones.shape[1]):
                     wt = triangle_weights[t, bb]
@@ -217,7 +278,7 @@ def accumulate(
                     point,
                     triangle_bones[t],
                     triangle_weights[t],
-                    d_point,
+                    d_centres[:, t],
                     g,
                     rest,
                     parents,
@@ -231,21 +292,15 @@ def accumulate(
                     n_shape,
                     row,
                 )
-                # most rows are empty but for the trunk, one arm and the shape: whole spans are skipped
-                for i in range(_SPANS.shape[0]):
-                    first, last = _SPANS[i, 0], min(_SPANS[i, 1], P)
-                    empty = True
-                    for p in range(first, last):
-                        empty = empty and row[p] == 0.0
-                    used[i] = not empty
-                for i in range(_SPANS.shape[0]):
-                    if not used[i]:
-                        continue
-                    for p in range(_SPANS[i, 0], min(_SPANS[i, 1], P)):
-                        wp = row_weight * row[p]
-                        b[p] += wp * r
-                        for j in range(i, _SPANS.shape[0]):
-                            if used[j]:
-                                for q in range(max(p, _SPANS[j, 0]), min(_SPANS[j, 1], P)):
-                                    H[p, q] += wp * row[q]
+                scale = np.sqrt(row_weight)
+                for p in range(P):
+                    rows[n_rows, p] = scale * row[p]
+                rows[n_rows, P] = scale * r
+                n_rows += 1
+                if n_rows == _BLOCK:
+                    square += np.dot(rows.T, rows)
+                    n_rows = 0
+    square += np.dot(rows[:n_rows].T, rows[:n_rows])
+    H += square[:P, :P]
+    b += square[:P, P]
     return cost

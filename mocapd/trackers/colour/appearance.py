@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mocapd.trackers.colour import appearance_kernels as kernels
 from mocapd.types import Floats, Singles
 
 N = 10
@@ -48,28 +49,21 @@ def gaussians(
     shading_sd: float,
 ) -> tuple[Floats, Floats]:
     """Means (10,3) and covariances (10,3,3) in the camera's BGR 0..1."""
-    inverse = np.linalg.inv(appearance.W)
-    prior_mean = (model_mean @ inverse.T)[:, _BGR]
-    cloth = model_covariance + cloth_sd**2 * np.eye(3)
-    prior_cov = (inverse @ cloth @ inverse.T)[:, _BGR][:, :, _BGR]
-    s = appearance.sums
-    n = s[:, 0]
-    learned = np.divide(s[:, 1:4], n[:, None], out=prior_mean.copy(), where=n[:, None] > 0)
     # the mean is the camera's own once the colour is well seen; a spread learned from what was
     # classified would grow by itself until it swallows skin and trousers, so the model's is kept
-    trust = (n / (n + _PRIOR_PX))[:, None]
-    mean = trust * learned + (1.0 - trust) * prior_mean
-    cov = prior_cov + noise_sd**2 * np.eye(3)
-    return mean, cov + shading_sd**2 * mean[:, :, None] * mean[:, None, :]
+    mean, covariance = np.empty((N, 3)), np.empty((N, 3, 3))
+    kernels.gaussians(
+        appearance.W, appearance.sums, _PRIOR_PX, model_mean, model_covariance,
+        cloth_sd, noise_sd, shading_sd, mean, covariance,
+    )  # fmt: skip
+    return mean, covariance
 
 
 def whitening(mean: Floats, covariance: Floats) -> Singles:
     """affine (10,3,4) for `classify`: |A (b,g,r,1)| is the Mahalanobis distance of a BGR 0..255 pixel."""
-    # rows of the inverse Cholesky factor; the last row carries the sharpest test, so it goes first
-    L = np.linalg.cholesky(covariance)
-    A = np.linalg.inv(L)[:, ::-1]
-    affine = np.concatenate([A / 255.0, -(A @ mean[:, :, None])], axis=2)
-    return np.ascontiguousarray(affine.astype(np.float32))
+    out = np.empty((len(mean), 3, 4), np.float32)
+    kernels.whitening(mean, covariance, out)
+    return out
 
 
 def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.02) -> Floats:

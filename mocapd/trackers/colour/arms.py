@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.joint_limits import from_swing_twist, standard_limits
-from mocapd.body.model import BodyModel, shaped
+from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.arm_kernels import score_arms
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View
+from mocapd.trackers.colour.fitting import Fit, Fitter, View
+from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats, Ints
 
@@ -74,7 +75,7 @@ def candidates(
     out = [present]
     a, b = joints[lower] - joints[upper], joints[hand] - joints[lower]
     for view in views:
-        camera = fitter.cameras[view.index]
+        camera = fitter.drawings[view.index].camera
         ray = joints[lower] + camera.R.T @ camera.t_m
         ray = ray / np.linalg.norm(ray)
         a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
@@ -111,18 +112,19 @@ def best_arm_poses(
 ) -> list[MotionState]:
     """The `keep` best of the hypotheses, as states, best first."""
     model = fitter.model
-    vertices, rest = shaped(model, state.factors)
-    corners = vertices[arm.corners]
+    body = fitter.shaper(state.factors)
+    corners = body.vertices[arm.corners]
     points = corners.mean(axis=1)
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1)
     normals /= area[:, None]
     scores = np.zeros(len(hypotheses))
     for view in views:
-        base = fitter.render_parts(view.index, state, view.dt_s, view.roi, arm.others)
-        camera, factor = fitter.cameras[view.index], fitter.factors[view.index]
+        drawing = fitter.drawings[view.index]
+        base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
+        camera, factor = drawing.camera, drawing.factor
         score_arms(
-            hypotheses, arm.chain, model.parents, rest, base.R, base.joints, base.quats,
+            hypotheses, arm.chain, model.parents, body.rest, base.R, base.joints, base.quats,
             points, normals, arm.link, arm.weights, arm.colour, area,
             camera.R, camera.t_m, camera.K, camera.dist,
             np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,

@@ -10,8 +10,9 @@ from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
 from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, View
+from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_id_map
+from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye, Found
 from mocapd.types import Camera, Floats

@@ -33,8 +33,10 @@ class Params:
     iterations: int = 4
     first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
-    early_row_step: int = 2  # rows of the picture from one that counts to the next
-    last_row_step: int = 1  # the same in the last iteration
+    fine_iterations: int = (
+        2  # the last ones, at all work pixels; the others at every second each way
+    )
+    edge_stiffness: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
     soft_unknown: float = 0.5  # the same where the background was never seen
@@ -47,7 +49,13 @@ class Params:
     hips_sd_rad: float = 0.3
     spine_sd_rad: float = 0.2
     collar_sd_rad: float = 0.2
-    arm_sd_rad: float = 0.8
+    arm_sd_rad: float = 0.2
+    # at rest, of the left side [rotation vectors, rad]: means over recorded everyday motion (CMU,
+    # HDM05), with about twice its spread so that a raised arm is hardly held back
+    upper_arm_rest_rad: tuple[float, float, float] = (0.13, -0.33, -1.2)
+    upper_arm_sd_rad: float = 1.2
+    elbow_rest_rad: tuple[float, float, float] = (0.0, -0.77, 0.0)
+    elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     limit_sd_rad: float = 0.08  # softness of the joint limits
     fastest_rad_s: float = 15.0
     fastest_m_s: float = 4.0

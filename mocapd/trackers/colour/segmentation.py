@@ -8,18 +8,16 @@ from numpy.typing import NDArray
 
 from mocapd.trackers.colour import appearance as looks
 from mocapd.trackers.colour.appearance import Appearance
-from mocapd.trackers.colour.fitting import Roi
+from mocapd.trackers.colour.background_kernels import changed, learn_background
+from mocapd.trackers.colour.background_light import relight_background
+from mocapd.trackers.colour.cell_kernels import CELL, classify, colour_distances
+from mocapd.trackers.colour.drawing import Outline, Roi
 from mocapd.trackers.colour.locate_kernels import find_shirt, suppress_background
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation_kernels import (
     agreement,
-    changed,
-    classify,
-    colour_distances,
     colour_statistics,
     count_colours,
-    learn_background,
-    snap_background,
 )
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.colour_model import ColourModel
@@ -32,7 +30,9 @@ _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _NO_DOUBT = np.ones(10, np.int64)
 _TICK_S = 1.0 / 30.0
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
-_FARTHEST = 14  # coarse px from its predicted place at which a colour is looked for
+_FARTHEST = 7  # cells from its predicted place at which a colour is looked for
+_NEW_LOOKS = 90
+_WHITE_BALANCE_EVERY = 4  # looks; between them the learned means alone follow the light
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
 
@@ -80,7 +80,7 @@ class Eye:
     def __post_init__(self) -> None:
         w, h = self.size
         self._ids, self._softness = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
-        self._distance = np.empty((h // 2 + 1) * (w // 2 + 1) * 10, np.uint8)
+        self._distance = np.empty((h // CELL + 1) * (w // CELL + 1) * 10, np.uint8)
         self._tables = ColourTables()
         self.reset()
 
@@ -113,9 +113,10 @@ class Eye:
     # --- with a pose ---
 
     def classify(
-        self, predicted: Ids, roi: Roi, doubted: Ints, may_relight: bool
+        self, predicted: Ids, outline: Outline, roi: Roi, doubted: Ints, may_relight: bool
     ) -> tuple[Ids, Ids]:
-        """ids and softness (h,w) over the region, given the predicted id map (buffers of this eye).
+        """ids and softness (h,w) over the region, given the predicted id map and where its vertices
+        are (buffers of this eye).
 
         doubted: colours (0..9) whose place is in doubt. When the shirt is badly classified, or much
         worse than usual, other lights are tried and the best is kept: the light that carries the
@@ -127,7 +128,7 @@ class Eye:
         divisor = _NO_DOUBT.copy()
         divisor[doubted] = 3
         distance = self._distances(
-            predicted, int(min(0.5 * p.threshold / prior, _FARTHEST)), divisor
+            predicted, outline, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )
         ids, softness = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
@@ -175,11 +176,14 @@ class Eye:
         )  # fmt: skip
         return ids, softness
 
-    def _distances(self, predicted: Ids, limit: int, divisor: Ints) -> Ids:
+    def _distances(self, predicted: Ids, outline: Outline, limit: int, divisor: Ints) -> Ids:
         h, w = predicted.shape
-        h2, w2 = (h + 1) // 2, (w + 1) // 2
-        out = self._distance[: h2 * w2 * 10].reshape(h2, w2, 10)
-        colour_distances(predicted, limit, divisor, out)
+        h4, w4 = -(-h // CELL), -(-w // CELL)
+        out = self._distance[: h4 * w4 * 10].reshape(h4, w4, 10)
+        colour_distances(
+            predicted, outline.xy, outline.triangles, outline.sleeves, outline.colour,
+            limit, divisor, out,
+        )  # fmt: skip
         return out
 
     def learn(self, final: Ids, ids: Ids, softness: Ids, roi: Roi, dt_s: float, sure: bool) -> None:
@@ -191,7 +195,9 @@ class Eye:
         sums = np.zeros((10, 4))
         colour_statistics(self.picture, roi[0], roi[1], final, ids, True, sums)
         learned = looks.learn(memory.appearance, sums, dt_s, p.colour_memory_s)
-        W = looks.white_balance(learned, self.model.mean)
+        W = learned.W
+        if memory.looks % _WHITE_BALANCE_EVERY == 0:
+            W = looks.white_balance(learned, self.model.mean)
         memory.appearance = Appearance(W, learned.sums)
         if sure:
             memory.references = remember_illumination(memory.references, W)
@@ -220,16 +226,12 @@ class Eye:
         if share > p.background_jump:
             # a lamp went on or off: what is seen beside the body now is the background in its new
             # light, and colours counted in the old light say nothing
-            snap_background(self.picture, memory.body, *arrays)
+            relight_background(self.picture, memory.body, *arrays)
             memory.shirt_count *= 0.25
             memory.other_count *= 0.25
-        learn_background(self.picture, memory.body, *arrays, 0.02, memory.looks % 2, 2)
-
-    def rehearse(self) -> None:
-        """Run what ordinary frames do not reach once, then forget."""
-        memory = self.memory
-        snap_background(self.picture, memory.body, memory.background_mean, memory.background_age)
-        self.reset()
+        # every second row while it is new, then half as often for twice as much
+        rate, step = (0.02, 2) if memory.looks < _NEW_LOOKS else (0.04, 4)
+        learn_background(self.picture, memory.body, *arrays, rate, memory.looks % step, step)
 
     # --- without a pose ---
 

@@ -16,7 +16,14 @@ from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.fitting import Fit, Fitter, MotionState, Roi, View, initial_information
+from mocapd.trackers.colour.drawing import Roi
+from mocapd.trackers.colour.fitting import Fit, Fitter, View
+from mocapd.trackers.colour.motion_state import (
+    MotionState,
+    initial_information,
+    moved,
+    step_between,
+)
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
@@ -89,7 +96,6 @@ class ColourTracker:
     def _rehearse(self) -> None:
         """Compile or load the kernels that only rare frames reach."""
         eye = self._eyes[0]
-        eye.rehearse()
         w, h = eye.size
         nothing = np.zeros((h, w), np.uint8)
         rest = self._fitter.model.rest_m
@@ -144,21 +150,18 @@ class ColourTracker:
             self._factors, self._information = known.state.factors, known.state.information
             self._taught_s = known.taught_s
         self._learn(views, known if evidence else None, present)
-        self.probe("background")
+        self.probe("learn")
         return self._track(tracking, frames, views)
 
     # --- stages ---
 
     def _look(self, frames: FrameSet) -> dict[int, float]:
         """Take the pictures; per camera present, its own time after the set's [s]."""
-        present = {}
-        for name, frame in frames.frames.items():
-            if name in self._index:
-                i = self._index[name]
-                _check_size(frame, self.rig.cameras[i].size_px)
-                self._eyes[i].look(frame.pixels)
-                present[i] = seconds(frame.t_ns - frames.t_ns)
-        return dict(sorted(present.items()))
+        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
+        for i, frame in mine:
+            _check_size(frame, self.rig.cameras[i].size_px)
+            self._eyes[i].look(frame.pixels)
+        return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
     def _views(
         self, state: MotionState, present: dict[int, float], doubted: tuple[str, ...], relight: bool
@@ -169,11 +172,14 @@ class ColourTracker:
         colours = _colours_of(doubted)
         views = []
         for i, dt_s in present.items():
-            roi = self._fitter.region(i, state, dt_s, margin)
+            drawing = self._fitter.drawings[i]
+            roi = drawing.region(state, dt_s, margin)
             if roi is None:
                 continue
-            predicted = self._fitter.render(i, state, dt_s, roi)
-            ids, softness = self._eyes[i].classify(predicted, roi, colours, relight)
+            predicted = drawing.render(state, dt_s, roi)
+            ids, softness = self._eyes[i].classify(
+                predicted, drawing.outline(), roi, colours, relight
+            )
             views.append(View(i, roi, ids, softness, dt_s))
         return views
 
@@ -184,7 +190,7 @@ class ColourTracker:
         p, fitter = self.params, self._fitter
         last = known.state
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
-        root, local = fitter.moved(last, dt_s, p.prediction_damping)
+        root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
         doubted = tuple(s for s in SIDES if known.fit is not None and doubtful(s, known.fit, p))
         views = self._views(predicted, present, doubted, relight=True)
@@ -212,8 +218,8 @@ class ColourTracker:
             gained = fitter.shape_information(fit.H) * (p.shape_gain * dt_s / _TICK_S)
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
-        velocity = fitter.step_between(
-            (state.root_m, state.local_xyzw), (last.root_m, last.local_xyzw)
+        velocity = step_between(
+            fitter.model, (state.root_m, state.local_xyzw), (last.root_m, last.local_xyzw)
         )
         velocity /= dt_s
         velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
@@ -305,21 +311,18 @@ class ColourTracker:
         """Follow light and background in every camera that has a frame."""
         seen = {v.index: v for v in views}
         for i in present:
-            eye = self._eyes[i]
-            view = seen.get(i)
+            eye, drawing, view = self._eyes[i], self._fitter.drawings[i], seen.get(i)
             if known is not None and view is not None and known.fit is not None:
                 if self._redraw:
-                    final = self._fitter.render(i, known.state, view.dt_s, view.roi)
+                    final = drawing.render(known.state, view.dt_s, view.roi)
                 else:  # the last iteration's drawing differs by a fraction of a pixel
-                    final = self._fitter.last_rendered(i, view.roi)
+                    final = drawing.last(view.roi)[0]
                 sure = _match(known.fit) > self.params.sure_match
                 eye.mark_body(final, view.roi)
                 eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
             elif self._known is None:
                 eye.mark_body(None, (0, 0, 0, 0))
-        self.probe("learn")
-        for i in present:
-            self._eyes[i].learn_background()
+            eye.learn_background()
 
     # --- result ---
 
@@ -333,8 +336,8 @@ class ColourTracker:
         state = known.state
         away_s = seconds(frames.t_ns - known.t_ns)
         if away_s > 0.0:  # coasting: it moves on for a moment, then stays
-            root, local = self._fitter.moved(
-                state, min(away_s, 0.1), self.params.prediction_damping
+            root, local = moved(
+                self._fitter.model, state, min(away_s, 0.1), self.params.prediction_damping
             )
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)

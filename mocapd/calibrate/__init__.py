@@ -1,0 +1,1 @@
+"""From cameras and a shirt to a calibration: lens, room, colours."""

@@ -1,0 +1,74 @@
+"""One Gauss-Newton step of the pose: evidence, motion prior, rest prior, joint limits and shape prior."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mocapd.body.joint_limit_kernels import limit_residuals
+from mocapd.body.posing_kernels import difference
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def gauss_newton_step(
+    H: Array,
+    b: Array,
+    root: Array,
+    local: Array,
+    start_root: Array,
+    start_local: Array,
+    prior: Array,
+    rest_local: Array,
+    rest_information: Array,
+    joint_of_group: Ints,
+    share_of_joint: Array,
+    limit_joint: Ints,
+    limit_share: Array,
+    limit_axis: Ints,
+    lower: Array,
+    upper: Array,
+    limit_information: float,
+    shape_offset: Array,
+    shape_information: Array,
+) -> Array:
+    """The step (P,) that solves the normal equations of all terms at the pose root (3,), local (J,4).
+
+    H (P,P), b (P,) of the evidence, left as they are. prior (N_POSE,): information that holds the
+    pose to start_root, start_local; rest_information (N_POSE,) holds it to rest_local; groups
+    beyond their limits are pulled back with limit_information; shape_offset (P - N_POSE,) from the
+    factors to what is known of them, with shape_information.
+    """
+    n_pose = prior.shape[0]
+    P = b.shape[0]
+    A = H.copy()
+    g = b.copy()
+    away = np.empty(n_pose)
+    difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
+    for p in range(n_pose):
+        A[p, p] += prior[p] + rest_information[p]
+        g[p] += prior[p] * away[p]
+    difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
+    for p in range(n_pose):
+        g[p] += rest_information[p] * away[p]
+    G = joint_of_group.shape[0]
+    excess = np.zeros((G, 3))
+    slope = np.zeros((G, 3, 3))
+    limit_residuals(local, limit_joint, limit_share, limit_axis, lower, upper, excess, slope)
+    for group in range(G):
+        first = 3 + 3 * group
+        for i in range(3):
+            if excess[group, i] == 0.0:
+                continue
+            for p in range(3):
+                pull = limit_information * slope[group, i, p]
+                g[first + p] -= pull * excess[group, i]
+                for q in range(3):
+                    A[first + p, first + q] += pull * slope[group, i, q]
+    for i in range(P - n_pose):
+        for j in range(P - n_pose):
+            A[n_pose + i, n_pose + j] += shape_information[i, j]
+            g[n_pose + i] += shape_information[i, j] * shape_offset[j]
+    g[:] = np.linalg.solve(A, g)
+    return g
