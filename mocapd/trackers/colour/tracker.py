@@ -42,6 +42,7 @@ from mocapd.types import (
 from mocapd.vision.colour_model import ColourModel
 
 _TICK_S = 1.0 / 30.0
+_TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
 _ARM_STEPS = {"left": slice(9, 18), "right": slice(18, 27)}  # of the pose parameters
 _PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
@@ -133,7 +134,7 @@ class ColourTracker:
         present = self._look(frames)
         self.probe("picture")
         known = self._known
-        if known is not None and frames.t_ns - known.t_ns > nanoseconds(0.5):
+        if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
             known = None  # too old to predict from
         views: list[View] = []
         if known is not None and present:

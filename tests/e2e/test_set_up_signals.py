@@ -1,0 +1,18 @@
+"""Who starts a service may change their mind while its caches are being made."""
+
+import signal
+
+from tests.cli.mocapd_process import start
+
+
+def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(clean_env: dict[str, str]) -> None:
+    with start(clean_env, "demo") as process:
+        assert process.stderr is not None
+        told = process.stderr.readline()
+        while "progress" not in told:  # the log's name for what is being made
+            assert told, "it ended before it made anything"
+            told = process.stderr.readline()
+        process.send_signal(signal.SIGTERM)
+        _, rest = process.communicate(timeout=2.0)
+    assert process.returncode == 0
+    assert "Traceback" not in rest
