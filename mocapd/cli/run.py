@@ -54,12 +54,14 @@ def run_with(config: "Config", hint: str = "") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
+    from mocapd.cli.first_start import prepare_apart
     from mocapd.cli.progress import ProgressBars
     from mocapd.cli.running import Signals, run_daemon
     from mocapd.daemon import Daemon
     from mocapd.session import open_session
 
     signals = Signals()
+    prepare_apart(config)
     with ProgressBars() as progress:
         session = open_session(config, progress)
     return run_daemon(Daemon(config, session), signals, hint)

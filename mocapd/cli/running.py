@@ -1,10 +1,8 @@
 """What `run` and `demo` share: signals, the status line, and how the process ends."""
 
-import os
 import signal
 import sys
 import threading
-import time
 import traceback
 from types import FrameType
 
@@ -16,7 +14,6 @@ TELL_EVERY = 4  # health goes out with every fourth of them
 
 INTERNAL_ERROR = 70  # EX_SOFTWARE
 SIGINT_EXIT = 130
-GRACE_S = 1.0  # for the main thread to leave the set-up, which may be deep in a compiler
 
 
 class Signals:
@@ -28,23 +25,12 @@ class Signals:
     def __init__(self) -> None:
         self.exit_code = 0
         self._daemon: Daemon | None = None
-        self._woken, wake = os.pipe()
-        os.set_blocking(wake, False)
-        signal.set_wakeup_fd(wake)
-        threading.Thread(target=self._watch_set_up, name="mocapd-signals", daemon=True).start()
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._caught)
 
     def ends(self, daemon: Daemon) -> None:
         """From now on a signal ends this daemon in order."""
         self._daemon = daemon
-
-    def _watch_set_up(self) -> None:
-        """End a set-up whose main thread cannot: its caches are written whole or not at all."""
-        number = os.read(self._woken, 1)[0]
-        time.sleep(GRACE_S)
-        if self._daemon is None:
-            os._exit(SIGINT_EXIT if number == signal.SIGINT else 0)
 
     def _caught(self, number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -1,12 +1,16 @@
 """Who starts a service may change their mind while its caches are being made."""
 
 import signal
+from pathlib import Path
 
 from tests.cli.mocapd_process import start
 
 
-def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(clean_env: dict[str, str]) -> None:
-    with start(clean_env, "demo") as process:
+def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(
+    clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    empty = clean_env | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    with start(empty, "demo") as process:
         assert process.stderr is not None
         told = process.stderr.readline()
         while "progress" not in told:  # the log's name for what is being made
