@@ -124,7 +124,8 @@ class Track:
     """What a tracker says of one frame set: the body, and per camera an image of the evidence.
 
     `evidence[camera]` is an id map (h,w) uint8 over the region `roi_px[camera]` = x0, y0, x1, y1 of
-    the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes (colour tracker: colour ids). For previews only.
+    the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
+    (colour tracker: colour ids). For previews only.
     `stage_ms`: milliseconds per stage, when the tracker was asked to time itself.
     """
 

@@ -2,7 +2,19 @@
 
 import typer
 
-from mocapd.cli import bench, cameras, check_config, demo, run, track, version, watch
+from mocapd.cli import (
+    bench,
+    board,
+    calibrate,
+    cameras,
+    check_config,
+    demo,
+    run,
+    shirt,
+    track,
+    version,
+    watch,
+)
 from mocapd.cli import eval as evaluation
 
 app = typer.Typer(
@@ -16,3 +28,6 @@ app = typer.Typer(
 )
 for command in (run, demo, track, evaluation, bench, watch, cameras, check_config, version):
     command.add_to(app)
+calibrate.add_to(app)
+for printable in (board, shirt):
+    printable.add_to(app)

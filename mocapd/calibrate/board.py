@@ -1,0 +1,135 @@
+"""The calibration board: what is printed on it, and where its inner corners are."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+import numpy as np
+
+from mocapd.errors import ConfigError
+from mocapd.types import Floats
+
+_WHERE = "the board"
+_FEWEST_SQUARES = 3  # in each direction: fewer have not the corners that fix a pose
+_LARGEST_SQUARE_M = 1.0
+
+
+class BoardKind(StrEnum):
+    """`charuco`: a chessboard with markers in its white squares; `chessboard`: a plain one."""
+
+    CHARUCO = "charuco"
+    CHESSBOARD = "chessboard"
+
+
+@dataclass(frozen=True, slots=True)
+class BoardSpec:
+    """What is printed. Raises ConfigError when it cannot be.
+
+    `columns` and `rows` count squares, not inner corners. `marker_m` and `dictionary` matter to
+    ChArUco only. `inverted`: white where other boards are black. `legacy`: the layout of OpenCV
+    before 4.6, which differs where `rows` is even.
+
+    The board's frame, seen from its printed side: x right along a row, y down, z into the board,
+    origin at the outer corner of the first square [m].
+    """
+
+    kind: BoardKind
+    columns: int
+    rows: int
+    square_m: float
+    marker_m: float = 0.0
+    dictionary: str = "DICT_4X4_1000"
+    inverted: bool = False
+    legacy: bool = False
+
+    def __post_init__(self) -> None:
+        if min(self.columns, self.rows) < _FEWEST_SQUARES:
+            raise ConfigError(
+                f"{self.columns}x{self.rows} squares are too few",
+                _WHERE,
+                f"give columns x rows of squares, at least {_FEWEST_SQUARES} each",
+            )
+        if not 0.0 < self.square_m < _LARGEST_SQUARE_M:
+            raise ConfigError(
+                f"a square of {self.square_m:g} m",
+                _WHERE,
+                "give the side of one square in metres, as measured with a ruler",
+            )
+        if self.kind is BoardKind.CHESSBOARD:
+            return
+        if not 0.0 < self.marker_m < self.square_m:
+            raise ConfigError(
+                f"a marker of {self.marker_m:g} m in a square of {self.square_m:g} m",
+                _WHERE,
+                "give the side of a marker in metres; it is smaller than the square",
+            )
+        if self.dictionary not in dictionaries():
+            raise ConfigError(
+                f"no marker dictionary {self.dictionary!r}",
+                _WHERE,
+                "one of " + ", ".join(dictionaries()),
+            )
+        known = len(_dictionary(self.dictionary).bytesList)
+        if known < self.columns * self.rows // 2:
+            raise ConfigError(
+                f"{self.dictionary} has {known} markers, a board of {self.columns}x{self.rows} "
+                f"squares needs {self.columns * self.rows // 2}",
+                _WHERE,
+                "give the dictionary that the board was printed with",
+            )
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Inner corners along a row and along a column."""
+        return self.columns - 1, self.rows - 1
+
+    @property
+    def turns_show(self) -> bool:
+        """Whether the board turned by half a turn can be told from the board as it was."""
+        return self.kind is BoardKind.CHARUCO or (self.columns + self.rows) % 2 == 1
+
+    def __str__(self) -> str:
+        return f"{self.kind} of {self.columns}x{self.rows} squares"
+
+
+def board_size(text: str) -> tuple[int, int]:
+    """`4x5` as (4, 5): columns and rows of squares. Raises ConfigError."""
+    columns, _, rows = text.lower().partition("x")
+    if not (columns.strip().isdecimal() and rows.strip().isdecimal()):
+        raise ConfigError(f"the board size {text!r}", _WHERE, "write columns x rows, as 4x5")
+    return int(columns), int(rows)
+
+
+def dictionaries() -> tuple[str, ...]:
+    """Names of the marker dictionaries that OpenCV knows, small ones first."""
+    names = (name for name in dir(cv2.aruco) if name.startswith("DICT_"))
+    return tuple(sorted(names, key=lambda name: (len(_dictionary(name).bytesList), name)))
+
+
+def _dictionary(name: str) -> Any:
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
+
+
+def corners_m(spec: BoardSpec) -> Floats:
+    """The inner corners (n,3) in the board's frame [m], row by row as OpenCV numbers them."""
+    columns, rows = spec.grid
+    y, x = np.mgrid[1 : rows + 1, 1 : columns + 1]
+    grid = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
+    return grid * spec.square_m
+
+
+def centre_m(spec: BoardSpec) -> Floats:
+    """The middle of the board (3,) in its frame [m]."""
+    return 0.5 * spec.square_m * np.array([spec.columns, spec.rows, 0.0])
+
+
+def aruco_board(spec: BoardSpec) -> Any:
+    """The board as cv2.aruco has it."""
+    board = cv2.aruco.CharucoBoard(
+        (spec.columns, spec.rows), spec.square_m, spec.marker_m, _dictionary(spec.dictionary)
+    )
+    board.setLegacyPattern(spec.legacy)
+    return board

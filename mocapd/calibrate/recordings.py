@@ -1,0 +1,105 @@
+"""A folder of recordings of the board: a video or a folder of pictures per camera, named by its stem."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+import numpy as np
+
+from mocapd.capture.file import FileSource, probe_video
+from mocapd.errors import EndOfStream, InputError
+from mocapd.types import Bytes
+
+_VIDEOS = {".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mjpeg", ".mjpg"}
+_PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """One camera's video or folder of pictures; `frames`: how many, 0 where a video does not tell."""
+
+    name: str
+    path: Path
+    frames: int
+    size_px: tuple[int, int]
+
+    def pictures(self, stride: int = 1) -> Iterator[tuple[int, Bytes]]:
+        """Index and pixels of every `stride`-th index. Pictures carry their index in their name.
+
+        Raises InputError for a picture that is damaged or of another size.
+        """
+        if self.path.is_dir():
+            for index, path in numbered(self.path):
+                if index % stride == 0:
+                    yield index, self._read(path)
+            return
+        source = FileSource(self.name, self.path)
+        source.open()
+        try:
+            while True:
+                frame = source.read()
+                if frame.seq % stride == 0:
+                    yield frame.seq, frame.pixels
+        except EndOfStream:
+            return
+        finally:
+            source.close()
+
+    def _read(self, path: Path) -> Bytes:
+        pixels = read_picture(path)
+        if pixels.shape[1::-1] != self.size_px:
+            raise InputError(
+                f"is {pixels.shape[1]}x{pixels.shape[0]}, the first picture of this camera "
+                f"{self.size_px[0]}x{self.size_px[1]}",
+                str(path),
+                "a lens is of one size of picture: leave the others out",
+            )
+        return pixels
+
+
+def read_picture(path: Path) -> Bytes:
+    """(h,w,3) uint8 BGR. Raises InputError."""
+    read = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    if read is None:
+        raise InputError("not a picture, or damaged", str(path), "take it out of the folder")
+    pixels: Bytes = read.astype(np.uint8, copy=False)
+    return pixels
+
+
+def numbered(folder: Path) -> list[tuple[int, Path]]:
+    """The pictures of a folder by index: the last number in their names, else their order."""
+    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in _PICTURES)
+    numbers = [re.findall(r"\d+", path.stem) for path in paths]
+    if all(numbers):
+        indices = [int(number[-1]) for number in numbers]
+        if len(set(indices)) == len(indices):
+            return sorted(zip(indices, paths, strict=True))
+    return list(enumerate(paths))
+
+
+def find_recordings(folder: Path) -> tuple[Recording, ...]:
+    """Every camera of the folder, by name. Raises InputError when there is none."""
+    if not folder.is_dir():
+        raise InputError("no such folder", str(folder), "check the path")
+    found = []
+    for path in sorted(folder.iterdir()):
+        if path.is_dir() and numbered(path):
+            pictures = numbered(path)
+            shape = read_picture(pictures[0][1]).shape
+            found.append(Recording(path.name, path, len(pictures), (shape[1], shape[0])))
+        elif path.suffix.lower() in _VIDEOS:
+            info = probe_video(path)
+            found.append(Recording(path.stem, path, info.frames, info.size_px))
+    names = [one.name for one in found]
+    if not found or len(set(names)) < len(names):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        raise InputError(
+            f"two recordings of one camera: {', '.join(twice)}" if twice else "no recording in it",
+            str(folder),
+            "put one video, or one folder of pictures, per camera there, named as the camera",
+        )
+    return tuple(found)

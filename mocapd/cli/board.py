@@ -1,0 +1,47 @@
+"""`mocapd board`"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("board")(board)
+
+
+def board(
+    out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
+    paper: Annotated[str, typer.Option(help="A4, Letter or A3.")] = "A4",
+    board_size: Annotated[
+        str, typer.Option(help="Squares across and down.", metavar="COLUMNSxROWS")
+    ] = "5x7",
+    square: Annotated[
+        float | None, typer.Option(help="Side of a square [m] [default: as large as fits]")
+    ] = None,
+    marker: Annotated[
+        float | None, typer.Option(help="Side of a marker [m] [default: 3/4 of the square]")
+    ] = None,
+    dictionary: Annotated[
+        str, typer.Option(help="OpenCV's name of the markers.")
+    ] = "DICT_4X4_1000",
+    inverted: Annotated[bool, typer.Option("--inverted", help="Light on dark.")] = False,
+) -> None:
+    """Make a ChArUco calibration board to print.
+
+    Print it at 100 % and measure its rulers. Says with which flags `mocapd calibrate` reads it.
+
+    Example: mocapd board --out board.pdf --paper A4
+    """
+    from mocapd.calibrate.board import board_size as counts_of
+    from mocapd.calibrate.board_pdf import board_pdf, fitted_board, flags_of
+    from mocapd.calibrate.paper import write_pdf
+
+    columns, rows = counts_of(board_size)
+    made = fitted_board(
+        paper, columns, rows, dictionary, inverted=inverted, square_m=square, marker_m=marker
+    )
+    write_pdf(out, board_pdf(made, paper))
+    print(flags_of(made))
+    typer.echo(f"{out}: print it at 100 % and glue it flat onto something stiff", err=True)

@@ -1,0 +1,34 @@
+"""`mocapd shirt`"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("shirt")(shirt)
+
+
+def shirt(
+    out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
+    size: Annotated[str, typer.Option(help="S, M, L, XL or XXL.")] = "M",
+    paper: Annotated[str, typer.Option(help="A4, Letter or A3.")] = "A4",
+    layout: Annotated[
+        str,
+        typer.Option(
+            help="sewing: pieces over pages of the paper; printing: one page a piece, for a printer"
+            " of cloth."
+        ),
+    ] = "sewing",
+) -> None:
+    """Make the standard shirt's pattern at true size, with a swatch card.
+
+    Example: mocapd shirt --out shirt.pdf --size L
+    """
+    from mocapd.calibrate.paper import write_pdf
+    from mocapd.calibrate.shirt_pdf import shirt_pdf
+
+    write_pdf(out, shirt_pdf(size, paper, layout))
+    typer.echo(f"{out}: print it at 100 %; how to sew it is on its first page", err=True)
