@@ -198,7 +198,7 @@ class ArmSearch:
             )  # fmt: skip
             best = fit
             for state in best_arm_poses(self.fitter, fit.state, arm, views, tries, p.arm_fits):
-                other = self.fitter.fit(state, views, dt_s, 3, learn_shape)
+                other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
                 if other.cost < best.cost - p.arm_gain:
                     best = other
             if best is not fit:

@@ -90,7 +90,7 @@ def best_fit(fitter: Fitter, states: Sequence[MotionState], views: Sequence[View
     """Fit all hypotheses a little, the best three more; the one of least cost, None when there is none."""
     if not states:
         return None
-    first = [fitter.fit(s, views, _LOOSE_S, 2, learn_shape=False) for s in states]
+    first = [fitter.fit(s, views, _LOOSE_S, 2, learn_shape=False, fine=1) for s in states]
     first.sort(key=lambda fit: fit.cost)
     more = [fitter.fit(f.state, views, _LOOSE_S, 4, learn_shape=False) for f in first[:3]]
     return min(more, key=lambda fit: fit.cost)

@@ -160,17 +160,20 @@ class Fitter:
         iterations: int,
         learn_shape: bool,
         rendered: bool = False,
+        fine: int | None = None,
     ) -> Fit:
         """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
 
         rendered: the prediction was drawn last into every view, so that the first iteration need
-        not draw it again.
+        not draw it again. fine: how many of the iterations, the last ones, look at all pixels
+        (None: as many as the parameters say).
         """
         p, m = self.params, self.model
         state = prediction
         n_shape = N_SHAPE if learn_shape else 0
         P = N_POSE + n_shape
         prior = 1.0 / (self._prediction_sd**2 * max(dt_s * 30.0, 0.5))
+        fine = p.fine_iterations if fine is None else fine
         q, limit_information = self._limits, 1.0 / p.limit_sd_rad**2
         H = np.zeros((P, P))
         coarse = [_coarse(view) for view in views]
@@ -181,10 +184,8 @@ class Fitter:
                 state,
                 self.shaper(state.factors),
                 radius_px=radius,
-                n_offsets=self._within(
-                    radius, 2.0 if iteration < iterations - p.fine_iterations else 1.0
-                ),
-                coarse=iteration < iterations - p.fine_iterations,
+                n_offsets=self._within(radius, 2.0 if iteration < iterations - fine else 1.0),
+                coarse=iteration < iterations - fine,
                 phase=iteration & 1,
                 n_shape=n_shape,
                 redraw=not rendered or iteration > 0,

@@ -62,9 +62,9 @@ class Params:
 
     # arms in doubt
     doubtful_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
-    arm_cloud: int = 128  # tries about the present pose
-    arm_library: int = 256  # tries over the whole range, another part each frame
-    arm_fits: int = 3  # of which so many are fitted
+    arm_cloud: int = 64  # tries about the present pose
+    arm_library: int = 128  # tries over the whole range, another part each frame
+    arm_fits: int = 1  # of which so many are fitted
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
 
     # body shape
