@@ -1,8 +1,9 @@
 """The one place where a tracker is built, and what it may know of rig, wearer and light is read."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from mocapd.body.shirt import N_COLOURS, standard_shirt
 from mocapd.capture.folder import CaptureFolder, StrokedImage
 from mocapd.config_sections import CameraSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
+from mocapd.trackers import registry
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import StrokedPicture, TrackerInputs, build
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -27,9 +29,23 @@ _PAINT = "paint the colours of the shirt again"
 
 def build_tracker(name: str, inputs: TrackerInputs) -> Tracker:
     """The tracker of this name, ready to step. Raises ConfigError naming what it lacks."""
+    with _pooled(inputs) as pooled:
+        return build(name, pooled)
+
+
+def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:
+    """What this tracker keeps in the cache folder, made if need be."""
+    nobody = TrackerInputs(rig=None, stature_m=TrackerSection().stature_m)
+    with _pooled(with_cache(nobody, cache_dir, progress)) as pooled:
+        registry.make_caches(name, pooled)
+
+
+@contextmanager
+def _pooled(inputs: TrackerInputs) -> Iterator[TrackerInputs]:
+    """With threads to make caches, and a log to tell of them."""
     pool = ThreadPoolExecutor(_THREADS)
     try:
-        return build(name, replace(inputs, map_chunks=pool.map, tell=_log.warning))
+        yield replace(inputs, map_chunks=pool.map, tell=_log.warning)
     finally:
         # who was told to end does not wait for all that is queued
         pool.shutdown(wait=False, cancel_futures=True)

@@ -1,10 +1,11 @@
-"""The first start in a process of its own: compiling and building takes memory that only its end gives back."""
+"""The first start in processes of their own: compiling and building takes memory that only its end gives back."""
 
 import hashlib
 import multiprocessing
 import os
 import platform
 import signal
+from collections.abc import Callable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,30 +32,68 @@ def prepare_apart(config: "Config") -> None:
     done = marker.read_text().split() if marker.is_file() else []
     if want in done:
         return
-    child = multiprocessing.get_context("fork").Process(target=_prepare, args=(config,))
-    child.start()
-    try:
-        child.join()
-    finally:
-        child.kill()
-    if child.exitcode == 0:
+    from mocapd.session import SIM  # and all that the processes need, imported once for them
+
+    # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
+    # it tells at once what is wrong with them
+    simulated = any(camera.source.startswith(SIM) for camera in config.camera)
+    first = (_make_film, _make_database) if simulated else ()
+    if _all_end_well(config, first) and _all_end_well(config, (_open,)):
         fresh = marker.with_suffix(".new")
         fresh.write_text("\n".join([*done[1 - REMEMBERED :], want]) + "\n")
         fresh.replace(marker)
 
 
-def _prepare(config: "Config") -> None:
+def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:
+    """Whether all of these, each in a process of its own, came to a good end."""
+    fork = multiprocessing.get_context("fork")
+    children = [fork.Process(target=_work, args=(work, config)) for work in works]
+    try:
+        for child in children:
+            child.start()
+        for child in children:
+            child.join()
+            if child.exitcode != 0:
+                return False
+        return True
+    finally:
+        for child in children:
+            if child.pid is not None:
+                child.kill()
+
+
+def _work(work: Callable[["Config"], None], config: "Config") -> None:
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, signal.SIG_DFL)
+    try:
+        work(config)
+    except MocapdError:
+        os._exit(1)
 
+
+def _make_film(config: "Config") -> None:
+    """What the simulated webcams show; its bar gives way to the database's, which takes longer."""
+    from mocapd import simulation
+
+    for source in {camera.source.rpartition("#")[0] for camera in config.camera}:
+        simulation.open_film(source, config.cache_dir, lambda *_: None)
+
+
+def _make_database(config: "Config") -> None:
+    from mocapd.cli.progress import ProgressBars
+    from mocapd.tracker_setup import make_caches
+
+    with ProgressBars() as progress:
+        progress("pose database", 0, 100)  # something to see while its maker is compiled
+        make_caches(config.tracker.name, config.cache_dir, progress)
+
+
+def _open(config: "Config") -> None:
     from mocapd.cli.progress import ProgressBars
     from mocapd.session import open_session
 
-    try:
-        with ProgressBars() as progress:
-            open_session(config, progress)
-    except MocapdError:
-        os._exit(1)
+    with ProgressBars() as progress:
+        open_session(config, progress)
 
 
 def _fingerprint(config: "Config") -> str:

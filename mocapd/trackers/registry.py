@@ -4,12 +4,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Rig
+
+if TYPE_CHECKING:
+    from mocapd.trackers.colour.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
 
@@ -68,8 +72,7 @@ def _canned(inputs: TrackerInputs) -> Tracker:
     return CannedTracker(standard_skeleton(inputs.stature_m))
 
 
-def _colour(inputs: TrackerInputs) -> Tracker:
-    from mocapd.trackers.colour.build import build_colour_tracker
+def _database(inputs: TrackerInputs) -> "PoseDatabase":
     from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build
 
     stale = (inputs.cache_dir / FILE_NAME).exists()
@@ -78,12 +81,18 @@ def _colour(inputs: TrackerInputs) -> Tracker:
         inputs.tell(f"{loaded.reason}, so it was made anew")
     if loaded.warning:
         inputs.tell(loaded.warning)
+    return loaded.database
+
+
+def _colour(inputs: TrackerInputs) -> Tracker:
+    from mocapd.trackers.colour.build import build_colour_tracker
+
     return build_colour_tracker(
         inputs.rig,
         inputs.stature_m,
         inputs.model,
         inputs.white_balance,
-        loaded.database,
+        _database(inputs),
         inputs.variant,
         inputs.tracking,
     )
@@ -127,3 +136,9 @@ def build(name: str, inputs: TrackerInputs) -> Tracker:
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
     return found.build(inputs)
+
+
+def make_caches(name: str, inputs: TrackerInputs) -> None:
+    """What this tracker keeps in the cache folder, made if need be; the rig is not asked for."""
+    if name == "colour":
+        _database(inputs)
