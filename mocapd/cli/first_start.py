@@ -1,6 +1,7 @@
 """The first start in processes of their own: compiling and building takes memory that only its end gives back."""
 
 import hashlib
+import logging
 import multiprocessing
 import os
 import platform
@@ -89,6 +90,9 @@ def _make_database(config: "Config") -> None:
 
 
 def _open(config: "Config") -> None:
+    # the simulated webcams of this process play for nobody: when they began is not to be told
+    logging.getLogger("mocapd.simulation").setLevel(logging.WARNING)
+
     from mocapd.cli.progress import ProgressBars
     from mocapd.session import open_session
 

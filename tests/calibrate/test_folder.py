@@ -148,7 +148,7 @@ def test_real_webcams(shared_dir: Path, tmp_path: Path) -> None:
     board = BoardSpec(BoardKind.CHARUCO, 4, 5, 0.054, 0.0405)  # inverted, which it finds itself
     for video in folder.glob("*.mp4"):
         (tmp_path / video.name).symlink_to(video)
-    found = calibrate_folder(tmp_path, board, quiet, params=FolderParams(most_pictures=29))
+    found = calibrate_folder(tmp_path, board, quiet, params=FolderParams(most_pictures=20))
     reference = json.loads((folder / "calib_opencv.json").read_text())["cameras"]
     assert found.board.inverted
     assert list(found.cameras) == [one["name"] for one in reference]
