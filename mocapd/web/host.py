@@ -1,0 +1,39 @@
+"""What the page needs of the process that serves it: the daemon, or `mocapd calibrate` by itself."""
+
+from typing import Protocol
+
+from mocapd.daemon import Snapshot
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.wizard.wizard import Wizard
+
+
+class Host(Protocol):
+    """Asked by the web server's threads at any time; everything returns at once, but `setup`."""
+
+    @property
+    def hub(self) -> FrameHub | None:
+        """The cameras' pictures; None while they are being opened anew."""
+        ...
+
+    @property
+    def rig(self) -> Rig | None:
+        """The calibration that is tracked with; None without one."""
+        ...
+
+    @property
+    def wizard(self) -> Wizard | None:
+        """The setup that is going on; None when there is none."""
+        ...
+
+    def setup(self) -> Wizard:
+        """The setup, begun when none is going on. Raises UnavailableError when it cannot be now."""
+        ...
+
+    def body(self) -> tuple[BodyState, Skeleton] | None:
+        """The newest body that was published; None before the first, or when nothing tracks."""
+        ...
+
+    def snapshot(self) -> Snapshot | None:
+        """How cameras, tracker and outputs fare; None when nothing tracks."""
+        ...

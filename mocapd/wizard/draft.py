@@ -1,0 +1,70 @@
+"""What the wizard has found out so far: the calibration in the making."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from mocapd.calibrate.board import BoardSpec
+from mocapd.calibrate.lens import Lens
+from mocapd.capture.controls import Controls
+from mocapd.types import Bytes, Floats, Rig
+
+
+@dataclass(frozen=True, slots=True)
+class DraftCamera:
+    """A camera that takes part.
+
+    id: its name in the rig; source: what a configuration calls it (`usb:...`, `/dev/video0`, a file,
+    `sim:...`); controls: what it was locked to, to be set again whenever the daemon opens it.
+    """
+
+    id: str
+    source: str
+    size_px: tuple[int, int]
+    fps_hz: float = 30.0
+    controls: Controls = field(default_factory=Controls)
+
+
+@dataclass(frozen=True, slots=True)
+class RoomQuality:
+    """How well the room fits: `method` is "board" or "wearer"; NaN where a method cannot tell.
+
+    rms_px: over all cameras; camera_rms_px: by camera; play_area_cm: median error in the play area.
+    """
+
+    method: str
+    rms_px: float
+    camera_rms_px: Mapping[str, float]
+    play_area_cm: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DraftColours:
+    """One camera's frozen picture (h,w,3) BGR with the strokes (h,w) 0 none, 1..10 that were accepted,
+    and W (3,3), model_from_camera on RGB 0..1, solved from them."""
+
+    pixels: Bytes
+    strokes: Bytes
+    W: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Draft:
+    """Everything found so far; None or empty where a step has not been done yet.
+
+    lenses, colours: by camera id; lens_saved: ids whose lens was taken over from an earlier setup;
+    floor_known: whether floor and up were measured, not guessed; personal: whether the wearer's own
+    colours (from the strokes) replace the shirt's standard; factors: the wearer's proportions, the
+    N_SHAPE factors of `body.shape`.
+    """
+
+    cameras: tuple[DraftCamera, ...] = ()
+    board: BoardSpec | None = None
+    lenses: Mapping[str, Lens] = field(default_factory=dict)
+    lens_saved: frozenset[str] = frozenset()
+    rig: Rig | None = None
+    room: RoomQuality | None = None
+    floor_known: bool = False
+    colours: Mapping[str, DraftColours] = field(default_factory=dict)
+    personal: bool = False
+    stature_m: float | None = None
+    factors: Floats | None = None

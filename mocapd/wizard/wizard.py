@@ -1,0 +1,240 @@
+"""The wizard: which step is shown, the thread it works in, and what the page may see of it."""
+
+import queue
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mocapd.capture.thread import CaptureStatus
+from mocapd.clock import monotonic_ns
+from mocapd.errors import InputError, MocapdError
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.step import (
+    Context,
+    Json,
+    Problem,
+    Scene,
+    Step,
+    StepName,
+    StepState,
+    StepView,
+    T,
+    Tell,
+)
+
+_TICK_S = 0.05
+
+MakeStep = Callable[[Context], Step]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WizardView:
+    """A snapshot: `serial` grows with every change; done: the steps whose result is in the draft;
+    refused: why the last command was not taken, None when it was."""
+
+    serial: int
+    step: StepName
+    done: frozenset[StepName]
+    view: StepView
+    refused: Problem | None
+    saved: bool
+    ended: bool
+
+
+class Wizard:
+    """Runs one step at a time in a thread of its own, from `start` to `stop`.
+
+    `view`, `send` and `picture` may be called from any thread. `died` is called with whatever
+    unexpected ended the thread.
+    """
+
+    def __init__(
+        self,
+        hub: FrameHub,
+        steps: Mapping[StepName, MakeStep],
+        statuses: Callable[[], Mapping[str, CaptureStatus]],
+        state_dir: Path,
+        cache_dir: Path,
+        died: Callable[[BaseException], None],
+        scene: Callable[[Scene], None] | None = None,
+        first: StepName = StepName.CAMERAS,
+        draft: Draft | None = None,
+        on_saved: Callable[[], None] | None = None,
+    ) -> None:
+        self.hub, self.state_dir, self.cache_dir = hub, state_dir, cache_dir
+        self.draft = draft if draft is not None else Draft()
+        self._steps, self._statuses, self._died = steps, statuses, died
+        self._scene, self._on_saved = scene, on_saved
+        self._names = tuple(name for name in StepName if name in steps)
+        self._commands: queue.SimpleQueue[tuple[str, Mapping[str, Json]]] = queue.SimpleQueue()
+        self._stopping = threading.Event()
+        self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
+        self._job: Future[Any] | None = None
+        self._job_done: Callable[[Any], None] | None = None
+        self._told: tuple[str, float] = ("", 0.0)
+        self._done: set[StepName] = set()
+        self._saved = False  # since the start
+        self._refused: Problem | None = None
+        self._step: Step = steps[first](self)
+        self._changed = threading.Condition()  # guards the view
+        self._view = self._snapshot(0)
+        self._thread = threading.Thread(target=self._run, name="wizard", daemon=True)
+
+    # -- from any thread -------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin; returns at once."""
+        self._thread.start()
+
+    def stop(self, timeout_s: float = 1.0) -> bool:
+        """End; False when the thread or its job is still busy after `timeout_s` [s]."""
+        self._stopping.set()
+        self._worker.shutdown(wait=False, cancel_futures=True)
+        if self._thread.ident is not None:
+            self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
+    def send(self, verb: str, args: Mapping[str, Json] | None = None) -> None:
+        """A command of the page: `go` {step}, `next`, `again`, or one of the step's own."""
+        self._commands.put((verb, args or {}))
+
+    def view(self) -> WizardView:
+        """The newest snapshot."""
+        with self._changed:
+            return self._view
+
+    def newer(self, serial: int, timeout_s: float) -> WizardView:
+        """The snapshot as soon as it is newer than `serial`, or after `timeout_s` [s]."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._view.serial > serial, timeout_s)
+            return self._view
+
+    def picture(self, key: str) -> bytes | None:
+        """A picture that the newest view names; None for one that it does not have."""
+        return self.view().view.pictures.get(key)
+
+    # -- Context, for the steps ------------------------------------------------------------------
+
+    def statuses(self) -> Mapping[str, CaptureStatus]:
+        """See Context."""
+        return self._statuses()
+
+    def scene(self, scene: Scene) -> None:
+        """See Context."""
+        if self._scene is not None:
+            self._scene(scene)
+
+    def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
+        """See Context."""
+        assert self._job is None, "one job at a time"
+        self._told = ("", 0.0)
+        self._job_done = done
+        self._job = self._worker.submit(job, self._tell)
+
+    def saved(self) -> None:
+        """See Context."""
+        self._saved = True
+        if self._on_saved is not None:
+            self._on_saved()
+
+    @property
+    def job(self) -> tuple[str, float] | None:
+        """See Context."""
+        return self._told if self._job is not None else None
+
+    # -- the wizard's thread ---------------------------------------------------------------------
+
+    def _tell(self, what: str, share: float) -> None:
+        self._told = (what, share)
+
+    def _run(self) -> None:
+        try:
+            self._step.enter()
+            while not self._stopping.is_set():
+                self._look_after_job()
+                self._step.tick(monotonic_ns())
+                self._publish()
+                self._take_commands()
+            self._step.leave()
+        except BaseException as error:
+            self._died(error)
+            raise
+
+    def _look_after_job(self) -> None:
+        job, done = self._job, self._job_done
+        if job is None or done is None or not job.done():
+            return
+        self._job = self._job_done = None
+        error = job.exception()
+        if isinstance(error, MocapdError):
+            self._step.job_failed(error)
+        elif error is not None:
+            raise error
+        else:
+            done(job.result())
+
+    def _take_commands(self) -> None:
+        """Waits a tick for the first; takes all that are there."""
+        timeout_s: float | None = _TICK_S
+        while True:
+            try:
+                verb, args = self._commands.get(timeout=timeout_s)
+            except queue.Empty:
+                return
+            timeout_s = 0.0
+            try:
+                self._take(verb, args)
+                self._refused = None
+            except InputError as error:
+                self._refused = Problem.of(error)
+            self._publish()
+
+    def _take(self, verb: str, args: Mapping[str, Json]) -> None:
+        if verb == "go":
+            names = {name.value: name for name in self._names}
+            if args.get("step") not in names:
+                raise InputError(f"no step {args.get('step')!r}", "the page", "reload the page")
+            self._show(names[str(args["step"])])
+        elif verb == "next":
+            if self._step.view().state is not StepState.DONE:
+                raise InputError("this step is not done yet", self._step.name, "finish it first")
+            at = self._names.index(self._step.name)
+            if at + 1 < len(self._names):
+                self._show(self._names[at + 1])
+        elif verb == "again":
+            self._show(self._step.name)
+        else:
+            self._step.command(verb, args)
+
+    def _show(self, name: StepName) -> None:
+        self._step.leave()
+        # a job that runs on ends for itself: nobody hears of it
+        if self._job is not None and not self._job.done():
+            self._worker.shutdown(wait=False, cancel_futures=True)
+            self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
+        self._job = self._job_done = None
+        self._step = self._steps[name](self)
+        self._step.enter()
+
+    def _snapshot(self, serial: int) -> WizardView:
+        view = self._step.view()
+        if view.state is StepState.DONE:
+            self._done.add(self._step.name)
+        return WizardView(
+            serial,
+            self._step.name,
+            frozenset(self._done),
+            view,
+            self._refused,
+            self._saved,
+            self._stopping.is_set(),
+        )
+
+    def _publish(self) -> None:
+        with self._changed:
+            self._view = self._snapshot(self._view.serial + 1)
+            self._changed.notify_all()
