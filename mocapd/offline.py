@@ -13,6 +13,7 @@ from mocapd.clock import seconds
 from mocapd.errors import CannotCreateError
 from mocapd.trackers.base import Tracker
 from mocapd.types import Floats, FrameSet
+from mocapd.whole_file import whole_file
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,22 +76,19 @@ def write_track(path: Path, track: RecordedTrack) -> None:
     The same track gives the same bytes.
     """
     check_writable(path)
-    # the name ends in .npz, else numpy appends it
-    partial = path.with_name(f".{path.name}.{os.getpid()}.npz")
     try:
-        np.savez_compressed(
-            partial,
-            times=track.times_s,
-            joint_names=np.array(track.joint_names),
-            joints=track.joints_m,
-            global_quats=track.global_xyzw,
-            confidence=track.confidence,
-            tracker=track.tracker,
-        )
-        partial.replace(path)
+        # through an open file, for numpy appends .npz to a name that does not end so
+        with whole_file(path) as partial, partial.open("wb") as file:
+            np.savez_compressed(
+                file,
+                times=track.times_s,
+                joint_names=np.array(track.joint_names),
+                joints=track.joints_m,
+                global_quats=track.global_xyzw,
+                confidence=track.confidence,
+                tracker=track.tracker,
+            )
     except OSError as error:
         raise CannotCreateError(
             f"cannot be written ({error.strerror})", str(path), "make room or choose another place"
         ) from None
-    finally:
-        partial.unlink(missing_ok=True)

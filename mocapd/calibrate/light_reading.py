@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import N_SHAPE, build_model
-from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.light_hypotheses import light_hypotheses
 from mocapd.errors import InputError
@@ -23,8 +22,8 @@ from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.appearance import Appearance, fresh
 from mocapd.trackers.colour.arms import ArmSearch
 from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.drawing import Drawing
-from mocapd.trackers.colour.fitting import Fit, Fitter, View
+from mocapd.trackers.colour.drawing import Drawing, work_factors
+from mocapd.trackers.colour.fitting import Fit, Fitter, View, confirmed_parts
 from mocapd.trackers.colour.motion_state import MotionState, initial_information
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye, Found
@@ -42,7 +41,6 @@ _ALIKE_PX = 24  # work px
 _FIRST_TURNS = 2
 _LAST_TURNS = 8  # of the arm search, so that all of its library is tried
 _LOOSE_S = 0.1
-_CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share, and counted work px, of a patch to confirm its colour
 _ARM_JOINTS = [
     INDEX[side + bone]
     for side in ("left", "right")
@@ -85,10 +83,7 @@ class LightReader:
     ) -> None:
         self._params = p = params if params is not None else Params()
         self._cameras, self._model, self._database = tuple(cameras), model, database
-        factors = [
-            max(1, round(c.size_px[0] / p.work_width_px), -(-max(c.size_px) // 480))
-            for c in cameras
-        ]
+        factors = work_factors(cameras, p.work_width_px)
         self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p)
         self._arms = ArmSearch(self._fitter, p)
         self._eyes = [Eye(c, f, model, np.eye(3), p) for c, f in zip(cameras, factors, strict=True)]
@@ -190,7 +185,8 @@ class LightReader:
                 break
             fit = self._fitted(fit.state, [view], turn)
             appearance = self._eyes[index].memory.appearance
-            reading = Reading(light, fit, view, appearance, _match(fit), _confirmed_colours(fit))
+            agreement, colours = fit.explained, fit.confirmed_colours()
+            reading = Reading(light, fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
                 best = reading
             self._relight(index, fit.state, view)
@@ -221,9 +217,9 @@ class LightReader:
                 for index in own:
                     self._eyes[index].memory.references = ()
                 fit = self._fitted(fit.state, views, turn)
-                match, colours = _match(fit), _confirmed_colours(fit)
+                seen = (fit.explained, fit.confirmed_colours())
                 readings = [
-                    Reading(light, fit, v, self._eyes[v.index].memory.appearance, match, colours)
+                    Reading(light, fit, v, self._eyes[v.index].memory.appearance, *seen)
                     for v in views
                 ]
                 if not best or readings[0].score > best[0].score:
@@ -244,11 +240,10 @@ class LightReader:
         rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
         n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]
         same = np.bincount(rendered[rendered == view.ids], minlength=COLOURS + 1)[1:]
-        confirmed = (same >= _CONFIRMED_PX) & (same >= _CONFIRMED * n)
         return replace(
             reading,
             agreement=float(same.sum() / max(n.sum(), 1)),
-            colours=int(np.count_nonzero(confirmed)),
+            colours=int(np.count_nonzero(confirmed_parts(same, n))),
         )
 
     def _fitted(self, state: MotionState, views: list[View], turn: int) -> Fit:
@@ -289,15 +284,6 @@ def _arms_out(state: MotionState) -> MotionState:
     local = state.local_xyzw.copy()
     local[_ARM_JOINTS] = IDENTITY_XYZW
     return replace(state, local_xyzw=local)
-
-
-def _match(fit: Fit) -> float:
-    return float(fit.matched.sum() / max(fit.visible.sum() + fit.unexplained.sum(), 1.0))
-
-
-def _confirmed_colours(fit: Fit) -> int:
-    confirmed = (fit.matched >= _CONFIRMED_PX) & (fit.matched >= _CONFIRMED * fit.visible)
-    return int(np.count_nonzero(np.unique(standard_shirt().colour_of_patch[confirmed])))
 
 
 def _alike(a: Found, b: Found) -> bool:

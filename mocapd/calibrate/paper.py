@@ -1,7 +1,6 @@
 """Paper to print on: sizes, a PDF document in millimetres, and the ruler that shows its scale."""
 
 import io
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 from reportlab.pdfgen.canvas import Canvas
 
 from mocapd.errors import CannotCreateError, ConfigError
+from mocapd.whole_file import whole_file
 
 # width, height in portrait [mm]; ISO 216 and ANSI/ASME Y14.1
 PAPERS_MM = {"A4": (210.0, 297.0), "Letter": (215.9, 279.4), "A3": (297.0, 420.0)}
@@ -130,12 +130,10 @@ def draw_ruler(canvas: Canvas, at_mm: Size, *, upright: bool = False) -> None:
 
 def write_pdf(path: Path, content: bytes) -> None:
     """Write the file whole or not at all. Raises CannotCreateError."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        partial.write_bytes(content)
-        partial.replace(path)
+        with whole_file(path) as partial:
+            partial.write_bytes(content)
     except OSError as error:
-        partial.unlink(missing_ok=True)
         raise CannotCreateError(
             f"the PDF cannot be written ({error.strerror})",
             str(path),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import mocapd
 from mocapd.errors import MocapdError
+from mocapd.whole_file import whole_file
 
 if TYPE_CHECKING:
     from mocapd.config_sections import Config
@@ -40,9 +41,8 @@ def prepare_apart(config: "Config") -> None:
     simulated = any(camera.source.startswith(SIM) for camera in config.camera)
     first = (_make_film, _make_database) if simulated else ()
     if _all_end_well(config, first) and _all_end_well(config, (_open,)):
-        fresh = marker.with_suffix(".new")
-        fresh.write_text("\n".join([*done[1 - REMEMBERED :], want]) + "\n")
-        fresh.replace(marker)
+        with whole_file(marker) as partial:
+            partial.write_text("\n".join([*done[1 - REMEMBERED :], want]) + "\n")
 
 
 def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:

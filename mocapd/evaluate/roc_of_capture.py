@@ -28,6 +28,7 @@ from mocapd.evaluate.roc import (
 from mocapd.evaluate.truth import labelled_frames, read_label
 from mocapd.tracker_setup import inputs_of_capture
 from mocapd.trackers.colour.build import colour_model, white_balance_of
+from mocapd.trackers.colour.drawing import work_factors
 from mocapd.trackers.colour.fitting import Fitter
 from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
@@ -80,14 +81,13 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     folder = result.case.folder
     inputs = inputs_of_capture(folder, stature_m)
     params, colours = Params(), colour_model(inputs.model)
+    factors = work_factors(folder.rig.cameras, params.work_width_px)
     eyes: dict[str, _Eye] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
         strokes = inputs.white_balance.get(camera.name)
         W = np.eye(3) if strokes is None else white_balance_of(strokes, colours, plain=True)
-        factor = max(1, round(camera.size_px[0] / params.work_width_px))
         labelled = labelled_frames(folder.path, recorded.video)
-        eyes[camera.name] = _Eye(i, camera, recorded.video, factor, labelled, colours, W)
-    factors = [eye.factor for eye in eyes.values()]
+        eyes[camera.name] = _Eye(i, camera, recorded.video, factors[i], labelled, colours, W)
     fitter = Fitter(build_model(inputs.stature_m), folder.rig.cameras, factors, params)
 
     total = no_roc()

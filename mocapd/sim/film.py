@@ -1,8 +1,6 @@
 """One loop of a scenario, rendered beforehand to JPEG, so that playing it costs next to nothing."""
 
 import hashlib
-import os
-import tempfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -23,6 +21,7 @@ from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.strokes import LabelledImage
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Bytes
+from mocapd.whole_file import whole_file
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
@@ -142,19 +141,11 @@ def _read(path: Path, key: str) -> _FilmFile | None:
 
 
 def _write(path: Path, film: _FilmFile) -> None:
-    """Atomically: a reader sees the whole file or none."""
+    """Write the file whole or not at all. Raises CannotCreateError."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".film-")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(msgspec.msgpack.encode(film))
-                file.flush()
-                os.fsync(file.fileno())
-            Path(name).replace(path)
-        except OSError:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with whole_file(path) as partial:
+            partial.write_bytes(msgspec.msgpack.encode(film))
     except OSError as error:
         raise CannotCreateError(
             f"the simulator's cache cannot be written ({error})",

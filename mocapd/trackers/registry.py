@@ -10,7 +10,7 @@ from mocapd.body.skeleton import standard_skeleton
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Bytes, Rig
+from mocapd.types import Bytes, Floats, Rig
 
 if TYPE_CHECKING:
     from mocapd.trackers.colour.database import PoseDatabase
@@ -27,7 +27,7 @@ class StrokedPicture:
 
 
 def _quiet(_: object) -> None:
-    """Nobody watches."""
+    """Nobody watches, or nothing is to be done."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +38,8 @@ class TrackerInputs:
     the shirt in the place's own light; variant: one of the tracker's; cache_dir: where the pose
     database is kept, progress(0..1) while it is made, map_chunks: `map`, or that of a thread pool,
     tell: hears a line about a cache that was made anew or cannot be kept; tracking: when a person
-    counts as lost, None for the defaults.
+    counts as lost, None for the defaults; factors (N_FACTORS,): the wearer's proportions as measured,
+    None for the mean body's.
     """
 
     rig: Rig | None
@@ -51,6 +52,7 @@ class TrackerInputs:
     map_chunks: MapChunks = map
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
+    factors: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +60,14 @@ class TrackerEntry:
     """`build` makes the tracker and raises ConfigError naming what it lacks; it imports it only then.
 
     `sees`: whether it looks at the pictures, so that it needs calibrated cameras, and an empty room
-    must give `lost`; `variants`: the first is the usual one.
+    must give `lost`; `variants`: the first is the usual one; `make_caches`: what it keeps in the
+    cache folder, made if need be.
     """
 
     build: Callable[[TrackerInputs], Tracker]
     sees: bool
     variants: tuple[str, ...] = ("full",)
+    make_caches: Callable[[TrackerInputs], object] = _quiet
 
 
 def _canned(inputs: TrackerInputs) -> Tracker:
@@ -95,6 +99,7 @@ def _colour(inputs: TrackerInputs) -> Tracker:
         _database(inputs),
         inputs.variant,
         inputs.tracking,
+        inputs.factors,
     )
 
 
@@ -105,6 +110,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             _colour,
             sees=True,
             variants=("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant"),
+            make_caches=_database,
         ),
     }
 )
@@ -140,5 +146,4 @@ def build(name: str, inputs: TrackerInputs) -> Tracker:
 
 def make_caches(name: str, inputs: TrackerInputs) -> None:
     """What this tracker keeps in the cache folder, made if need be; the rig is not asked for."""
-    if name == "colour":
-        _database(inputs)
+    entry(name, inputs.variant).make_caches(inputs)

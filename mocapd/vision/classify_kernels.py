@@ -2,7 +2,8 @@
 
 All kernels look at the samples pixels[y0 + stride i, x0 + stride j] of a whole frame, for (i,j)
 over the shape of `out`, which the caller places inside the frame. `mask` may be coarser than the
-frame by a power of two: it is read at [y >> mask_shift, x >> mask_shift], and 0 is background.
+frame by a power of two: it is read at [y >> mask_shift, x >> mask_shift], and 0 is background. The
+distance to a colour is written out twice: as a function it made both four times as slow.
 """
 
 import numpy as np

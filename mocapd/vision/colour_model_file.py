@@ -1,7 +1,6 @@
 """Colour model files: JSON, checked value by value, written whole or not at all."""
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from mocapd.geometry.rig_file import read_json
 from mocapd.types import Floats
 from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.strokes import COLOURS
+from mocapd.whole_file import whole_file
 
 SCHEMA = 1
 _MAKE_AGAIN = "make the colour model again from the labelled images"
@@ -32,15 +32,10 @@ def save_colour_model(model: ColourModel, path: Path) -> None:
         ],
     }
     text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with temporary.open("w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
+        with whole_file(path) as partial:
+            partial.write_text(text, encoding="utf-8")
     except OSError as error:
-        temporary.unlink(missing_ok=True)
         raise CannotCreateError(
             f"the colour model cannot be written ({error.strerror})",
             str(path),

@@ -72,6 +72,14 @@ def build_tables(
                         ids[cell] = k + 1
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _cell(row: UInt8, x: int) -> np.uint32:
+    """The cell of pixel x of a row (W,3) BGR."""
+    red = np.uint32(row[x, 2] >> 3) << np.uint32(10)
+    green = np.uint32(row[x, 1] >> 3) << np.uint32(5)
+    return red | green | np.uint32(row[x, 0] >> 3)
+
+
 @njit(cache=True, nogil=True)
 def classify_by_table(
     pixels_bgr: UInt8,
@@ -92,10 +100,7 @@ def classify_by_table(
         ids = out[i]
         # two plain loops: the compiler turns the second into vector instructions
         for j in range(ids.shape[0]):
-            x = x0 + stride * j
-            red = np.uint32(row[x, 2] >> 3) << np.uint32(10)
-            green = np.uint32(row[x, 1] >> 3) << np.uint32(5)
-            ids[j] = table_ids[red | green | np.uint32(row[x, 0] >> 3)]
+            ids[j] = table_ids[_cell(row, x0 + stride * j)]
         for j in range(ids.shape[0]):
             seen = mask_row[(x0 + stride * j) >> mask_shift] != 0
             ids[j] = ids[j] if seen else np.uint8(0)
@@ -132,9 +137,7 @@ def classify_by_table_with_prior(
             best_id = np.uint8(0)
             if mask_row[x >> mask_shift] != 0:
                 foreground += 1
-                red = np.uint32(row[x, 2] >> 3) << np.uint32(10)
-                green = np.uint32(row[x, 1] >> 3) << np.uint32(5)
-                cell = red | green | np.uint32(row[x, 0] >> 3)
+                cell = _cell(row, x)
                 colours = table_colours[cell]
                 best = np.float32(threshold)
                 k = 0

@@ -9,6 +9,13 @@ Array = NDArray[np.float64]
 NOTHING = -1
 
 
+@njit(cache=True, nogil=True, inline="always")
+def triangle_middle(xy: Array, triangles: NDArray[np.int32], t: int) -> tuple[float, float]:
+    """The mean of the vertices (V,2) of triangle t, where these are drawn [px]."""
+    a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+    return (xy[a, 0] + xy[b, 0] + xy[c, 0]) / 3.0, (xy[a, 1] + xy[b, 1] + xy[c, 1]) / 3.0
+
+
 @njit(cache=True, nogil=True)
 def rasterise(
     xy: Array,

@@ -11,6 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import surface_row
+from mocapd.vision.raster_kernels import triangle_middle
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -62,9 +63,8 @@ def _nearest_hidden(
     best, found = reach * reach, -1
     for s in range(sleeve_start[k], sleeve_start[k + 1]):
         t = sleeves[s]
-        dx = x - (xy[triangles[t, 0], 0] + xy[triangles[t, 1], 0] + xy[triangles[t, 2], 0]) / 3.0
-        dy = y - (xy[triangles[t, 0], 1] + xy[triangles[t, 1], 1] + xy[triangles[t, 2], 1]) / 3.0
-        r2 = dx * dx + dy * dy
+        middle_x, middle_y = triangle_middle(xy, triangles, t)
+        r2 = (x - middle_x) ** 2 + (y - middle_y) ** 2
         if r2 < best:
             best, found = r2, s
     return found
@@ -224,24 +224,8 @@ def accumulate(
                             cost += weight * r2_robust
                             continue
                         t = sleeves[s]
-                        dx = (
-                            x
-                            - (
-                                xy[triangles[t, 0], 0]
-                                + xy[triangles[t, 1], 0]
-                                + xy[triangles[t, 2], 0]
-                            )
-                            / 3.0
-                        )
-                        dy = (
-                            y
-                            - (
-                                xy[triangles[t, 0], 1]
-                                + xy[triangles[t, 1], 1]
-                                + xy[triangles[t, 2], 1]
-                            )
-                            / 3.0
-                        )
+                        middle_x, middle_y = triangle_middle(xy, triangles, t)
+                        dx, dy = x - middle_x, y - middle_y
                     row_weight = weight
                     unexplained[patch[t]] += counted
                 length = max(np.sqrt(dx * dx + dy * dy), 1e-3)

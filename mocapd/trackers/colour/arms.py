@@ -23,9 +23,9 @@ from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats, Ints
 
 SIDES = ("left", "right")
+SLEEVE_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}  # of the shirt, 1..20
 _LIBRARY = 2048
 _IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
-_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -209,7 +209,7 @@ class ArmSearch:
 
 def confirmed(side: str, fit: Fit) -> float:
     """0..1: share of an arm's patches that the pictures confirm; an arm out of sight is not confirmed."""
-    p = _PATCHES[side]
+    p = SLEEVE_PATCHES[side]
     asked = fit.visible[p].sum() + fit.unexplained[p].sum()
     return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
 

@@ -33,8 +33,12 @@ def build_colour_tracker(
     database: PoseDatabase | None,
     variant: str = "full",
     tracking: TrackingStateParams | None = None,
+    factors: Floats | None = None,
 ) -> Tracker:
-    """The tracker of this variant. Raises ConfigError naming what is missing."""
+    """The tracker of this variant. Raises ConfigError naming what is missing.
+
+    factors (N_FACTORS,): the wearer's proportions as measured; the paper's variants know none.
+    """
     if rig is None:
         raise ConfigError(
             "the colour tracker needs calibrated cameras", "rig", "give a rig file (rig = ...)"
@@ -53,7 +57,7 @@ def build_colour_tracker(
         for camera, picture in white_balance.items()
     }
     if variant == "full":
-        return ColourTracker(rig, stature_m, colours, W, database, Params(), tracking)
+        return ColourTracker(rig, stature_m, colours, W, database, Params(), tracking, factors)
     published = PaperParams()
     if variant.startswith("baseline"):
         published = PaperParams(pose_prior=False, adaptive_white_balance=False)

@@ -4,6 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.vision.raster_kernels import triangle_middle
+
 CELL = 4  # px: all pixels of a cell share the distances to the predicted colours
 FAR = 255  # distance of a colour that is nowhere near
 _LANES = CELL * CELL
@@ -45,9 +47,8 @@ def colour_distances(
             if ids[y, x] > 0:
                 held[y // CELL, x // CELL] |= np.int32(1) << (ids[y, x] - 1)
     for t in sleeves:
-        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        x = round((xy[a, 0] + xy[b, 0] + xy[c, 0]) / 3.0)
-        y = round((xy[a, 1] + xy[b, 1] + xy[c, 1]) / 3.0)
+        middle_x, middle_y = triangle_middle(xy, triangles, t)
+        x, y = round(middle_x), round(middle_y)
         if 0 <= x < w and 0 <= y < h:
             held[y // CELL, x // CELL] |= np.int32(1) << (colour[t] - 1)
     for y in range(h4):

@@ -6,7 +6,6 @@ on. Written beside its place, flushed to the disk and renamed, so that it is who
 """
 
 import json
-import os
 import tempfile
 import zlib
 from dataclasses import dataclass
@@ -27,6 +26,7 @@ from mocapd.trackers.colour.database import (
     content_hash,
 )
 from mocapd.trackers.colour.idmap_index import IdMapIndex, Projection
+from mocapd.whole_file import whole_file
 
 FILE_NAME = "pose_database.bin"
 _MAGIC = b"mocapd pose database\n"
@@ -106,21 +106,11 @@ def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
     head += b"\0" * (-len(head) % _ALIGNMENT)
     _check_writable(path.parent)
     try:
-        with tempfile.NamedTemporaryFile(
-            dir=path.parent, prefix=path.name + ".", delete=False
-        ) as file:
-            temporary = Path(file.name)
-            try:
-                file.write(head)
-                for entry, array in zip(entries, arrays.values(), strict=True):
-                    file.write(b"\0" * (len(head) + entry["offset"] - file.tell()))
-                    file.write(array.view(np.uint8).reshape(-1).data)
-                file.flush()
-                os.fsync(file.fileno())
-                temporary.replace(path)
-            except BaseException:
-                temporary.unlink(missing_ok=True)
-                raise
+        with whole_file(path) as partial, partial.open("wb") as file:
+            file.write(head)
+            for entry, array in zip(entries, arrays.values(), strict=True):
+                file.write(b"\0" * (len(head) + entry["offset"] - file.tell()))
+                file.write(array.view(np.uint8).reshape(-1).data)
     except OSError as error:
         raise _cannot_create(path.parent, error) from None
 

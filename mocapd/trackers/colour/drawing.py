@@ -1,5 +1,6 @@
 """The body model drawn into one camera's work picture, at that camera's own instant."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,19 @@ from mocapd.types import Camera, Floats, Ints
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1 [work px], x1 and y1 excluded
-_MAX_WORK_PX = 480 * 480
+_MAX_SIDE_PX = 480  # of a work picture
+_MAX_WORK_PX = _MAX_SIDE_PX**2
+
+
+def work_factors(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
+    """By how much each camera's frames are averaged down to work pictures about `work_width_px` wide.
+
+    Pictures that are upright or of odd sizes come out smaller, so that they fit into the buffers.
+    """
+    return [
+        max(1, round(camera.size_px[0] / work_width_px), -(-max(camera.size_px) // _MAX_SIDE_PX))
+        for camera in cameras
+    ]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,9 +104,9 @@ class Drawing:
         m = self.model
         self._project(*moved(m, state, dt_s), self._shaper(state.factors), roi)
         ids, triangle_at = self.last(roi)
-        zbuffer = self._zbuffer[: ids.size].reshape(ids.shape)
-        rasterise(self.xy, self._depth, m.triangles[triangles], zbuffer, triangle_at)
-        label_triangles(triangle_at, m.colour[triangles], ids)
+        zbuffer = self._raster(
+            self.xy, m.triangles[triangles], m.colour[triangles], ids, triangle_at
+        )
         return PartialRender(ids, zbuffer, self.R, self.joints, self._quats)
 
     def draw(
@@ -102,9 +115,7 @@ class Drawing:
         """Id map and triangles (h,w) of a pose of this body."""
         self._project(root_m, local_xyzw, body, roi)
         ids, triangle_at = self.last(roi)
-        zbuffer = self._zbuffer[: ids.size].reshape(ids.shape)
-        rasterise(self.xy, self._depth, self.model.triangles, zbuffer, triangle_at)
-        label_triangles(triangle_at, self.model.colour, ids)
+        self._raster(self.xy, self.model.triangles, self.model.colour, ids, triangle_at)
         return ids, triangle_at
 
     def draw_coarse(
@@ -116,9 +127,7 @@ class Drawing:
         h, w = (roi[3] - roi[1] + 1) // 2, (roi[2] - roi[0] + 1) // 2
         ids = self._coarse_ids[: h * w].reshape(h, w)
         triangle_at = self._coarse_at[: h * w].reshape(h, w)
-        zbuffer = self._zbuffer[: h * w].reshape(h, w)
-        rasterise(self.coarse_xy, self._depth, self.model.triangles, zbuffer, triangle_at)
-        label_triangles(triangle_at, self.model.colour, ids)
+        self._raster(self.coarse_xy, self.model.triangles, self.model.colour, ids, triangle_at)
         return ids, triangle_at
 
     def last_coarse(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
@@ -132,6 +141,20 @@ class Drawing:
         forward_kinematics(
             self.model.parents, rest, root_m, local_xyzw, self.R, self.joints, self._quats
         )
+
+    def _raster(
+        self,
+        xy: Floats,
+        triangles: NDArray[np.int32],
+        colour: NDArray[np.uint8],
+        ids: NDArray[np.uint8],
+        triangle_at: NDArray[np.int32],
+    ) -> NDArray[np.float32]:
+        """Fill ids and triangle_at (h,w) with the projected vertices; returns their depths (h,w) [m]."""
+        zbuffer = self._zbuffer[: ids.size].reshape(ids.shape)
+        rasterise(xy, self._depth, triangles, zbuffer, triangle_at)
+        label_triangles(triangle_at, colour, ids)
+        return zbuffer
 
     def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
         m, camera, factor = self.model, self.camera, self.factor

@@ -1,7 +1,7 @@
 """Fit pose and body shape to the classified pictures of all cameras at once, by Gauss-Newton.
 
 Every iteration renders the body's id map into each camera at that camera's own instant, gathers
-the rows of `alignment_kernels.accumulate`, adds the priors and solves one small normal equation.
+the rows of `CameraRows`, adds the priors and solves one small normal equation.
 """
 
 from collections.abc import Sequence
@@ -12,17 +12,21 @@ from numpy.typing import NDArray
 
 from mocapd.body.joint_limits import standard_limits
 from mocapd.body.model import GROUPS, N_POSE, N_SHAPE, BodyModel
-from mocapd.body.posing_kernels import forward_kinematics, joint_shape_derivatives
+from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
+from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.rotations import IDENTITY_XYZW
-from mocapd.trackers.colour.alignment_kernels import accumulate, spiral
+from mocapd.trackers.colour.alignment_kernels import spiral
+from mocapd.trackers.colour.camera_rows import CameraRows, Search
 from mocapd.trackers.colour.drawing import Drawing, Roi
 from mocapd.trackers.colour.motion_state import MotionState, moved, stepped
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.step_kernels import gauss_newton_step
-from mocapd.types import Camera, Floats
+from mocapd.types import Camera, Floats, Ints
+
+_CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +52,26 @@ class Fit:
     H: Floats
     cost: float
 
+    @property
+    def match(self) -> float:
+        """Share of the rendered shirt whose colour the pictures have."""
+        return float(self.matched.sum() / max(self.visible.sum(), 1.0))
+
+    @property
+    def explained(self) -> float:
+        """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
+        return float(self.matched.sum() / max(self.visible.sum() + self.unexplained.sum(), 1.0))
+
+    def confirmed_colours(self) -> int:
+        """How many colours of the shirt are confirmed in one of their patches."""
+        patches = confirmed_parts(self.matched, self.visible)
+        return int(np.count_nonzero(np.unique(standard_shirt().colour_of_patch[patches])))
+
+
+def confirmed_parts(matched: Floats | Ints, visible: Floats | Ints) -> NDArray[np.bool_]:
+    """Of which patches, or colours, so much of what is rendered is seen that it cannot be chance."""
+    return (matched >= _CONFIRMED_PX) & (matched >= _CONFIRMED * visible)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pass:
@@ -55,10 +79,7 @@ class _Pass:
 
     state: MotionState
     body: Shaped
-    radius_px: float
-    n_offsets: int
-    coarse: bool
-    phase: int
+    search: Search
     n_shape: int
     redraw: bool
 
@@ -70,29 +91,6 @@ def _coarse(view: View) -> View:
         ids=np.ascontiguousarray(view.ids[::2, ::2]),
         softness=np.ascontiguousarray(view.softness[::2, ::2]),
     )
-
-
-class _Rows:
-    """One camera's share of the normal equations: H (P,P), b (P,), counts (21,), cost."""
-
-    def __init__(self) -> None:
-        P = N_POSE + N_SHAPE
-        self._H, self._b = np.zeros(P * P), np.zeros(P)
-        self.visible, self.matched, self.unexplained = np.zeros(21), np.zeros(21), np.zeros(21)
-        self.d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
-        self.cost = 0.0
-
-    def clear(self, P: int) -> tuple[Floats, Floats]:
-        """H and b of this size, and counts, all zero."""
-        self.visible[:] = self.matched[:] = self.unexplained[:] = 0.0
-        H, b = self.system(P)
-        H[:] = 0.0
-        b[:] = 0.0
-        return H, b
-
-    def system(self, P: int) -> tuple[Floats, Floats]:
-        """H and b as last added up."""
-        return self._H[: P * P].reshape(P, P), self._b[:P]
 
 
 def _group_values(values: dict[str, tuple[float, float, float]], default: float) -> Floats:
@@ -109,7 +107,7 @@ class Fitter:
         self.model, self.params = model, params
         self.shaper = Shaper(model)
         self.drawings = [Drawing(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)]
-        self._rows = [_Rows() for _ in cameras]
+        self._rows = [CameraRows() for _ in cameras]
         self._spiral = spiral(params.first_radius_px)
         self._spiral_r2 = (self._spiral**2).sum(axis=1)
         p = params
@@ -180,19 +178,17 @@ class Fitter:
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
             radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
+            is_fine = iteration >= iterations - fine
             one = _Pass(
                 state,
                 self.shaper(state.factors),
-                radius_px=radius,
-                n_offsets=self._within(radius, 2.0 if iteration < iterations - fine else 1.0),
-                coarse=iteration < iterations - fine,
-                phase=iteration & 1,
-                n_shape=n_shape,
+                self._search(radius, is_fine, phase=iteration & 1),
+                n_shape,
                 redraw=not rendered or iteration > 0,
             )
             H = np.zeros((P, P))
             b = np.zeros(P)
-            for view in coarse if one.coarse else views:
+            for view in views if is_fine else coarse:
                 self._gather(one, view)
                 mine = self._rows[view.index].system(P)
                 H += mine[0]
@@ -220,36 +216,28 @@ class Fitter:
 
     def _gather(self, one: _Pass, view: View) -> None:
         """The rows of one camera."""
-        p, m, state = self.params, self.model, one.state
+        m, state, coarse = self.model, one.state, one.search.grid_px > 1.0
         drawing, rows = self.drawings[view.index], self._rows[view.index]
         root, local = moved(m, state, view.dt_s)
         if one.redraw:
-            draw = drawing.draw_coarse if one.coarse else drawing.draw
-            ids, triangle_at = draw(root, local, one.body, view.roi)
+            draw = drawing.draw_coarse if coarse else drawing.draw
+            drawn = draw(root, local, one.body, view.roi)
         else:
-            ids, triangle_at = (
-                drawing.last_coarse(view.roi) if one.coarse else drawing.last(view.roi)
-            )
+            drawn = drawing.last_coarse(view.roi) if coarse else drawing.last(view.roi)
             drawing.pose(root, local, one.body.rest)
-        joint_shape_derivatives(m.parents, m.d_rest, drawing.R, rows.d_joints)
-        H, b = rows.clear(N_POSE + one.n_shape)
-        camera, factor = drawing.camera, drawing.factor
-        rows.cost = accumulate(
-            ids, triangle_at, view.ids, view.softness, self._spiral, one.n_offsets,
-            2.0 if one.coarse else 1.0, one.radius_px, 0.6 * one.radius_px,
-            one.phase, 1 if one.coarse else 2, 0.0 if one.coarse else p.edge_stiffness,
-            drawing.coarse_xy if one.coarse else drawing.xy,
-            m.triangles, m.sleeves, m.sleeve_start, m.patch, one.body.centres, m.d_centres,
-            m.triangle_bones, m.triangle_weights, one.body.rest, m.d_rest, m.parents,
-            m.joint_of_group, m.group_of_joint, m.share_of_joint,
-            drawing.R, drawing.joints, rows.d_joints, one.n_shape, camera.R, camera.t_m,
-            camera.K[0, 0] / factor, camera.K[1, 1] / factor, p.row_weight,
-            H, b, rows.visible, rows.matched, rows.unexplained,
+        rows.gather(
+            drawing, one.body, drawn, (view.ids, view.softness), one.search, one.n_shape,
+            self.params.row_weight,
         )  # fmt: skip
 
-    def _within(self, radius_px: float, grid_px: float) -> int:
-        """How many offsets of the spiral are within the radius."""
-        return int(np.searchsorted(self._spiral_r2, (radius_px / grid_px) ** 2, side="right"))
+    def _search(self, radius_px: float, fine: bool, phase: int) -> Search:
+        """Half of all pixels, or, not `fine`, a quarter: every second each way."""
+        grid_px = 1.0 if fine else 2.0
+        n = np.searchsorted(self._spiral_r2, (radius_px / grid_px) ** 2, side="right")
+        return Search(
+            self._spiral[:n], radius_px, grid_px,
+            every=2 if fine else 1, phase=phase, stiffness=self.params.edge_stiffness if fine else 0.0,
+        )  # fmt: skip
 
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence says of the shape factors when the pose is free: Schur complement (N_SHAPE,N_SHAPE)."""

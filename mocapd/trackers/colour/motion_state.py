@@ -10,6 +10,9 @@ from mocapd.body.shape import FACTOR_SD
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.types import Floats
 
+# of measured proportions, as a part of the spread over all people
+_MEASURED_SPREAD = 0.4
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionState:
@@ -26,6 +29,11 @@ class MotionState:
 def initial_information() -> Floats:
     """What is known of the proportions before anybody is seen."""
     return np.diag(1.0 / FACTOR_SD**2)
+
+
+def measured_information() -> Floats:
+    """What is known of proportions that `calibrate.body_shape_fit` has measured."""
+    return np.diag(1.0 / (_MEASURED_SPREAD * FACTOR_SD) ** 2)
 
 
 def stepped(

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+TICK_S = 1.0 / 30.0  # a usual frame: what is said per frame is meant for one of this length
+
 
 @dataclass(frozen=True, slots=True)
 class Params:

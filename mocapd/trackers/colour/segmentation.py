@@ -13,7 +13,7 @@ from mocapd.trackers.colour.background_light import relight_background
 from mocapd.trackers.colour.cell_kernels import CELL, classify, colour_distances
 from mocapd.trackers.colour.drawing import Outline, Roi
 from mocapd.trackers.colour.locate_kernels import find_shirt, suppress_background
-from mocapd.trackers.colour.params import Params
+from mocapd.trackers.colour.params import TICK_S, Params
 from mocapd.trackers.colour.segmentation_kernels import (
     agreement,
     colour_statistics,
@@ -28,7 +28,6 @@ from mocapd.vision.white_balance import remember_illumination
 Ids = NDArray[np.uint8]
 _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _NO_DOUBT = np.ones(10, np.int64)
-_TICK_S = 1.0 / 30.0
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
 _NEW_LOOKS = 90
@@ -135,7 +134,7 @@ class Eye:
             return ids, softness
         inside = agreement(predicted, ids)[1] / rendered
         usual = memory.usual if memory.usual > 0 else inside
-        keep = float(np.exp(-_TICK_S / p.usual_s))
+        keep = float(np.exp(-TICK_S / p.usual_s))
         memory.usual = keep * usual + (1.0 - keep) * inside
         if may_relight and (inside < p.poor_classification or inside < p.sudden_loss * usual):
             best = self._relit(predicted, ids, roi, distance, prior)

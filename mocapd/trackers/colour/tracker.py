@@ -7,32 +7,29 @@ import numpy as np
 
 from mocapd.body.model import N_POSE, N_SHAPE, build_model, shape_of
 from mocapd.body.shape import skeleton_of
-from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
-from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.drawing import Roi
+from mocapd.trackers.colour.drawing import work_factors
+from mocapd.trackers.colour.eyes import Eyes
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import (
     MotionState,
     initial_information,
+    measured_information,
     moved,
     step_between,
 )
-from mocapd.trackers.colour.params import Params
-from mocapd.trackers.colour.segmentation import Eye
+from mocapd.trackers.colour.params import TICK_S, Params
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
 from mocapd.types import (
     BodyState,
     Floats,
-    Frame,
     FrameSet,
-    Ints,
     Pose,
     Rig,
     Skeleton,
@@ -41,10 +38,8 @@ from mocapd.types import (
 )
 from mocapd.vision.colour_model import ColourModel
 
-_TICK_S = 1.0 / 30.0
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
 _ARM_STEPS = {"left": slice(9, 18), "right": slice(18, 27)}  # of the pose parameters
-_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +48,7 @@ class _Known:
 
     t_ns: int
     state: MotionState
-    fit: Fit | None
+    fit: Fit
     taught_s: float  # seconds of good tracking that the body shape was learned from
     cameras: tuple[str, ...]
 
@@ -72,32 +67,28 @@ class ColourTracker:
         database: PoseDatabase,
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
+        factors: Floats | None = None,
     ) -> None:
-        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent."""
+        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent.
+
+        factors (N_SHAPE,): the wearer's proportions as measured; None: nothing is known of them.
+        """
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
         model = build_model(stature_m)
-        factors = [max(1, round(c.size_px[0] / p.work_width_px)) for c in rig.cameras]
-        # portrait and odd sizes: keep the work picture within the buffers
-        factors = [
-            max(f, -(-max(c.size_px) // 480)) for f, c in zip(factors, rig.cameras, strict=True)
-        ]
-        self._fitter = Fitter(model, rig.cameras, factors, p)
-        self._eyes = [
-            Eye(c, f, colour_model, np.asarray(white_balance.get(c.name, np.eye(3))), p)
-            for c, f in zip(rig.cameras, factors, strict=True)
-        ]
-        self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
+        smaller = work_factors(rig.cameras, p.work_width_px)
+        self._fitter = Fitter(model, rig.cameras, smaller, p)
+        self._eyes = Eyes(self._fitter, colour_model, white_balance, p)
         self._arms = ArmSearch(self._fitter, p)
         self._tracking = TrackingState(tracking)
+        self._measured = factors
         self.probe: Callable[[str], None] = _silent
         self._rehearse()
         self.reset()
 
     def _rehearse(self) -> None:
         """Compile or load the kernels that only rare frames reach."""
-        eye = self._eyes[0]
-        w, h = eye.size
+        w, h = self._eyes.each[0].size
         nothing = np.zeros((h, w), np.uint8)
         rest = self._fitter.model.rest_m
         state = MotionState(
@@ -117,12 +108,14 @@ class ColourTracker:
 
     def reset(self) -> None:
         """Forget pose, proportions, light and background."""
-        for eye in self._eyes:
-            eye.reset()
+        self._eyes.reset()
         self._tracking.reset()
         self._known: _Known | None = None
-        self._factors: Floats = np.ones(N_SHAPE)
-        self._information: Floats = initial_information()
+        measured = self._measured
+        self._factors: Floats = np.ones(N_SHAPE) if measured is None else measured.copy()
+        self._information: Floats = (
+            initial_information() if measured is None else measured_information()
+        )
         self._taught_s = 0.0
         self._next_search_ns = 0
         self._turn = 0
@@ -131,7 +124,7 @@ class ColourTracker:
     def step(self, frames: FrameSet) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         self._turn += 1
-        present = self._look(frames)
+        present = self._eyes.look(frames)
         self.probe("picture")
         known = self._known
         if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
@@ -150,39 +143,13 @@ class ColourTracker:
         if known is not None:
             self._factors, self._information = known.state.factors, known.state.information
             self._taught_s = known.taught_s
-        self._learn(views, known if evidence else None, present)
+        if known is not None and evidence:
+            self._eyes.learn_with(known.state, known.fit, views, self._redraw)
+        self._eyes.learn_background(present, nobody=known is None)
         self.probe("learn")
         return self._track(tracking, frames, views)
 
     # --- stages ---
-
-    def _look(self, frames: FrameSet) -> dict[int, float]:
-        """Take the pictures; per camera present, its own time after the set's [s]."""
-        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
-        for i, frame in mine:
-            _check_size(frame, self.rig.cameras[i].size_px)
-            self._eyes[i].look(frame.pixels)
-        return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
-
-    def _views(
-        self, state: MotionState, present: dict[int, float], doubted: tuple[str, ...], relight: bool
-    ) -> list[View]:
-        """Classify every picture with the state as prior."""
-        p = self.params
-        margin = p.doubt_margin_px if doubted else p.margin_px
-        colours = _colours_of(doubted)
-        views = []
-        for i, dt_s in present.items():
-            drawing = self._fitter.drawings[i]
-            roi = drawing.region(state, dt_s, margin)
-            if roi is None:
-                continue
-            predicted = drawing.render(state, dt_s, roi)
-            ids, softness = self._eyes[i].classify(
-                predicted, drawing.outline(), roi, colours, relight
-            )
-            views.append(View(i, roi, ids, softness, dt_s))
-        return views
 
     def _follow(
         self, known: _Known, present: dict[int, float], frames: FrameSet
@@ -193,16 +160,15 @@ class ColourTracker:
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
         root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
-        doubted = tuple(s for s in SIDES if known.fit is not None and doubtful(s, known.fit, p))
-        views = self._views(predicted, present, doubted, relight=True)
+        doubted = tuple(s for s in SIDES if doubtful(s, known.fit, p))
+        views = self._eyes.views(predicted, present, doubted)
         self.probe("classify")
         if not views:
             return known, views
         learning = (
             p.learn_shape
             and known.taught_s < p.shape_learning_s
-            and known.fit is not None
-            and _match(known.fit) > p.shape_match
+            and known.fit.match > p.shape_match
         )
         fit = fitter.fit(predicted, views, dt_s, p.iterations, learning, rendered=True)
         self.probe("fit")
@@ -210,13 +176,13 @@ class ColourTracker:
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
         self._redraw = fit is not before or any(doubtful(s, before, p) for s in SIDES)
         self.probe("arms")
-        match = _match(fit)
+        match = fit.match
         # every second pixel was counted
         if match < p.live_match or 2.0 * fit.matched.sum() < p.min_shirt_px:
             return known, views
         state, taught_s = fit.state, known.taught_s
         if learning and match > p.shape_match:
-            gained = fitter.shape_information(fit.H) * (p.shape_gain * dt_s / _TICK_S)
+            gained = fitter.shape_information(fit.H) * (p.shape_gain * dt_s / TICK_S)
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
         velocity = step_between(
@@ -235,9 +201,9 @@ class ColourTracker:
 
     def _doubtful(self, known: _Known | None, t_ns: int) -> bool:
         """Whether to look for the wearer anew: nobody is known, or what is known agrees badly."""
-        if known is None or known.fit is None or known.t_ns != t_ns:
+        if known is None or known.t_ns != t_ns:
             return True
-        return _match(known.fit) < self.params.doubt_match
+        return known.fit.match < self.params.doubt_match
 
     def _search(
         self,
@@ -250,17 +216,17 @@ class ColourTracker:
         p = self.params
         pause_s = p.search_pause_s if known is None else p.doubt_pause_s
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
-        before = [eye.memory.appearance for eye in self._eyes]
+        before = [eye.memory.appearance for eye in self._eyes.each]
         views = [replace(v, ids=v.ids.copy(), softness=v.softness.copy()) for v in views]
         found = self._found(present)
         if found is not None:
             fit, seen = found
             held = known.fit if known is not None and known.t_ns == frames.t_ns else None
-            if held is None or _match(fit) > _match(held) + p.doubt_gain:
+            if held is None or fit.match > held.match + p.doubt_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
                 return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen
-        for eye, appearance in zip(self._eyes, before, strict=True):
+        for eye, appearance in zip(self._eyes.each, before, strict=True):
             eye.memory.appearance = appearance
         return known, views
 
@@ -270,7 +236,7 @@ class ColourTracker:
         sightings = [
             s
             for i in present
-            if (s := detection.sight(i, self._eyes[i], self._database, p)) is not None
+            if (s := detection.sight(i, self._eyes.each[i], self._database, p)) is not None
         ]
         states = detection.hypotheses(
             sightings, self.rig.cameras, self._database, self._factors, self._information
@@ -287,9 +253,9 @@ class ColourTracker:
         if fit is None:
             return None
         for s in sightings:
-            self._eyes[s.index].relight(s.found.W)
+            self._eyes.each[s.index].relight(s.found.W)
         # read the pictures again, now with the pose as prior, and fit once more
-        views = self._views(fit.state, present, (), relight=True)
+        views = self._eyes.views(fit.state, present)
         if not views:
             return None
         fit = self._fitter.fit(fit.state, views, 0.1, p.iterations, learn_shape=False)
@@ -299,31 +265,11 @@ class ColourTracker:
     def _acceptable(self, fit: Fit) -> bool:
         """Whether a pose found from nothing is the shirt: enough agrees, in enough colours."""
         p = self.params
-        match = fit.matched.sum() / max(fit.visible.sum() + fit.unexplained.sum(), 1.0)
-        confirmed = (fit.matched >= 4.0) & (fit.matched >= 0.4 * fit.visible)
-        colours = np.unique(standard_shirt().colour_of_patch[np.flatnonzero(confirmed)])
         return bool(
-            match >= p.accept_match
-            and np.count_nonzero(colours) >= p.accept_colours
+            fit.explained >= p.accept_match
+            and fit.confirmed_colours() >= p.accept_colours
             and 2.0 * fit.matched.sum() >= p.min_shirt_px
         )
-
-    def _learn(self, views: list[View], known: _Known | None, present: dict[int, float]) -> None:
-        """Follow light and background in every camera that has a frame."""
-        seen = {v.index: v for v in views}
-        for i in present:
-            eye, drawing, view = self._eyes[i], self._fitter.drawings[i], seen.get(i)
-            if known is not None and view is not None and known.fit is not None:
-                if self._redraw:
-                    final = drawing.render(known.state, view.dt_s, view.roi)
-                else:  # the last iteration's drawing differs by a fraction of a pixel
-                    final = drawing.last(view.roi)[0]
-                sure = _match(known.fit) > self.params.sure_match
-                eye.mark_body(final, view.roi)
-                eye.learn(final, view.ids, view.softness, view.roi, _TICK_S, sure)
-            elif self._known is None:
-                eye.mark_body(None, (0, 0, 0, 0))
-            eye.learn_background()
 
     # --- result ---
 
@@ -355,36 +301,7 @@ class ColourTracker:
         return Track(
             body,
             evidence={self.rig.cameras[v.index].name: v.ids.copy() for v in views},
-            roi_px={self.rig.cameras[v.index].name: self._frame_roi(v) for v in views},
-        )
-
-    def _frame_roi(self, view: View) -> Roi:
-        """A view's region in pixels of the frame itself."""
-        factor = self._eyes[view.index].factor
-        x0, y0, x1, y1 = (factor * edge for edge in view.roi)
-        return x0, y0, x1, y1
-
-
-def _colours_of(sides: tuple[str, ...]) -> Ints:
-    """The colours (0..9) of the sleeves in doubt."""
-    if not sides:
-        return np.empty(0, np.int64)
-    colours = [standard_shirt().colour_of_patch[_PATCHES[side]] for side in sides]
-    return np.unique(np.concatenate(colours)).astype(np.int64) - 1
-
-
-def _match(fit: Fit) -> float:
-    """Share of the rendered shirt whose colour the pictures have."""
-    return float(fit.matched.sum() / max(fit.visible.sum(), 1.0))
-
-
-def _check_size(frame: Frame, size_px: tuple[int, int]) -> None:
-    h, w = frame.pixels.shape[:2]
-    if (w, h) != size_px:
-        raise ConfigError(
-            f"delivers {w}x{h}, its calibration is for {size_px[0]}x{size_px[1]}",
-            f"camera {frame.camera!r}",
-            "set that size, or calibrate again",
+            roi_px={self.rig.cameras[v.index].name: self._eyes.roi_px(v) for v in views},
         )
 
 
