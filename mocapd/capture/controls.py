@@ -12,6 +12,9 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
+from mocapd.capture.camera_controls import Control, ControlDevice, power_line_code
+from mocapd.errors import ConfigError
+
 _EXPOSURE_MANUAL = 1.0
 _EXPOSURE_AUTO = 3.0
 
@@ -29,6 +32,8 @@ class Controls:
 
     `exposure` in the camera's unit (UVC: 100 us), `wb_temperature` [K], `gain` and `focus` without
     a unit. A value turns its automatic off, unless the automatic is asked for explicitly.
+    `dynamic_framerate`: whether the camera may lower its rate in dim light; `power_line_hz`: the mains
+    whose flicker it filters, 50 or 60, 0 for none.
     """
 
     auto_exposure: bool | None = None
@@ -38,6 +43,16 @@ class Controls:
     wb_temperature: int | None = None
     autofocus: bool | None = None
     focus: int | None = None
+    dynamic_framerate: bool | None = None
+    power_line_hz: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.power_line_hz not in (None, 0, 50, 60):
+            raise ConfigError(
+                f"no mains of {self.power_line_hz} Hz",
+                "power_line_hz",
+                "give 50, 60, or 0 for none",
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,3 +106,19 @@ def apply_controls(capture: HasProperties, controls: Controls) -> tuple[ControlR
     for _, number, value in steps:
         capture.set(number, value)
     return tuple(ControlResult(name, value, capture.get(number)) for name, number, value in steps)
+
+
+def apply_unknown_to_opencv(device: ControlDevice, controls: Controls) -> tuple[ControlResult, ...]:
+    """Set what OpenCV has no property for, and read it back. Raises UnavailableError."""
+    asked: list[tuple[str, Control, int]] = []
+    if controls.dynamic_framerate is not None:
+        value = int(controls.dynamic_framerate)
+        asked.append(("dynamic_framerate", Control.DYNAMIC_FRAMERATE, value))
+    if controls.power_line_hz is not None:
+        value = power_line_code(controls.power_line_hz)
+        asked.append(("power_line_hz", Control.POWER_LINE, value))
+    results = []
+    for name, control, value in asked:
+        got = device.write(control, value)
+        results.append(ControlResult(name, value, -1.0 if got is None else got))
+    return tuple(results)

@@ -1,13 +1,18 @@
 """What cameras this machine has, and for each that cannot be used the reason (`mocapd cameras`)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from mocapd.capture.identity import WebcamIdentity
 from mocapd.capture.node_access import check_usable, opened_node
 from mocapd.capture.usb_devices import UsbWebcam, usb_webcams
-from mocapd.capture.v4l2_ioctl import PixelFormat, enumerate_formats
+from mocapd.capture.v4l2_ioctl import (
+    CAP_VIDEO_CAPTURE,
+    PixelFormat,
+    enumerate_formats,
+    query_capability,
+)
 from mocapd.capture.webcams import DEV, SYSFS, VideoNode, video_nodes
 from mocapd.errors import MocapdError
 
@@ -18,7 +23,8 @@ class CameraInfo:
 
     `spec`: what to write into the config, a `usb:` identity where there is one. `formats`: MJPG
     first. `problem`: empty when it can be used, else what is wrong; `fix`: how to mend it. `note`:
-    something to know of a camera that can be used.
+    something to know of a camera that can be used. `captures`: whether it is a camera's own node; its
+    metadata node is not.
     """
 
     node: Path | None
@@ -29,6 +35,7 @@ class CameraInfo:
     problem: str
     fix: str
     note: str = ""
+    captures: bool = True
 
     @property
     def usable(self) -> bool:
@@ -62,8 +69,10 @@ def _node_info(node: VideoNode) -> CameraInfo:
     spec = str(node.identity) if node.identity and node.index == 0 else str(node.node)
     formats: tuple[PixelFormat, ...] = ()
     problem = fix = note = ""
+    captures = node.index == 0 or node.identity is None  # a guess, until the node tells
     try:
         with opened_node(node.node) as fd:
+            captures = _captures(fd, captures)
             formats = tuple(sorted(enumerate_formats(fd), key=lambda one: one.fourcc != "MJPG"))
             check_usable(node.node, fd)
         fourccs = {one.fourcc for one in formats}
@@ -76,7 +85,16 @@ def _node_info(node: VideoNode) -> CameraInfo:
             fix = "use another camera"
     except MocapdError as error:
         problem, fix = error.what, error.fix
-    return CameraInfo(node.node, node.name, node.identity, spec, formats, problem, fix, note)
+    return CameraInfo(
+        node.node, node.name, node.identity, spec, formats, problem, fix, note, captures
+    )
+
+
+def _captures(fd: int, guess: bool) -> bool:
+    try:
+        return bool(query_capability(fd).caps & CAP_VIDEO_CAPTURE)
+    except OSError:  # `check_usable` tells what is wrong
+        return guess
 
 
 def _without_node(webcam: UsbWebcam) -> CameraInfo:
@@ -96,13 +114,4 @@ def _with_twin_note(row: CameraInfo, rows: list[CameraInfo]) -> CameraInfo:
     ports = {one.port_path for one in rows if row.identity and one.usb_id == row.usb_id}
     if len(ports) < 2 or row.note or row.problem:
         return row
-    return CameraInfo(
-        row.node,
-        row.name,
-        row.identity,
-        row.spec,
-        row.formats,
-        row.problem,
-        row.fix,
-        note="has a twin with the same vid:pid:serial: keep each in its USB port",
-    )
+    return replace(row, note="has a twin with the same vid:pid:serial: keep each in its USB port")

@@ -2,7 +2,7 @@
 
 import logging
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import mocapd.capture.environment as environment  # isort: skip  before cv2
@@ -10,7 +10,14 @@ import mocapd.capture.environment as environment  # isort: skip  before cv2
 import cv2
 from cv2.typing import MatLike
 
-from mocapd.capture.controls import ControlResult, Controls, HasProperties, apply_controls
+from mocapd.capture.camera_controls import NodeControls
+from mocapd.capture.controls import (
+    ControlResult,
+    Controls,
+    HasProperties,
+    apply_controls,
+    apply_unknown_to_opencv,
+)
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.identity import WebcamIdentity
@@ -77,6 +84,25 @@ class V4l2Source:
         self._sysfs, self._dev = sysfs, dev
         self._seq = 0
         self._capture: GuardedCapture | None = None
+        self._delivered = False  # since it was opened
+
+    @property
+    def settings(self) -> WebcamSettings:
+        """See Lockable."""
+        return self._settings
+
+    def device(self) -> NodeControls | None:
+        """See Lockable."""
+        negotiated, capture = self.negotiated, self._capture
+        if negotiated is None or capture is None or capture.closing:
+            return None
+        return NodeControls(negotiated.node)
+
+    def change(self, settings: WebcamSettings) -> None:
+        """See Lockable. From any thread."""
+        before, self._settings = self._settings, settings
+        if _other_mode(before, settings):
+            self.close()
 
     def open(self) -> None:
         """Find the webcam, open it and set it up.
@@ -93,10 +119,16 @@ class V4l2Source:
             undo.callback(capture.release)
             if not capture.isOpened():
                 raise UnavailableError("OpenCV cannot open it", str(node), "see `mocapd cameras`")
-            self.negotiated = negotiate(capture, self._settings, self.name, node, moved)
+            settings = self._settings
+            got = negotiate(capture, settings, self.name, node, moved)
+            further = apply_unknown_to_opencv(NodeControls(node), settings.controls)
+            self.negotiated = replace(got, controls=got.controls + further)
             undo.pop_all()
         self._warn(self.negotiated)
         self._capture = GuardedCapture(capture)
+        self._delivered = False
+        if _other_mode(settings, self._settings):  # asked for from another thread meanwhile
+            self.close()
 
     def read(self) -> Frame:
         """The next whole frame; damaged ones are counted and skipped.
@@ -118,6 +150,7 @@ class V4l2Source:
             seq, self._seq = self._seq, self._seq + 1
             pixels = decode(raw, self.negotiated.fourcc, self.negotiated.size_px) if good else None
             if pixels is not None:
+                self._delivered = True
                 return Frame(self.name, seq, t_ns, pixels)
             self.torn += 1
             if grabbed_ns - began_ns > _TORN_LIMIT_NS:
@@ -125,11 +158,20 @@ class V4l2Source:
                 raise CameraLost(
                     "only damaged frames arrive", str(self.negotiated.node), "check cable and hub"
                 )
+        closed = guarded.closing
         self.close()
         waited_s = (monotonic_ns() - began_ns) / NS_PER_S
         where = f"{self.name} ({self._where})"
+        if closed:
+            raise CameraLost("was closed", where, "it is opened again by itself")
         if waited_s > 0.5:
             raise CameraLost(f"sent nothing for {waited_s:.1f} s", where, "unplug and replug it")
+        if not self._delivered and self.negotiated.node.exists():  # ENOSPC, which OpenCV swallows
+            raise CameraLost(
+                "cannot start: its USB bus has no room left, or another program was faster",
+                where,
+                "plug it into a port of another USB controller, or ask for a smaller size or rate",
+            )
         raise CameraLost("was unplugged", where, "plug it in again")
 
     def close(self) -> None:
@@ -157,6 +199,10 @@ class V4l2Source:
         for one in got.controls:
             if not one.applied:
                 _LOG.warning("%s: %s is %g, asked for %g", self.name, one.name, one.got, one.asked)
+
+
+def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:
+    return (one.size_px, one.fps_hz) != (other.size_px, other.fps_hz)
 
 
 def negotiate(

@@ -1,4 +1,4 @@
-"""The few V4L2 questions that OpenCV cannot ask: capabilities, formats, rates, and who streams.
+"""What OpenCV cannot ask of V4L2: capabilities, formats, rates, who streams, and controls with their range.
 
 Layouts are those of <linux/videodev2.h>, the same on all 64-bit Linux machines.
 """
@@ -22,6 +22,10 @@ _FMTDESC = struct.Struct("3I32s5I")
 _FRMSIZE = struct.Struct("11I")
 _FRMIVAL = struct.Struct("13I")
 _REQBUFS = struct.Struct("5I")
+_CONTROL = struct.Struct("Ii")
+_QUERYCTRL = struct.Struct("2I32s4i3I")
+_FLAG_DISABLED = 0x0001
+_FLAG_READ_ONLY = 0x0004
 
 
 def _iowr(number: int, size: int, read_only: bool = False) -> int:
@@ -32,6 +36,9 @@ def _iowr(number: int, size: int, read_only: bool = False) -> int:
 _QUERYCAP = _iowr(0, _CAPABILITY.size, read_only=True)
 _ENUM_FMT = _iowr(2, _FMTDESC.size)
 _REQUEST_BUFFERS = _iowr(8, _REQBUFS.size)
+_GET_CONTROL = _iowr(27, _CONTROL.size)
+_SET_CONTROL = _iowr(28, _CONTROL.size)
+_QUERY_CONTROL = _iowr(36, _QUERYCTRL.size)
 _ENUM_FRAMESIZES = _iowr(74, _FRMSIZE.size)
 _ENUM_FRAMEINTERVALS = _iowr(75, _FRMIVAL.size)
 
@@ -53,6 +60,15 @@ class PixelFormat:
     fourcc: str
     size_px: tuple[int, int]  # width, height
     rates_hz: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ControlRange:
+    """What values a control takes: `low` to `high` in steps."""
+
+    low: int
+    high: int
+    step: int
 
 
 def query_capability(fd: int) -> Capability:
@@ -87,6 +103,36 @@ def is_streaming_elsewhere(fd: int) -> bool:
     except OSError as error:
         return error.errno == errno.EBUSY
     return False
+
+
+def query_control(fd: int, control_id: int) -> ControlRange | None:
+    """VIDIOC_QUERYCTRL: None for a control that the camera does not have or that cannot be set.
+
+    Raises OSError (ENODEV: unplugged).
+    """
+    try:
+        raw = fcntl.ioctl(
+            fd, _QUERY_CONTROL, struct.pack("I", control_id).ljust(_QUERYCTRL.size, b"\0")
+        )
+    except OSError as error:
+        if error.errno in (errno.EINVAL, errno.ENOTTY):
+            return None
+        raise
+    _id, _kind, _name, low, high, step, _default, flags, *_ = _QUERYCTRL.unpack(raw)
+    if flags & (_FLAG_DISABLED | _FLAG_READ_ONLY):
+        return None
+    return ControlRange(low, high, max(step, 1))
+
+
+def get_control(fd: int, control_id: int) -> int:
+    """VIDIOC_G_CTRL, also while another descriptor streams. Raises OSError."""
+    value: int = _CONTROL.unpack(fcntl.ioctl(fd, _GET_CONTROL, _CONTROL.pack(control_id, 0)))[1]
+    return value
+
+
+def set_control(fd: int, control_id: int, value: int) -> None:
+    """VIDIOC_S_CTRL. Raises OSError (EACCES: its automatic is on; ERANGE; EIO: the camera refuses)."""
+    fcntl.ioctl(fd, _SET_CONTROL, _CONTROL.pack(control_id, value))
 
 
 def _string(raw: bytes) -> str:
