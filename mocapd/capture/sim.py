@@ -1,6 +1,7 @@
 """A simulated webcam: plays a scenario's film at its own pace, with the scenario's faults."""
 
 import threading
+from collections.abc import Callable
 
 import cv2
 import numpy as np
@@ -8,11 +9,12 @@ import numpy as np
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError
 from mocapd.sim.film import Film
+from mocapd.sim.scenario import Scenario
 from mocapd.types import Frame
 
 
-class SimSource:
-    """One camera of a film as an ordinary `Source`.
+class SimCamera:
+    """One camera of a scenario as an ordinary `Source`; what it shows is asked frame by frame.
 
     Frame n is exposed at epoch_ns + n / fps + the camera's clock offset; with one epoch for all of
     them, the cameras of a scenario show one world without further coordination. As with a webcam
@@ -23,19 +25,22 @@ class SimSource:
 
     recorded = False
 
-    def __init__(self, film: Film, camera: str, epoch_ns: int = 0) -> None:
-        specs = {spec.name: (i, spec) for i, spec in enumerate(film.scenario.cameras)}
+    def __init__(
+        self, scenario: Scenario, camera: str, jpeg: Callable[[int], bytes], epoch_ns: int
+    ) -> None:
+        """jpeg: the file that frame n >= 0 comes in; called by `read` when its exposure has ended."""
+        specs = {spec.name: (i, spec) for i, spec in enumerate(scenario.cameras)}
         if camera not in specs:
             raise ConfigError(
-                f"the scenario {film.scenario.name!r} has no camera {camera!r}",
+                f"the scenario {scenario.name!r} has no camera {camera!r}",
                 "camera",
                 f"use one of {sorted(specs)}",
             )
         self.name = camera
         index, self._spec = specs[camera]
-        self._jpegs = film.frames[camera]
-        self._fps_hz = film.scenario.fps_hz
-        self._seed = (film.scenario.seed, 7, index)
+        self._jpeg = jpeg
+        self._fps_hz = scenario.fps_hz
+        self._seed = (scenario.seed, 7, index)
         self._epoch_ns = epoch_ns
         self._closed = threading.Event()
         self._next: int | None = None
@@ -58,7 +63,7 @@ class SimSource:
         wait_ns = self._ready_ns(n) - monotonic_ns()
         if self._closed.wait(seconds(max(wait_ns, 0))):
             raise CameraLost("the simulated camera was closed", self.name, "open it again")
-        jpeg = np.frombuffer(self._jpegs[n % len(self._jpegs)], dtype=np.uint8)
+        jpeg = np.frombuffer(self._jpeg(n), dtype=np.uint8)
         pixels = cv2.imdecode(jpeg, cv2.IMREAD_COLOR)
         if pixels is None:
             raise InputError("a frame of the film is damaged", self.name, "delete the cache")
@@ -88,3 +93,11 @@ class SimSource:
     def _due(self, now_ns: int) -> int:
         """The last frame whose exposure has ended by now."""
         return int((now_ns - self._ready_ns(0)) * self._fps_hz // 1_000_000_000)
+
+
+class SimSource(SimCamera):
+    """One camera of a film, which it shows over and over. Raises ConfigError for an unknown one."""
+
+    def __init__(self, film: Film, camera: str, epoch_ns: int = 0) -> None:
+        jpegs = film.frames.get(camera, ())
+        super().__init__(film.scenario, camera, lambda n: jpegs[n % len(jpegs)], epoch_ns)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from mocapd.geometry.cameras import normalised, project
+from mocapd.sim.board_kernels import shade_sheet
 from mocapd.types import Bytes, Camera, Floats
 
 _SUBSAMPLES = 3  # across a pixel and down it
@@ -66,6 +66,16 @@ def printed(board: PrintedBoard) -> Bytes:
     return 1 - picture if board.inverted else picture
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardLayer:
+    """The sheet alone, in a part of the picture, rows and columns: how much of each pixel it covers,
+    (h,w) 0..1, and the light that it gives back there per light that falls on it, (h,w) 0..cover."""
+
+    region: tuple[slice, slice]
+    cover: Floats
+    light: Floats
+
+
 class BoardFilm:
     """Pictures of one board through one camera. Two with the same arguments are the same."""
 
@@ -83,32 +93,39 @@ class BoardFilm:
     def picture(
         self, R: Floats, t_m: Floats, light: BoardLight | None = None, seed: int = 0
     ) -> Bytes:
-        """(height, width, 3) uint8 BGR; R (3,3), t_m (3,) are world_from_board.
+        """(height, width, 3) uint8 BGR before a plain wall; R (3,3), t_m (3,) are world_from_board.
 
         The board's frame is x right, y down, z into the board, its origin at the outer corner of
         the first square. From behind the board shows blank paper.
         """
         light = light or BoardLight()
-        camera_R = self._camera.R @ R
-        camera_t = self._camera.R @ t_m + self._camera.t_m
-        board_from_ray = np.linalg.inv(np.column_stack([camera_R[:, :2], camera_t]))
-        # the printed side is seen when the board's z points away from the camera
-        front = bool(camera_R[:, 2] @ camera_t > 0.0)
-        region = self._region(camera_R, camera_t)
-        offsets = (np.arange(_SUBSAMPLES) + 0.5) / _SUBSAMPLES - 0.5
-        total: Floats = np.full(self._rays.shape[:2], _WALL * _SUBSAMPLES**2)
-        total[region] = 0.0
-        rays, down, across = self._rays[region], self._down[region], self._across[region]
-        for dy in offsets:
-            for dx in offsets:
-                total[region] += self._shade(rays + dy * down + dx * across, board_from_ray, front)
-        linear: Floats = light.brightness * total / _SUBSAMPLES**2
+        layer = self.layer(R, t_m)
+        total: Floats = np.full(self._rays.shape[:2], _WALL)
+        total[layer.region] = layer.light + (1.0 - layer.cover) * _WALL
+        linear: Floats = light.brightness * total
         if light.blur_px > 0.0:
             linear = cv2.GaussianBlur(linear, (0, 0), light.blur_px).astype(float, copy=False)
         grey = 255.0 * np.clip(linear, 0.0, 1.0) ** (1.0 / _GAMMA)
         rng = np.random.default_rng([seed, 11])
         noisy = grey[..., None] + light.noise * rng.standard_normal((*grey.shape, 3))
         return np.clip(np.round(noisy), 0, 255).astype(np.uint8)
+
+    def layer(self, R: Floats, t_m: Floats) -> BoardLayer:
+        """The sheet at world_from_board R (3,3), t_m (3,), to be laid over another picture."""
+        camera_R = self._camera.R @ R
+        camera_t = self._camera.R @ t_m + self._camera.t_m
+        board_from_ray = np.linalg.inv(np.column_stack([camera_R[:, :2], camera_t]))
+        # the printed side is seen when the board's z points away from the camera
+        front = bool(camera_R[:, 2] @ camera_t > 0.0)
+        region = self._region(camera_R, camera_t)
+        rays, down, across = self._rays[region], self._down[region], self._across[region]
+        cover, light = np.zeros(rays.shape[:2]), np.zeros(rays.shape[:2])
+        blank = _INK if self._board.inverted else _PAPER
+        shade_sheet(
+            rays, down, across, board_from_ray, self._board.square_m, self._print, _CELLS,
+            _SUBSAMPLES, _INK, _PAPER, blank, front, cover, light,
+        )  # fmt: skip
+        return BoardLayer(region, cover, light)
 
     def _region(self, R: Floats, t_m: Floats) -> tuple[slice, slice]:
         """Rows and columns of the picture that hold the whole sheet; camera_from_board R, t_m."""
@@ -123,20 +140,3 @@ class BoardFilm:
         low = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 12, 0)
         high = np.maximum(np.ceil(pixels.max(axis=0)).astype(int) + 12, 0)
         return slice(low[1], high[1]), slice(low[0], high[0])
-
-    def _shade(self, rays: Floats, board_from_ray: Floats, front: bool) -> Floats:
-        """Linear light along undistorted rays (...,2)."""
-        p = rays @ board_from_ray[:, :2].T + board_from_ray[:, 2]
-        # p is (x, y, 1) / depth: a plane behind the camera has a negative depth
-        ahead = p[..., 2] > 1e-9
-        xy = p[..., :2] / np.where(ahead, p[..., 2], 1.0)[..., None] / self._board.square_m
-        size = np.array([self._board.columns, self._board.rows])
-        sheet = ahead & ((xy > -1 / 3) & (xy < size + 1 / 3)).all(axis=-1)
-        inside = sheet & ((xy >= 0) & (xy < size)).all(axis=-1)
-        light = np.full(rays.shape[:2], _WALL)
-        light[sheet] = _INK if self._board.inverted else _PAPER
-        if front:
-            cells: NDArray[np.int64] = (xy[inside] * _CELLS).astype(np.int64)
-            ink = self._print[cells[:, 1], cells[:, 0]] == 0
-            light[inside] = np.where(ink, _INK, _PAPER)
-        return light

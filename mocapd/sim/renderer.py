@@ -95,14 +95,28 @@ class CameraRenderer:
             depths = shadow_maps(middle, self._figure.triangles, views, levels)
             self._shade(views, depths, shade)
             box = self._draw(opened, closed, self._irradiance(middle, levels, views, depths))
-        out = np.empty((height, width, 3), dtype=np.uint8)
-        expose(
-            self._room(levels), self.background.layers, levels.astype(np.float32), shade,
-            self._colour, self._cover, box, self._gains, self.spec.vignetting,
-            self.spec.shot_noise, self.spec.read_noise, self._noise, noise_key, self._curve, out,
-        )  # fmt: skip
+        out = self._expose(levels, shade, self._colour, self._cover, box, noise_key)
         self._colour[:] = 0.0
         self._cover[:] = 0.0
+        return out
+
+    def picture_of(self, colour: Singles, cover: Singles, levels: Floats, noise_key: int) -> Bytes:
+        """A picture of the room, empty but for something that covers (H,W) 0..1 of the pixels and
+        sends the light colour (H,W,3), linear RGB times cover. It throws no shadow."""
+        height, width = cover.shape
+        shade = np.zeros((len(levels), height, width), dtype=np.float32)
+        return self._expose(levels, shade, colour, cover, (0, 0, width, height), noise_key)
+
+    def _expose(
+        self, levels: Floats, shade: Singles, colour: Singles, cover: Singles,
+        box: tuple[int, int, int, int], noise_key: int,
+    ) -> Bytes:  # fmt: skip
+        out = np.empty((*cover.shape, 3), dtype=np.uint8)
+        expose(
+            self._room(levels), self.background.layers, levels.astype(np.float32), shade,
+            colour, cover, box, self._gains, self.spec.vignetting,
+            self.spec.shot_noise, self.spec.read_noise, self._noise, noise_key, self._curve, out,
+        )  # fmt: skip
         return out
 
     def labels(self, pose: Pose) -> tuple[Bytes, Bytes]:
