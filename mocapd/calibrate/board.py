@@ -126,10 +126,25 @@ def centre_m(spec: BoardSpec) -> Floats:
     return 0.5 * spec.square_m * np.array([spec.columns, spec.rows, 0.0])
 
 
-def aruco_board(spec: BoardSpec) -> Any:
-    """The board as cv2.aruco has it."""
+def aruco_board(spec: BoardSpec, own_markers: bool = False) -> Any:
+    """The board as cv2.aruco has it.
+
+    With `own_markers` its dictionary ends with the board's last marker: other boards' markers are
+    not seen then, and a picture is searched in a tenth of the time that a dictionary of 1000 takes.
+    """
+    dictionary = _dictionary(spec.dictionary)
+    if own_markers:
+        dictionary = first_markers(spec.dictionary, spec.columns * spec.rows // 2)
     board = cv2.aruco.CharucoBoard(
-        (spec.columns, spec.rows), spec.square_m, spec.marker_m, _dictionary(spec.dictionary)
+        (spec.columns, spec.rows), spec.square_m, spec.marker_m, dictionary
     )
     board.setLegacyPattern(spec.legacy)
     return board
+
+
+def first_markers(name: str, count: int) -> Any:
+    """The beginning of a dictionary of cv2.aruco: the time of a search grows with its length."""
+    whole = _dictionary(name)
+    return cv2.aruco.Dictionary(
+        whole.bytesList[:count].copy(), whole.markerSize, whole.maxCorrectionBits
+    )

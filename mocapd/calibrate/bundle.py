@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy.linalg
 import scipy.optimize
 import scipy.sparse
 import scipy.sparse.linalg
@@ -24,6 +25,8 @@ from mocapd.calibrate.reprojection import (
     residuals_px,
 )
 from mocapd.types import Floats, Ints
+
+_RIDGE = 1e-9  # of the normal matrix's diagonal: that it has a root although it is nearly singular
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +85,7 @@ class _Problem:
         )
 
     def error(self, x: Floats) -> Floats:
-        """(2N + 8C + C - 1,)."""
+        """(2N + priors + C - 1,)."""
         scene = moved(self.scene, *self.steps(x))
         priors = self.params.priors.residuals(scene.lens, self.size_px)
         return np.concatenate(
@@ -162,21 +165,42 @@ def _deviation_px(scene: Scene, seen: Observations, params: BundleParams) -> flo
 
 
 def _solved(problem: _Problem, robust: bool) -> Scene:
+    """Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
+
+    In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
+    along the valleys of focal length and depth.
+    """
+    start = problem.slope(np.zeros(problem.columns))
+    normal: Floats = (start.T @ start).toarray()
+    normal[np.diag_indices(len(normal))] *= 1.0 + _RIDGE
+    L: Floats = scipy.linalg.cholesky(normal, lower=True)
+
+    def step(y: Floats) -> Floats:
+        x: Floats = scipy.linalg.solve_triangular(L, y, lower=True, trans="T")
+        return x
+
+    def slope(y: Floats) -> scipy.sparse.linalg.LinearOperator:
+        J = problem.slope(step(y))
+        return scipy.sparse.linalg.LinearOperator(
+            J.shape,
+            matvec=lambda v: J @ step(v.ravel()),
+            rmatvec=lambda u: scipy.linalg.solve_triangular(L, J.T @ u.ravel(), lower=True),
+        )
+
     solution = scipy.optimize.least_squares(
-        problem.error,
+        lambda y: problem.error(step(y)),
         np.zeros(problem.columns),
-        jac=problem.slope,
+        jac=slope,
         method="trf",
         tr_solver="lsmr",
-        # full Gauss-Newton steps: half-solved ones crawl along the valleys of focal length and depth
+        # full Gauss-Newton steps
         tr_options={"regularize": False, "atol": 1e-7, "btol": 1e-7, "maxiter": 800},
-        x_scale="jac",
         loss="soft_l1" if robust else "linear",
         f_scale=problem.params.soft,
         ftol=1e-5,
         max_nfev=problem.params.evaluations,
     )
-    return moved(problem.scene, *problem.steps(solution.x))
+    return moved(problem.scene, *problem.steps(step(solution.x)))
 
 
 def _focal_deviation(problem: _Problem) -> Floats:

@@ -28,7 +28,7 @@ def first_scene(
     """
     poses = {name: _poses(views[name], lenses[name], board_m) for name in names}
     relative = _chained(names, poses)
-    lens = np.stack([_lens_row(lenses[name]) for name in names])
+    lens = np.stack([lens_row(lenses[name]) for name in names])
     camera_turn = np.stack([relative[name][0] for name in names])
     camera_t_m = np.stack([relative[name][1] for name in names])
     indices = sorted({index for name in names for index in poses[name]})
@@ -74,7 +74,8 @@ def _poses(views: Mapping[int, BoardView], lens: Lens, board_m: Floats) -> dict[
     return {index: pose for index, pose in found.items() if pose is not None}
 
 
-def _lens_row(lens: Lens) -> Floats:
+def lens_row(lens: Lens) -> Floats:
+    """(9,): fx fy cx cy k1 k2 p1 p2 k3."""
     K = lens.K
     return np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *lens.dist])
 

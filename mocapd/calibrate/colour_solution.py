@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from mocapd.trackers.colour.build import white_balance_of
 from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Bytes, Floats
+from mocapd.types import Floats
 from mocapd.vision.colour_model import ColourModel, fit_colour_model
+from mocapd.vision.white_balance import balanced
 
 
 def white_balances(pictures: Mapping[str, StrokedPicture], model: ColourModel) -> dict[str, Floats]:
@@ -26,14 +25,8 @@ def personal_colour_model(
     """
     W = white_balances(pictures, model)
     return fit_colour_model(
-        [_balanced(p.pixels, W[name]) for name, p in pictures.items()],
+        [balanced(p.pixels, W[name]) for name, p in pictures.items()],
         [p.strokes for p in pictures.values()],
         model.names,
         f"{model.version} (personal)",
     )
-
-
-def _balanced(pixels: Bytes, W: Floats) -> Bytes:
-    """A picture (h,w,3) BGR in the light of the model."""
-    rgb = pixels[..., ::-1].astype(float) @ W.T
-    return np.ascontiguousarray(np.clip(np.rint(rgb), 0.0, 255.0)[..., ::-1]).astype(np.uint8)

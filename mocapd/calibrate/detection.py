@@ -10,10 +10,13 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
-from mocapd.calibrate.board import BoardKind, BoardSpec, aruco_board
+from mocapd.calibrate.board import BoardKind, BoardSpec, aruco_board, first_markers
 from mocapd.calibrate.sharpness import edge_sharpness
 from mocapd.types import Bytes, Floats, Ints
 
+_KNOWN_MARKERS = 250  # of a dictionary: no board that is carried has more
+_PLENTY = 0.6  # share of the corners above which nobody looks twice
+_ENLARGED_UP_TO_PX = 800  # width of a picture that is enlarged; a larger one takes too long
 FEWEST_CORNERS = 6  # in one picture; 4 fix the pose of a plane, the rest check it
 
 
@@ -57,8 +60,13 @@ class BoardDetector:
     def __init__(self, spec: BoardSpec) -> None:
         self.spec = spec
         self._charuco: Any = None
+        self._charuco_enlarged: Any = None
         if spec.kind is BoardKind.CHARUCO:
-            self._charuco = cv2.aruco.CharucoDetector(aruco_board(spec))
+            board = aruco_board(spec, own_markers=True)
+            self._charuco = cv2.aruco.CharucoDetector(board)
+            self._charuco_enlarged = cv2.aruco.CharucoDetector(
+                board, cv2.aruco.CharucoParameters(), _for_small_markers()
+            )
 
     def find(self, pixels: Bytes, index: int = 0) -> BoardView | None:
         """The board in a picture (h,w,3) BGR or (h,w) grey; None without enough of it."""
@@ -77,19 +85,27 @@ class BoardDetector:
         return 255 - grey if self.spec.inverted else grey
 
     def markers(self, grey: Bytes) -> Ints:
-        """Ids of the markers in sight, whether or not they fit the board."""
+        """Ids of the markers in sight, whether or not they fit the board; of the first 250."""
         if self._charuco is None:
             return np.zeros(0, np.int64)
-        ids = self._charuco.detectBoard(grey)[3]
+        known = first_markers(self.spec.dictionary, _KNOWN_MARKERS)
+        ids: Any = cv2.aruco.ArucoDetector(known).detectMarkers(grey)[1]
         return np.zeros(0, np.int64) if ids is None else np.sort(ids.ravel()).astype(np.int64)
 
     def _of_charuco(self, grey: Bytes) -> tuple[Ints, Floats] | None:
-        assert self._charuco is not None
-        corners, ids, _, _ = self._charuco.detectBoard(grey)
-        if ids is None:
-            return None
-        order = np.argsort(ids.ravel())
-        return ids.ravel()[order].astype(np.int64), corners.reshape(-1, 2)[order].astype(float)
+        """A far board is looked at again enlarged: with cells of 2 px that finds four times the corners."""
+        corners, ids, _, markers = self._charuco.detectBoard(grey)
+        found = None if ids is None else _ascending(corners, ids)
+        columns, rows = self.spec.grid
+        few = found is None or len(found[0]) < _PLENTY * columns * rows
+        if markers is None or not few or grey.shape[1] > _ENLARGED_UP_TO_PX:
+            return found
+        large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
+        corners, ids, _, _ = self._charuco_enlarged.detectBoard(large)
+        if ids is None or (found is not None and len(ids) <= len(found[0])):
+            return found
+        # pixel centres are at integers in both pictures
+        return _ascending((corners + 0.5) / 2.0 - 0.5, ids)
 
     def _of_chessboard(self, grey: Bytes) -> tuple[Ints, Floats] | None:
         columns, rows = self.spec.grid
@@ -106,6 +122,21 @@ class BoardDetector:
         if self.spec.turns_show and not _first_is_black(grey, corners_px.reshape(rows, columns, 2)):
             corners_px = corners_px[::-1].copy()
         return np.arange(rows * columns), corners_px
+
+
+def _ascending(corners: Floats, ids: Ints) -> tuple[Ints, Floats]:
+    order = np.argsort(ids.ravel())
+    return ids.ravel()[order].astype(np.int64), corners.reshape(-1, 2)[order].astype(float)
+
+
+def _for_small_markers() -> Any:
+    """Borders may be rounder, and more bits may be wrong: only the board's own markers are known."""
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshWinSizeStep = 4
+    parameters.polygonalApproxAccuracyRate = 0.08
+    parameters.errorCorrectionRate = 1.0
+    parameters.perspectiveRemovePixelPerCell = 8
+    return parameters
 
 
 def as_grey(pixels: Bytes) -> Bytes:

@@ -5,23 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
-from mocapd.calibrate.board import BoardSpec, centre_m, corners_m
-from mocapd.calibrate.bundle import Bundle, BundleParams, adjust
-from mocapd.calibrate.chain import first_scene, observations
-from mocapd.calibrate.detection import BoardDetector, BoardView, NotSeen, Reason, settled
+from mocapd.calibrate.board import BoardSpec, corners_m
+from mocapd.calibrate.board_room import CameraFit, RoomParams, placed, solve_room
+from mocapd.calibrate.detection import BoardDetector, BoardView, NotSeen, settled
 from mocapd.calibrate.lens import Lens, LensLimits, solve_lens
-from mocapd.calibrate.reasons import why_not_seen
+from mocapd.calibrate.reasons import FIX, why_not_seen
 from mocapd.calibrate.recordings import Recording, find_recordings
-from mocapd.calibrate.reprojection import Observations, residuals_px
-from mocapd.calibrate.room import (
-    PlayAreaError,
-    play_area_error,
-    rig_in,
-    world_guessed,
-    world_on_floor,
-)
+from mocapd.calibrate.room import PlayAreaError
 from mocapd.calibrate.views import Choice, chosen_views, covered
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Floats, Rig
@@ -35,14 +25,11 @@ _ALONE = LensLimits(focal_deviation=0.25)
 
 @dataclass(frozen=True, slots=True)
 class FolderParams:
-    """How much of the recordings is looked at, and what the room must reach to be used."""
+    """How much of the recordings is looked at, and how the room is solved."""
 
     most_pictures: int = 200  # per camera, evenly over the recording
     choice: Choice = field(default_factory=Choice)
-    bundle: BundleParams = field(default_factory=BundleParams)
-    rms_px: float = 2.5
-    play_area_cm: float = 2.0
-    focal_deviation: float = 0.02
+    room: RoomParams = field(default_factory=RoomParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,17 +139,6 @@ def _difference(found: BoardSpec) -> str:
     return f"{ink}, of the {'legacy' if found.legacy else 'present'} layout"
 
 
-_FIX = {
-    Reason.TOO_DARK: "add light, or lengthen the exposure",
-    Reason.BLURRED: "focus the camera, hold the board still",
-    Reason.FEW: "show the whole board, nearer",
-    Reason.OTHER_SIZE: "give --board-size as columns x rows of squares",
-    Reason.OTHER_DICTIONARY: "give the --dictionary that the board was printed with",
-    Reason.MIRRORED: "switch mirroring off in the camera or the recorder, and record again",
-    Reason.NOTHING: "show the board to this camera, or take its recording out of the folder",
-}
-
-
 def _refuse_blind(sightings: Sequence[Sighting]) -> None:
     """Raises ConfigError for the first camera that hardly sees the board, with the commonest reason."""
     for one in sightings:
@@ -178,7 +154,7 @@ def _refuse_blind(sightings: Sequence[Sighting]) -> None:
         reason = Counter(told.reason for told in one.not_seen).most_common(1)[0][0]
         detail = next((told.detail for told in one.not_seen if told.reason is reason), "")
         what += f": {reason}" + (f", {detail}" if detail else "")
-        raise ConfigError(what, where, _FIX[reason])
+        raise ConfigError(what, where, FIX[reason])
 
 
 def _lens(one: Sighting, board_m: Floats, params: FolderParams) -> Lens:
@@ -197,18 +173,8 @@ def _room(
     progress: Progress,
 ) -> Calibration:
     names = [one.recording.name for one in sightings]
-    sizes_px = [one.recording.size_px for one in sightings]
-    board_m = corners_m(spec)
-    # a view that contradicted its own lens tells nothing of the room either
-    views = {
-        one.recording.name: {
-            index: view
-            for index, view in one.views.items()
-            if index not in lenses[one.recording.name].thrown_out
-        }
-        for one in sightings
-    }
-    known = sorted({index for own in views.values() for index in own})
+    views = {one.recording.name: one.views for one in sightings}
+    known = sorted({i for name in names for i in views[name] if i not in lenses[name].thrown_out})
     if floor_frame is not None and floor_frame not in known:
         raise ConfigError(
             "no camera sees the board in it",
@@ -216,69 +182,31 @@ def _room(
             f"one of the frames with the board, such as {known[len(known) // 2]}",
         )
     progress("room", 0, 1)
-    scene, indices = first_scene(names, lenses, views, board_m)
-    seen = observations(names, views, indices, board_m)
-    bundle = adjust(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
+    sizes_px = [one.recording.size_px for one in sightings]
+    room = solve_room(names, sizes_px, lenses, views, spec, params.room)
     progress("room", 1, 1)
-    kept = seen.of(bundle.used)
-    if floor_frame is None:
-        world = world_guessed(bundle.scene, board_m)
-    else:
-        position = indices.index(floor_frame)
-        world = world_on_floor(bundle.scene, position, centre_m(spec), f"frame {floor_frame}")
-    notes += [world.note] if world.note else []
-    rig = rig_in(world, bundle.scene, names, sizes_px)
-    play_area = play_area_error(rig, kept)
-    error_px = np.linalg.norm(residuals_px(bundle.scene, kept), axis=1)
-    rms_px = _rms(error_px)
+    made = placed(room, floor_frame, f"frame {floor_frame}", params.room)
+    notes += [made.note] if made.note else []
     reports = {
-        one.recording.name: _report(i, one, lenses[one.recording.name], bundle, seen)
-        for i, one in enumerate(sightings)
+        one.recording.name: _report(
+            one, lenses[one.recording.name], made.cameras[one.recording.name]
+        )
+        for one in sightings
     }
-    _refuse_bad(rms_px, play_area, reports, params)
-    return Calibration(rig, rms_px, reports, len(indices), play_area, spec, tuple(notes))
-
-
-def _rms(error_px: Floats) -> float:
-    return float(np.sqrt(np.mean(error_px**2))) if len(error_px) else float("nan")
-
-
-def _report(i: int, one: Sighting, lens: Lens, bundle: Bundle, seen: Observations) -> CameraReport:
-    own = seen.camera == i
-    kept = own & bundle.used
-    error_px = np.linalg.norm(residuals_px(bundle.scene, seen.of(kept)), axis=1)
-    return CameraReport(
-        _rms(error_px),
-        lens.held_out_px,
-        len(np.unique(seen.view[kept])),
-        one.pictures,
-        covered(list(one.views.values()), one.recording.size_px),
-        float(bundle.scene.delay[i]),
-        float(bundle.focal_deviation[i]),
-        lens.thrown_out,
-        int((own & ~bundle.used).sum()),
+    return Calibration(
+        made.rig, made.rms_px, reports, made.positions, made.play_area, spec, tuple(notes)
     )
 
 
-def _refuse_bad(
-    rms_px: float,
-    play_area: PlayAreaError | None,
-    reports: Mapping[str, CameraReport],
-    params: FolderParams,
-) -> None:
-    for name, report in reports.items():
-        if report.focal_deviation > params.focal_deviation:
-            raise ConfigError(
-                f"the focal length is known to {100 * report.focal_deviation:.1f} % only",
-                name,
-                "show the board nearer to this camera, and tilted by 30 degrees and more",
-            )
-    far = play_area is not None and play_area.median_cm > params.play_area_cm
-    if rms_px > params.rms_px or far:
-        cm = "" if play_area is None else f", {play_area.median_cm:.1f} cm in the play area"
-        raise ConfigError(
-            f"the cameras contradict each other: {rms_px:.2f} px{cm}",
-            "the room",
-            "hold the board still at each place, keep the cameras where they are, do not mirror "
-            "a picture, and see that frames of one index are of one moment",
-        )
+def _report(one: Sighting, lens: Lens, fit: CameraFit) -> CameraReport:
+    return CameraReport(
+        fit.rms_px,
+        lens.held_out_px,
+        fit.views,
+        one.pictures,
+        covered(list(one.views.values()), one.recording.size_px),
+        fit.delay_frames,
+        fit.focal_deviation,
+        lens.thrown_out,
+        fit.refused_corners,
+    )

@@ -100,8 +100,8 @@ def solve_lens(
             where,
             "give the size of the board as it is printed, and keep the board flat",
         )
-    model, held_out_px = _best_model(kept, board_m, size_px, where)
-    solution = _solve(kept, board_m, size_px, model, where)
+    model, held_out_px = _best_model(kept, board_m, size_px, where, first)
+    solution = _solve(kept, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
     lens = Lens(
         size_px,
@@ -124,23 +124,31 @@ def _solve(
     size_px: tuple[int, int],
     model: tuple[bool, ...],
     where: str,
+    start: _Solution | None = None,
 ) -> _Solution:
+    """`start`: a solution of nearly the same views, from which it is found sooner."""
     k1, k2, p1, _, k3 = model
     flags = 0 if k3 else cv2.CALIB_FIX_K3
     flags |= (0 if k2 else cv2.CALIB_FIX_K2) | (0 if k1 else cv2.CALIB_FIX_K1)
     flags |= 0 if p1 else cv2.CALIB_ZERO_TANGENT_DIST
+    K, dist = None, None
+    if start is not None:
+        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
+        K, dist = start.K.copy(), np.where(model, start.dist, 0.0)
     try:
         found: Any = _CALIBRATE(
             [board_m[view.ids].astype(np.float32) for view in views],
             [view.corners_px.astype(np.float32) for view in views],
             size_px,
-            None,
-            None,
+            K,
+            dist,
             flags=flags,
         )
     except cv2.error:
         raise _parallel(where) from None
     rms_px, K, dist, rotations, _, deviations, _, per_view_px = found
+    assert K is not None
+    assert dist is not None
     if not (np.isfinite(K).all() and np.isfinite(dist).all() and K[0, 0] > 0 and K[1, 1] > 0):
         raise _parallel(where)
     return _Solution(
@@ -154,7 +162,11 @@ def _solve(
 
 
 def _best_model(
-    views: Sequence[BoardView], board_m: Floats, size_px: tuple[int, int], where: str
+    views: Sequence[BoardView],
+    board_m: Floats,
+    size_px: tuple[int, int],
+    where: str,
+    start: _Solution,
 ) -> tuple[tuple[bool, ...], float]:
     """The simplest set of coefficients that views left out speak for, and the error of those [px]."""
     best, error_px = _MODELS[0], np.inf
@@ -162,7 +174,7 @@ def _best_model(
         squares: list[Floats] = []
         for fold in range(_FOLDS):
             rest = [view for i, view in enumerate(views) if i % _FOLDS != fold]
-            solution = _solve(rest, board_m, size_px, model, where)
+            solution = _solve(rest, board_m, size_px, model, where, start)
             squares += [
                 pose_residuals_px(view, board_m, solution.K, solution.dist) ** 2
                 for i, view in enumerate(views)

@@ -7,7 +7,7 @@ which body and picture agree best wins. With a known rig the cameras are then fi
 in its own light.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,7 +40,10 @@ _ALIKE = 0.15  # |W - W'|_F under which two candidates about one place are one
 _ALIKE_PX = 24  # work px
 _FIRST_TURNS = 2
 _LAST_TURNS = 8  # of the arm search, so that all of its library is tried
+# turns in a row that may be no better: with one camera pose and light then drift off together
+_IDLE_TURNS = 2
 _LOOSE_S = 0.1
+_ALONE = 0.8  # share of the work that each camera's own reading is
 _ARM_JOINTS = [
     INDEX[side + bone]
     for side in ("left", "right")
@@ -48,6 +51,16 @@ _ARM_JOINTS = [
 ]
 _GAINS = (1.0, 1.8)  # brightness beyond that of the hypotheses
 _NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
+
+
+# runs the readings of several cameras: `map`, or that of a pool of threads
+MapCameras = Callable[
+    [Callable[[int], "Reading | InputError"], Iterable[int]], Iterable["Reading | InputError"]
+]
+
+
+def _quiet(_: float) -> None:
+    """Nobody watches."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,14 +106,20 @@ class LightReader:
         """What draws a reading's body into camera `index`."""
         return self._fitter.drawings[index]
 
-    def read(self, index: int, pixels: Bytes) -> Reading:
-        """Camera `index`'s picture (H,W,3) BGR in the light that explains it best. Raises InputError."""
+    def read(
+        self, index: int, pixels: Bytes, progress: Callable[[float], None] = _quiet
+    ) -> Reading:
+        """Camera `index`'s picture (H,W,3) BGR in the light that explains it best. Raises InputError.
+
+        Different cameras may be read by different threads at once. progress: of this camera, 0..1.
+        """
         eye, camera = self._eyes[index], self._cameras[index]
         _check_size(pixels, camera)
         eye.reset()
         eye.look(pixels)
         readings = []
-        for name, found in self._candidates(eye):
+        for i, (name, found) in enumerate(self._candidates(eye)):
+            progress(i / (_FOLLOWED + _FINALISTS))
             fit = self._detected(index, found)
             if fit is None:
                 continue
@@ -117,27 +136,45 @@ class LightReader:
             )
         readings.sort(key=lambda r: -r.score)
         turns = range(_FIRST_TURNS, _FIRST_TURNS + _LAST_TURNS)
-        finals = [
-            self._follow(index, r.light, r.fit, r.appearance, turns) or r
-            for r in readings[:_FINALISTS]
-        ]
+        finals = []
+        for i, r in enumerate(readings[:_FINALISTS]):
+            progress((_FOLLOWED + i) / (_FOLLOWED + _FINALISTS))
+            finals.append(self._follow(index, r.light, r.fit, r.appearance, turns) or r)
         return max([*finals, readings[0]], key=lambda r: r.score)
 
-    def read_together(self, pictures: Mapping[int, Bytes]) -> dict[int, Reading]:
+    def read_together(
+        self,
+        pictures: Mapping[int, Bytes],
+        progress: Callable[[float], None] = _quiet,
+        map_cameras: MapCameras = map,
+    ) -> dict[int, Reading]:
         """Pictures of one moment by camera index, in cameras whose places are known. Raises InputError
         when no camera shows a shirt; a camera that shows none is left out.
 
-        A camera keeps its own reading where it agrees better than the common body.
+        A camera keeps its own reading where it agrees better than the common body. progress: 0..1.
         """
+        shares = dict.fromkeys(pictures, 0.0)
+
+        def read(index: int) -> Reading | InputError:
+            def told(share: float) -> None:
+                shares[index] = share
+                progress(_ALONE * sum(shares.values()) / len(shares))
+
+            try:
+                return self.read(index, pictures[index], told)
+            except InputError as error:
+                return error
+
         own: dict[int, Reading] = {}
         troubles = []
-        for index, pixels in pictures.items():
-            try:
-                own[index] = self.read(index, pixels)
-            except InputError as error:
-                troubles.append(error)
+        for index, one in zip(pictures, map_cameras(read, pictures), strict=True):
+            if isinstance(one, Reading):
+                own[index] = one
+            else:
+                troubles.append(one)
         if troubles and not own:
             raise troubles[0]
+        progress(_ALONE)
         return self._common(own) if len(own) > 1 else own
 
     # --- stages ---
@@ -179,16 +216,18 @@ class LightReader:
         """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
         self._eyes[index].memory.appearance = start
         best: Reading | None = None
+        idle = 0
         for turn in turns:
             view = self._classified(index, fit)
-            if view is None:
+            if view is None or idle == _IDLE_TURNS:
                 break
+            idle += 1
             fit = self._fitted(fit.state, [view], turn)
             appearance = self._eyes[index].memory.appearance
             agreement, colours = fit.explained, fit.confirmed_colours()
             reading = Reading(light, fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
-                best = reading
+                best, idle = reading, 0
             self._relight(index, fit.state, view)
         return best
 
@@ -210,9 +249,10 @@ class LightReader:
                 # a camera that misread its light tries them all on the other's body
                 memory.references = lights[index]
             fit, light = start.fit, start.light
+            most, idle = 0.0, 0
             for turn in range(_FIRST_TURNS + _LAST_TURNS):
                 views = [v for i in own if (v := self._classified(i, fit)) is not None]
-                if len(views) < len(own):
+                if len(views) < len(own) or idle == _IDLE_TURNS:
                     break
                 for index in own:
                     self._eyes[index].memory.references = ()
@@ -222,7 +262,9 @@ class LightReader:
                     Reading(light, fit, v, self._eyes[v.index].memory.appearance, *seen)
                     for v in views
                 ]
-                if not best or readings[0].score > best[0].score:
+                idle = 0 if readings[0].score > most else idle + 1
+                most = max(most, readings[0].score)
+                if not best or most > best[0].score:
                     best = readings
                 for view in views:
                     self._relight(view.index, fit.state, view)

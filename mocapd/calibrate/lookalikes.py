@@ -38,15 +38,10 @@ def lookalikes(
     """Regions of a picture (H,W,3) BGR beside the wearer that read as a colour of the shirt, largest first.
 
     shirt (H,W): non-zero on the shirt: `Proposal.shirt`, or `hull_of` strokes that cover it. W (3,3): white balance.
-    Colours are read as the tracker reads them without a pose (paper section 5.2, step 1).
+    Colours are read as by `colours_alone`.
     """
-    p = params if params is not None else Params()
-    tables = ColourTables()
-    tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
-    tables.refill(tolerant, W, p.first_threshold, p.first_threshold)
     h, w = pixels.shape[:2]
-    ids = np.empty((h, w), np.uint8)
-    classify_by_table(np.ascontiguousarray(pixels), _EVERYWHERE, 31, tables.ids, 0, 0, 1, ids)
+    ids = colours_alone(pixels, model, W, params)
     size = 2 * round(_BODY_MARGIN_SHARE * w) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     ids[cv2.dilate((shirt > 0).astype(np.uint8), near) > 0] = 0
@@ -56,6 +51,20 @@ def lookalikes(
         for polygon, area in _regions((ids == colour).astype(np.uint8), least_share * h * w)
     ]
     return tuple(sorted(found, key=lambda one: -one.area_px))
+
+
+def colours_alone(
+    pixels: Bytes, model: ColourModel, W: Floats, params: Params | None = None
+) -> Bytes:
+    """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker reads them without a pose (paper section
+    5.2, step 1)."""
+    p = params if params is not None else Params()
+    tables = ColourTables()
+    tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
+    tables.refill(tolerant, W, p.first_threshold, p.first_threshold)
+    ids = np.empty(pixels.shape[:2], np.uint8)
+    classify_by_table(np.ascontiguousarray(pixels), _EVERYWHERE, 31, tables.ids, 0, 0, 1, ids)
+    return ids
 
 
 def hull_of(strokes: Bytes) -> Bytes:

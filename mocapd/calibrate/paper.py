@@ -11,7 +11,13 @@ from mocapd.errors import CannotCreateError, ConfigError
 from mocapd.whole_file import whole_file
 
 # width, height in portrait [mm]; ISO 216 and ANSI/ASME Y14.1
-PAPERS_MM = {"A4": (210.0, 297.0), "Letter": (215.9, 279.4), "A3": (297.0, 420.0)}
+PAPERS_MM = {
+    "A4": (210.0, 297.0),
+    "Letter": (215.9, 279.4),
+    "A3": (297.0, 420.0),
+    "A2": (420.0, 594.0),
+    "A1": (594.0, 841.0),
+}
 RULER_MM = 100
 RULER_HEIGHT_MM = 8.0
 

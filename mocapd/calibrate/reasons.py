@@ -1,5 +1,6 @@
 """Why no board is found in a picture: asked only of pictures without one, since it looks long."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -8,13 +9,25 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
-from mocapd.calibrate.board import BoardKind, BoardSpec, dictionaries
+from mocapd.calibrate.board import BoardKind, BoardSpec, dictionaries, first_markers
 from mocapd.calibrate.detection import BoardDetector, NotSeen, Reason, as_grey
 from mocapd.types import Bytes, Ints
 
 _DARK = 45  # grey value under which all but the lamps of a dark picture lie
 _SHARP = 25.0  # variance of the Laplacian of a picture of 640 pixels across, whose noise is gone
+_BEGINNING = 50  # markers of another dictionary that are looked for: boards begin with the first
 _CERTAIN = 3  # markers that are not there by chance
+
+# what to do about each; of recordings
+FIX: Mapping[Reason, str] = {
+    Reason.TOO_DARK: "add light, or lengthen the exposure",
+    Reason.BLURRED: "focus the camera, hold the board still",
+    Reason.FEW: "show the whole board, nearer",
+    Reason.OTHER_SIZE: "give --board-size as columns x rows of squares",
+    Reason.OTHER_DICTIONARY: "give the --dictionary that the board was printed with",
+    Reason.MIRRORED: "switch mirroring off in the camera or the recorder, and record again",
+    Reason.NOTHING: "show the board to this camera, or take its recording out of the folder",
+}
 
 
 def why_not_seen(detector: BoardDetector, pixels: Bytes, index: int = 0) -> NotSeen:
@@ -87,8 +100,8 @@ def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | Non
         family = one.rpartition("_")[0]
         if one.endswith(("_50", "_100", "_250")) or spec.dictionary.startswith(family + "_"):
             continue
-        dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, one))
-        ids: Any = cv2.aruco.ArucoDetector(dictionary).detectMarkers(grey)[1]
+        beginning = first_markers(one, _BEGINNING)
+        ids: Any = cv2.aruco.ArucoDetector(beginning).detectMarkers(grey)[1]
         if ids is not None and len(ids) > best:
             best, name = len(ids), one
     if best < _CERTAIN:

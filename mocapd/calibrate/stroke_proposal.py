@@ -1,12 +1,12 @@
 """Strokes proposed on a frozen picture: the patch interiors of the body as it was read."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-from mocapd.calibrate.light_reading import MEAN_STATURE_M, LightReader, Reading
+from mocapd.calibrate.light_reading import MEAN_STATURE_M, LightReader, MapCameras, Reading
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.types import Bytes, Camera, Floats, Rig
@@ -57,14 +57,17 @@ def propose_strokes_together(
     model: ColourModel,
     database: PoseDatabase,
     stature_m: float = MEAN_STATURE_M,
+    progress: Callable[[float], None] = lambda _: None,
+    map_cameras: MapCameras = map,
 ) -> dict[str, Proposal]:
     """The same for pictures of one moment by camera name, when the cameras' places are known too.
 
+    progress: 0..1; map_cameras: `map`, or that of a pool of threads, one for each camera at best.
     A camera in which nobody is found is left out. Raises InputError when that is all of them.
     """
     reader = LightReader(rig.cameras, model, database, stature_m)
     chosen = {i: pictures[name] for i, name in enumerate(rig.names) if name in pictures}
-    readings = reader.read_together(chosen)
+    readings = reader.read_together(chosen, progress, map_cameras)
     return {
         rig.names[i]: _proposal(reader, i, chosen[i], reading, model)
         for i, reading in readings.items()

@@ -13,7 +13,7 @@ def add_to(app: typer.Typer) -> None:
 
 def board(
     out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
-    paper: Annotated[str, typer.Option(help="A4, Letter or A3.")] = "A4",
+    paper: Annotated[str, typer.Option(help="A4, Letter, A3, A2 or A1.")] = "A4",
     board_size: Annotated[
         str, typer.Option(help="Squares across and down.", metavar="COLUMNSxROWS")
     ] = "5x7",

@@ -14,7 +14,7 @@ def add_to(app: typer.Typer) -> None:
 def shirt(
     out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
     size: Annotated[str, typer.Option(help="S, M, L, XL or XXL.")] = "M",
-    paper: Annotated[str, typer.Option(help="A4, Letter or A3.")] = "A4",
+    paper: Annotated[str, typer.Option(help="A4, Letter, A3, A2 or A1.")] = "A4",
     layout: Annotated[
         str,
         typer.Option(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.types import Floats
+from mocapd.types import Bytes, Floats
 from mocapd.vision.colour_model import ColourModel
 
 DEFAULT_RIDGE = 1e-3
@@ -53,6 +53,12 @@ def shade_precision(model: ColourModel) -> Floats:
     """
     tolerant = model.tolerating(_MEAN_SHADING, _MEAN_NOISE).tolerant_covariance
     return np.asarray(np.linalg.inv(tolerant) * _MEAN_NOISE**2, dtype=np.float64)
+
+
+def balanced(pixels: Bytes, W: Floats) -> Bytes:
+    """A picture (h,w,3) BGR of the camera in the light of the model."""
+    rgb = pixels[..., ::-1].astype(float) @ W.T
+    return np.ascontiguousarray(np.clip(np.rint(rgb), 0.0, 255.0)[..., ::-1]).astype(np.uint8)
 
 
 def frobenius_distance(first: Floats, second: Floats) -> float:

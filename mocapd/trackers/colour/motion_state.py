@@ -11,7 +11,7 @@ from mocapd.body.skeleton import N_JOINTS
 from mocapd.types import Floats
 
 # of measured proportions, as a part of the spread over all people
-_MEASURED_SPREAD = 0.4
+_MEASURED_SPREAD = 0.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,210 @@
+"""The saved calibration: what is written is what is read, damage is told, and nothing is lost when it
+cannot be written."""
+
+import math
+import tomllib
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+from mocapd.calibrate.board import BoardKind, BoardSpec
+from mocapd.calibrate.calibrated_inputs import inputs_of_calibration, read_calibrated
+from mocapd.calibrate.calibration_file import (
+    FILE_NAME,
+    read_calibration,
+    rewrite_sources,
+    write_calibration,
+)
+from mocapd.calibrate.saved_calibration import (
+    ColourFit,
+    LensFit,
+    Made,
+    RoomFit,
+    SavedCalibration,
+    SavedCamera,
+    Wearer,
+)
+from mocapd.capture.controls import Controls
+from mocapd.errors import CannotCreateError, ConfigError, InputError
+from mocapd.types import Bytes
+
+ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+Pictures = dict[str, tuple[Bytes, Bytes]]
+
+
+def camera(name: str, colour: bool = False) -> SavedCamera:
+    return SavedCamera(
+        id=name,
+        label="left, on the shelf",
+        source=f"usb:1-3:046d:0825:{name}",
+        size_px=(64, 48),
+        K=((60.123456789, 0.0, 32.0), (0.0, 60.0, 24.0), (0.0, 0.0, 1.0)),
+        dist=(0.1, -0.2, 0.0, 0.0, 0.001),
+        R=ONE,
+        t_m=(0.1, -1.2, 2.5),
+        rms_px=0.31,
+        lens=LensFit(rms_px=0.2, held_out_px=0.3, views=12, focal_deviation=0.001),
+        controls=Controls(auto_exposure=False, exposure=150),
+        colour=ColourFit(picture="-", strokes="-", W=ONE) if colour else None,
+    )
+
+
+def saved_calibration() -> SavedCalibration:
+    return SavedCalibration(
+        schema=1,
+        made=Made(when=datetime(2026, 11, 21, 10, 0, tzinfo=UTC), by="ann", mocapd="0.2.0"),
+        room=RoomFit(method="board", rms_px=0.4, play_area_cm=0.3),
+        wearer=Wearer(stature_m=1.71, proportions={"arm_girth": 1.2}, personal_colours=True),
+        board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
+        camera=(camera("left", colour=True), camera("right/2")),
+    )
+
+
+def pictures(shade: int = 0) -> Pictures:
+    strokes = np.zeros((48, 64), np.uint8)
+    strokes[10:20, 10:20] = 3
+    return {"left": (np.full((48, 64, 3), shade, np.uint8), strokes)}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "state" / FILE_NAME
+    write_calibration(path, saved_calibration(), pictures())
+    return path
+
+
+def test_what_is_read_is_what_was_written(path: Path) -> None:
+    read = read_calibration(path.parent)
+    wanted = saved_calibration()
+    assert read.camera[1] == wanted.camera[1]
+    assert (read.made, read.room, read.wearer, read.board) == (
+        wanted.made,
+        wanted.room,
+        wanted.wearer,
+        wanted.board,
+    )
+    known = read_calibrated(read, path)
+    assert np.array_equal(known.pictures["left"].pixels, pictures()["left"][0])
+    assert np.array_equal(known.pictures["left"].strokes, pictures()["left"][1])
+    inputs = inputs_of_calibration(known, stature_m=1.9)
+    assert inputs.stature_m == 1.71
+    assert inputs.factors is not None
+    assert inputs.factors.tolist() == [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.2]
+    assert len(inputs.model) == 1
+    assert known.rig.names == ("left", "right/2")
+    assert known.rig.cameras[0].K[0, 0] == 60.123456789
+
+
+def test_people_can_read_it(path: Path) -> None:
+    text = path.read_text()
+    assert text.startswith("# The calibration of mocapd's cameras")
+    assert "size_px = [64, 48]" in text
+    assert "[60.123456789, 0.0, 32.0]," in text
+
+
+def test_the_one_before_is_kept_with_its_pictures_and_older_ones_go(path: Path) -> None:
+    for shade in (1, 2):
+        write_calibration(path, saved_calibration(), pictures(shade))
+    names = sorted(one.name for one in path.parent.iterdir())
+    assert names == ["calibration.previous.toml", "calibration.toml", "colours"]
+    assert len(list((path.parent / "colours").iterdir())) == 4
+    for file, shade in ((path, 2), (path.with_name("calibration.previous.toml"), 1)):
+        known = read_calibrated(read_calibration(file), file)
+        assert known.pictures["left"].pixels[0, 0, 0] == shade
+
+
+@pytest.mark.parametrize("blocked", ["colours", "calibration.previous.toml"])
+def test_what_cannot_be_written_leaves_the_one_before(path: Path, blocked: str) -> None:
+    before = path.read_bytes()
+    place = path.parent / blocked
+    if place.is_dir():  # nothing can be made in a file
+        place.rename(path.parent / "away")
+        place.write_text("in the way")
+    else:
+        place.mkdir()
+        (place / "x").write_text("in the way")
+    with pytest.raises(CannotCreateError, match="untouched"):
+        write_calibration(path, saved_calibration(), pictures(9))
+    assert path.read_bytes() == before
+
+
+def test_a_camera_gets_another_port_and_all_else_stays(path: Path) -> None:
+    before = read_calibration(path)
+    rewrite_sources(path, {"left": "usb:2-1:046d:0825:left"})
+    after = read_calibration(path)
+    assert after.camera[0].source == "usb:2-1:046d:0825:left"
+    assert after.camera[1:] == before.camera[1:]
+    assert after.camera[0].colour == before.camera[0].colour
+
+
+def _set(*keys: Any) -> Callable[[Any], None]:
+    *way, last, value = keys
+
+    def change(data: Any) -> None:
+        for key in way:
+            data = data[key]
+        if value is None:
+            del data[last]
+        else:
+            data[last] = value
+
+    return change
+
+
+DAMAGES = {
+    "schema": (_set("schema", 99), "has schema 99"),
+    "no schema": (_set("schema", None), "has no 'schema'"),
+    "when": (_set("made", "when", "yesterday"), "made.when"),
+    "method": (_set("room", "method", "guess"), "room.method"),
+    "rms": (_set("room", "rms_px", -1.0), "room.rms_px"),
+    "stature": (_set("wearer", "stature_m", 17.1), "wearer.stature_m"),
+    "proportion": (_set("wearer", "proportions", "arm_girth", 0.0), "wearer.proportions"),
+    "unknown proportion": (_set("wearer", "proportions", "nose", 1.0), "nose"),
+    "board": (_set("board", "columns", 1), "too few"),
+    "no camera": (_set("camera", []), "camera"),
+    "twice": (_set("camera", 1, "id", "left"), "two cameras have one id"),
+    "no id": (_set("camera", 0, "id", ""), r"camera\[0\]\.id|camera\[\.\.\.\]\.id"),
+    "source": (_set("camera", 0, "source", None), "source"),
+    "size": (_set("camera", 0, "size_px", [64]), "size_px"),
+    "K": (_set("camera", 0, "K", 0, [60.0, 5.0, 32.0]), "'left': 'K' is not"),
+    "K of text": (_set("camera", 0, "K", 0, 0, "wide"), "K"),
+    "dist": (_set("camera", 0, "dist", [0.0, 0.0]), "dist"),
+    "R": (_set("camera", 0, "R", 0, 0, -1.0), "not a rotation"),
+    "t": (_set("camera", 1, "t_m", 2, math.nan), r"'camera\[1\]\.t_m\[2\]' is not finite"),
+    "controls": (_set("camera", 0, "controls", "exposure", "long"), "exposure"),
+    "W": (_set("camera", 0, "colour", "W", 0, 0, math.inf), "W.* is not finite"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damage_is_told_with_file_and_place(path: Path, name: str) -> None:
+    change, says = DAMAGES[name]
+    data = tomllib.loads(path.read_text())
+    change(data)
+    path.write_text(tomli_w.dumps(data))
+    with pytest.raises(ConfigError, match=says) as caught:
+        read_calibration(path)
+    assert str(path) in str(caught.value)
+    assert caught.value.fix
+
+
+def test_half_a_file_and_no_file_are_told(path: Path) -> None:
+    path.write_text(path.read_text()[:700])
+    with pytest.raises(ConfigError, match="calibrate again"):
+        read_calibration(path)
+    path.unlink()
+    with pytest.raises(InputError, match="mocapd calibrate"):
+        read_calibration(path)
+
+
+def test_a_picture_that_is_gone_is_named(path: Path) -> None:
+    saved = read_calibration(path)
+    assert saved.camera[0].colour is not None
+    (path.parent / saved.camera[0].colour.strokes).unlink()
+    with pytest.raises(InputError, match=r"_strokes\.png"):
+        read_calibrated(saved, path)
