@@ -3,12 +3,15 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.errors import ConfigError
+
+if TYPE_CHECKING:
+    from mocapd.evaluate.bench_live import Watching
 
 _SIM = "sim:"
 _DEFAULT = "sim:living_room"
@@ -33,6 +36,9 @@ def bench_command(
     live: Annotated[
         bool, typer.Option("--live", help="Time the real daemon on simulated webcams instead.")
     ] = False,
+    watched: Annotated[
+        bool, typer.Option("--watched", help="With --live: somebody looks at its page meanwhile.")
+    ] = False,
     seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
     endurance: Annotated[
         float | None,
@@ -52,6 +58,8 @@ def bench_command(
     ).config
     if live and not capture.startswith(_SIM):
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
+    if watched and not live:
+        raise ConfigError("--watched without --live", "command line", "add --live")
     if live and not effective.zenoh.enabled:
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
@@ -66,7 +74,8 @@ def bench_command(
         recording = open_input(capture, effective.cache_dir, own.stature_m, own.variant, progress)
         bench = Bench(recording, tracker, effective.cache_dir, own, progress)
         if live:
-            found = bench.live(_daemon_command(capture, config, settings, own.variant), seconds)
+            command = _daemon_command(capture, config, settings, own.variant)
+            found = bench.live(command, seconds, _watching() if watched else None)
         elif endurance is not None:
             found = bench.endurance(endurance)
         else:
@@ -74,6 +83,12 @@ def bench_command(
     for name, why in found.skipped.items():
         typer.echo(f"mocapd: {name} is left out: {why}", err=True)
     print(json.dumps(bench_report.as_json(found)) if as_json else bench_report.as_text(found))
+
+
+def _watching() -> "Watching":
+    from mocapd.web.watcher import watching
+
+    return watching
 
 
 def _daemon_command(

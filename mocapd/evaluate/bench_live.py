@@ -1,15 +1,17 @@
 """The real daemon in a process of its own on simulated webcams, seen by a real subscriber."""
 
 import math
+import os
 import signal
 import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
-from typing import IO
+from pathlib import Path
+from typing import IO, Protocol
 
 import numpy as np
 import psutil
@@ -27,6 +29,15 @@ LOOK_EVERY_S = 1.0  # how often memory is read [s]
 STOP_S = 5.0
 
 
+class Looks(Protocol):
+    """Somebody who looks at the page; `pictures` counts those that came."""
+
+    pictures: int
+
+
+Watching = Callable[[Path], AbstractContextManager[Looks]]  # given the daemon's $XDG_RUNTIME_DIR
+
+
 @dataclass(frozen=True, slots=True)
 class LiveFigures:
     """What the subscriber and the system saw of a daemon in `seconds` [s], from its first frame on.
@@ -39,7 +50,8 @@ class LiveFigures:
     latency_*_ms: middle of the newest exposure to publication [ms]; arrival_*_ms: to the arrival at
     the subscriber [ms]; cpu_share: processor time of the daemon per time, 1 is one core;
     cpu_ms: the same per frame set [ms]; rss_mb: greatest resident memory [MB];
-    rss_slope_mb_per_min: its trend over the second half [MB/min].
+    rss_slope_mb_per_min: its trend over the second half [MB/min]; pictures_per_s: how many the
+    page's watcher got, of all cameras together.
     """
 
     seconds: float
@@ -58,15 +70,21 @@ class LiveFigures:
     cpu_ms: float
     rss_mb: float
     rss_slope_mb_per_min: float
+    pictures_per_s: float
 
 
-def bench_live(command: Sequence[str], cameras: int, duration_s: float) -> LiveFigures:
+def bench_live(
+    command: Sequence[str], cameras: int, duration_s: float, watching: Watching | None = None
+) -> LiveFigures:
     """Run a daemon for so long [s] after its first frame and look at it from outside.
 
     `command` starts `mocapd run` without its ports and instance, which are chosen here, on so many
-    cameras. Raises UnavailableError when it does not start, or ends by itself.
+    cameras. `watching`: who looks at its page meanwhile. Raises UnavailableError when it does not
+    start, or ends by itself.
     """
     with ExitStack() as opened:
+        # apart from the page of a daemon that this user may have running
+        runtime_dir = Path(opened.enter_context(tempfile.TemporaryDirectory()))
         osc = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         osc.bind(("127.0.0.1", 0))  # somebody listens; what is not read the system discards
         endpoint = f"127.0.0.1:{_free_port()}"
@@ -76,23 +94,25 @@ def bench_live(command: Sequence[str], cameras: int, duration_s: float) -> LiveF
                 *(*command, "--instance", INSTANCE),
                 *("--set", f"zenoh.port={endpoint.rpartition(':')[2]}"),
                 *("--set", f'osc.destinations=["127.0.0.1:{osc.getsockname()[1]}"]'),
-            ])
+            ], runtime_dir)
         )  # fmt: skip
         subscriber = Subscriber(f"tcp/{endpoint}", INSTANCE)
         opened.enter_context(subscriber)
         first = _first_frame(subscriber, daemon)
+        watcher = opened.enter_context(watching(runtime_dir)) if watching else None
         process = psutil.Process(daemon.pid)
         cpu_s, start_ns = _cpu_s(process), monotonic_ns()
         rss = _watch(process, daemon, duration_s)
         heard, cpu_s = subscriber.heard(), _cpu_s(process) - cpu_s
         lasted_s = seconds(monotonic_ns() - start_ns)
         health = subscriber.health()
-    return _figures(first, started_ns, heard, lasted_s, health, cpu_s, rss, cameras)
+        pictures = watcher.pictures if watcher else 0
+    return _figures(first, started_ns, heard, lasted_s, health, cpu_s, rss, cameras, pictures)
 
 
 def _figures(
     first: Heard, started_ns: int, heard: Sequence[Heard], lasted_s: float, health: Health,
-    cpu_s: float, rss: Floats, cameras: int,
+    cpu_s: float, rss: Floats, cameras: int, pictures: int,
 ) -> LiveFigures:  # fmt: skip
     n = len(heard)
     if n < 2:
@@ -125,14 +145,17 @@ def _figures(
         rss_slope_mb_per_min=(
             float(np.polyfit(settled[:, 0], settled[:, 1], 1)[0]) if len(settled) > 1 else 0.0
         ),
+        pictures_per_s=pictures / lasted_s,
     )
 
 
 @contextmanager
-def _running(command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
+def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A daemon, asked to end on leaving. What it says on stderr is told when it ends by itself."""
+    env = {name: value for name, value in os.environ.items() if name != "RUNTIME_DIRECTORY"}
+    env["XDG_RUNTIME_DIR"] = str(runtime_dir)
     with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said)
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said, env=env)
         try:
             yield process
             if process.poll() is not None:

@@ -101,5 +101,6 @@ def live_table(name: str, live: LiveFigures) -> str:
         ("resident memory, MB", number(live.rss_mb, 0)),
         ("trend of memory, MB/min", number(live.rss_slope_mb_per_min, 2)),
         ("start to first published frame, s", number(live.start_s, 2)),
+        ("pictures of the page per second", number(live.pictures_per_s, 1)),
     )
     return table((f"{name}, live for {live.seconds:.0f} s", ""), rows)

@@ -9,7 +9,7 @@ from mocapd.errors import ConfigError
 from mocapd.evaluate.bench import StepFigures, bench_tracker
 from mocapd.evaluate.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench_input import BenchInput
-from mocapd.evaluate.bench_live import LiveFigures, bench_live
+from mocapd.evaluate.bench_live import LiveFigures, Watching, bench_live
 from mocapd.tracker_setup import Progress, build_tracker, with_cache
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TRACKERS
@@ -53,8 +53,11 @@ class Bench:
             found.endurance[name] = endure(tracker, self.recording, minutes, tell)
         return found
 
-    def live(self, command: Sequence[str], duration_s: float) -> Findings:
-        """Run the daemon for so long [s] with each tracker; see `bench_live` for the command.
+    def live(
+        self, command: Sequence[str], duration_s: float, watching: Watching | None = None
+    ) -> Findings:
+        """Run the daemon for so long [s] with each tracker; see `bench_live` for the command and
+        for who is watching.
 
         Each tracker is built and stepped here first, so that the daemon finds its caches warm.
         Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
@@ -66,7 +69,10 @@ class Bench:
                 tracker.step(one)
             self.progress(f"running the daemon with {name} for {duration_s:.0f} s", 0, 1)
             found.live[name] = bench_live(
-                (*command, "--tracker", name), len(rig.cameras) if rig else 0, duration_s
+                (*command, "--tracker", name),
+                len(rig.cameras) if rig else 0,
+                duration_s,
+                watching,
             )
         return found
 

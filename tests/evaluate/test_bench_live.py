@@ -27,7 +27,7 @@ t_s = 0.0
 def test_a_daemon_is_run_and_seen_from_outside(clean_env: dict[str, str], tmp_path: Path) -> None:
     scenario = tmp_path / "small.toml"
     scenario.write_text(SCENARIO)
-    words = ("--tracker", "canned", "--live", "--seconds", "3", "--json")
+    words = ("--tracker", "canned", "--live", "--watched", "--seconds", "3", "--json")
     outcome = mocapd(clean_env, "bench", "--capture", f"sim:{scenario}", *words)
     assert outcome.code == 0, outcome.err
     seen = json.loads(outcome.out)["canned"]
@@ -38,6 +38,7 @@ def test_a_daemon_is_run_and_seen_from_outside(clean_env: dict[str, str], tmp_pa
     assert seen["live"] == 1.0
     assert seen["start_s"] > 0.0
     assert seen["cpu_share"] > 0.0
+    assert seen["pictures_per_s"] > 2.0  # somebody looked at the page
     assert seen["rss_mb"] > 20.0
 
 

@@ -1,0 +1,96 @@
+"""What all WebSockets of the page share."""
+
+import asyncio
+from collections.abc import Awaitable, Coroutine, Iterable, Iterator
+from contextlib import suppress
+from typing import TypeVar
+
+import msgspec
+import numpy as np
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+T = TypeVar("T")
+
+LONGEST_MESSAGE = 8 << 20  # strokes come as PNG in base64 [bytes]
+_WS_BAD_DATA = 1007
+_WS_GONE = 1006
+MOST_HZ = 15.0  # how often anything is sent to a page
+
+
+class BadMessageError(Exception):
+    """A page said something that is not understood: one of another version, or no page at all."""
+
+
+async def received(socket: WebSocket) -> str | bytes:
+    """The next message, text or binary. Raises WebSocketDisconnect."""
+    message = await socket.receive()
+    if message["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect(message.get("code", 1005))
+    text: str | None = message.get("text")
+    data: bytes = message.get("bytes") or b""
+    return text if text is not None else data
+
+
+async def understood(socket: WebSocket, kind: type[T]) -> T:
+    """The next message as `kind`. Raises WebSocketDisconnect or BadMessageError."""
+    try:
+        return msgspec.json.decode(await received(socket), type=kind)
+    except msgspec.DecodeError as error:
+        raise BadMessageError(str(error)) from error
+
+
+async def send_json(socket: WebSocket, message: object) -> None:
+    """Send a message as text; see `as_json`. Raises WebSocketDisconnect."""
+    await _sent(socket.send_text(as_json(message).decode()))
+
+
+async def send_bytes(socket: WebSocket, message: bytes) -> None:
+    """Send a binary message. Raises WebSocketDisconnect."""
+    await _sent(socket.send_bytes(message))
+
+
+async def _sent(sending: Awaitable[None]) -> None:
+    """A socket may be closed already, by another job of ours or by uvicorn for a message that is too
+    long; both libraries call a message after that a mistake. It is a page that has left."""
+    try:
+        await sending
+    except RuntimeError as closed:
+        raise WebSocketDisconnect(_WS_GONE) from closed
+
+
+def as_json(message: object) -> bytes:
+    """JSON; NaN becomes null. Numbers may be numpy's: steps and metrics compute with them."""
+    return msgspec.json.encode(message, enc_hook=_plain)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"a {type(value).__name__} is no JSON")
+
+
+async def serve(socket: WebSocket, *jobs: Coroutine[object, object, None]) -> None:
+    """Accept, and run these until the first ends, mostly because the browser has left."""
+    await socket.accept()
+    tasks = [asyncio.ensure_future(job) for job in jobs]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        ended = await asyncio.gather(*tasks, return_exceptions=True)
+    for error in _leaves(ended):
+        if isinstance(error, BadMessageError):
+            # only now: nothing may be sent any more by the other jobs
+            with suppress(WebSocketDisconnect):
+                await _sent(socket.close(_WS_BAD_DATA, str(error)[:100]))
+        elif not isinstance(error, WebSocketDisconnect | asyncio.CancelledError):
+            raise error
+
+
+def _leaves(ended: Iterable[BaseException | None]) -> Iterator[BaseException]:
+    for one in ended:
+        if isinstance(one, BaseExceptionGroup):
+            yield from _leaves(one.exceptions)
+        elif one is not None:
+            yield one

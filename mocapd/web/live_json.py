@@ -1,0 +1,81 @@
+"""What the live view is told, as JSON: where things are, the body, and how everything fares."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+
+import numpy as np
+
+from mocapd.daemon import Snapshot
+from mocapd.geometry.cameras import centre, rays
+from mocapd.types import BodyState, Camera, Rig, Skeleton
+
+FRUSTUM_M = 0.35  # how long the cameras are drawn [m]
+
+
+def scene_json(
+    names: tuple[str, ...], rig: Rig | None, skeleton: Skeleton | None
+) -> dict[str, object]:
+    """What seldom changes. names: of the pictures; cameras: of the rig, with centre and the four
+    corners of what they see [m, world]; joints and parents: the skeleton's."""
+    return {
+        "kind": "scene",
+        "names": list(names),
+        "cameras": [_camera_json(camera) for camera in (rig.cameras if rig else ())],
+        "joints": list(skeleton.names) if skeleton else [],
+        "parents": skeleton.parents.tolist() if skeleton else [],
+    }
+
+
+def _camera_json(camera: Camera) -> dict[str, object]:
+    w, h = camera.size_px
+    corners_px = np.array([[0, 0], [w - 1, 0], [w - 1, h - 1], [0, h - 1]], dtype=float)
+    _, directions = rays(camera, corners_px)
+    corners_m = centre(camera) + FRUSTUM_M * directions
+    return {
+        "name": camera.name,
+        "centre_m": np.round(centre(camera), 3).tolist(),
+        "corners_m": np.round(corners_m, 3).tolist(),
+    }
+
+
+def body_json(body: BodyState) -> dict[str, object]:
+    """The body now; joints_m [m, world] is null when it is lost."""
+    return {
+        "kind": "body",
+        "tracking": body.tracking.value,
+        "tracker": body.tracker,
+        "joints_m": np.round(body.joints_m, 3).tolist() if body.joints_m is not None else None,
+        "confidence": np.round(body.confidence, 2).tolist(),
+    }
+
+
+def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
+    """How everything fares; `figures` is null when nothing tracks."""
+    if snapshot is None:
+        return {"kind": "figures", "figures": None}
+    metrics = snapshot.metrics
+    figures: Mapping[str, object] = {
+        "tracker": metrics.tracker,
+        "tracking": metrics.tracking.value,
+        "rate_hz": metrics.rate_hz,
+        "published": metrics.published,
+        "sets_made": metrics.sets_made,
+        "sets_dropped": metrics.sets_dropped,
+        "latency_ms": asdict(metrics.latency_ms),
+        "step_ms": asdict(metrics.step_ms),
+        "spread_ms": asdict(metrics.spread_ms),
+        "cameras": [
+            {
+                "name": name,
+                "state": status.state.value,
+                "reason": status.reason,
+                "fps_hz": status.fps_hz,
+                "frames": status.frames,
+                "torn": status.torn,
+                "reopens": status.reopens,
+            }
+            for name, status in snapshot.cameras.items()
+        ],
+        "outputs": [{"name": name, **asdict(one)} for name, one in snapshot.outputs.items()],
+    }
+    return {"kind": "figures", "figures": figures}

@@ -1,0 +1,172 @@
+// The live view: every camera, the body in 3D, how quick everything is, and who listens.
+
+import { Socket } from "./link.js";
+import { Plot } from "./plots.js";
+import { StickFigure } from "./stick_figure.js";
+
+const TRACKING = {
+  live: ["Tracking", "done"],
+  coasting: ["Lost sight, guessing on", "working"],
+  lost: ["Nobody is seen", "waiting"],
+};
+const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
+
+export class Live {
+  constructor(root) {
+    this.root = root;
+    root.replaceChildren();
+    const heading = make(root, "h1", "", "Live view");
+    heading.id = "live-title";
+    const head = make(root, "p", "step-head");
+    this.tracking = make(head, "span", "state");
+    this.tracking.setAttribute("role", "status");
+    this.tracking.id = "tracking";
+    this.summary = make(head, "span", "summary");
+    const stage = make(root, "div", "stage");
+    this.pictures = make(stage, "div", "cameras");
+    this.figure = new StickFigure(make(stage, "div", "figure-3d"));
+    const plots = make(root, "div", "plots");
+    this.plots = [
+      new Plot(plots, "Rate", "Hz", [{ name: "poses", style: "plot-a" }]),
+      new Plot(plots, "Latency", "ms", [
+        { name: "median", style: "plot-a" },
+        { name: "95 %", style: "plot-b" },
+      ]),
+    ];
+    make(root, "h2", "", "Cameras");
+    this.cameras = table(root, [
+      "Camera",
+      "State",
+      "Rate",
+      "Frames",
+      "Damaged",
+      "Reopened",
+      "Why",
+    ]);
+    this.cameras.id = "live-cameras";
+    make(root, "h2", "", "Who listens");
+    this.outputs = table(root, ["Output", "Listeners", "Sent", "Refused", "Details"]);
+    this.outputs.id = "live-outputs";
+    this.socket = new Socket(
+      "/live",
+      (event) => this.take(JSON.parse(event.data)),
+      (state) => state === "open" && this.watch(),
+    );
+    this.watch = () => this.socket?.send({ watch: document.visibilityState === "visible" });
+    document.addEventListener("visibilitychange", this.watch);
+  }
+
+  take(message) {
+    if (message.kind === "scene") this.scene(message);
+    else if (message.kind === "body") this.figure.setBody(message);
+    else this.figures(message.figures);
+  }
+
+  scene(scene) {
+    this.figure.setScene(scene);
+    const shown = [...this.pictures.querySelectorAll("camera-picture")];
+    if (shown.map((one) => one.getAttribute("camera")).join("\n") === scene.names.join("\n")) return;
+    this.pictures.replaceChildren();
+    for (const name of scene.names) {
+      const figure = make(this.pictures, "figure", "camera");
+      make(figure, "camera-picture").setAttribute("camera", name);
+      make(figure, "figcaption", "", name);
+    }
+  }
+
+  figures(figures) {
+    if (figures === null) {
+      this.state("Nothing is tracked now", "waiting", "");
+      this.figure.setBody(null);
+      return;
+    }
+    const latency = figures.latency_ms;
+    this.state(
+      ...(TRACKING[figures.tracking] ?? [figures.tracking, "waiting"]),
+      `tracker ${figures.tracker || "–"}, ${number(figures.rate_hz)} poses a second, ` +
+        `${number(latency.median)} ms from light to output, step ${number(figures.step_ms.median)} ms, ` +
+        `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped`,
+    );
+    const now_s = performance.now() / 1000;
+    this.plots[0].add(now_s, [figures.rate_hz]);
+    this.plots[1].add(now_s, [latency.median, latency.p95]);
+    rows(
+      this.cameras,
+      figures.cameras.map((one) => [
+        one.name,
+        { text: one.state, look: `state ${CAMERA_STATES[one.state] ?? ""}` },
+        `${number(one.fps_hz)} Hz`,
+        String(one.frames),
+        String(one.torn),
+        String(one.reopens),
+        one.reason,
+      ]),
+    );
+    rows(
+      this.outputs,
+      figures.outputs.map((one) => [
+        one.name,
+        one.listeners < 0 ? "unknown" : String(one.listeners),
+        String(one.sent),
+        String(one.refused),
+        one.detail,
+      ]),
+    );
+  }
+
+  state(text, look, summary) {
+    if (this.tracking.textContent !== text) this.tracking.textContent = text;
+    this.tracking.className = `state ${look}`;
+    this.summary.textContent = summary;
+  }
+
+  destroy() {
+    document.removeEventListener("visibilitychange", this.watch);
+    this.socket.close();
+    this.figure.destroy();
+    for (const plot of this.plots) plot.destroy();
+    this.root.replaceChildren();
+  }
+}
+
+function number(value) {
+  return value === null || value === undefined ? "–" : value.toFixed(1);
+}
+
+function make(parent, tag, look = "", text = "") {
+  const made = document.createElement(tag);
+  if (look) made.className = look;
+  made.textContent = text;
+  parent.append(made);
+  return made;
+}
+
+function table(root, heads) {
+  const place = make(root, "div", "table-place"); // scrolls by itself on a narrow screen
+  place.tabIndex = 0;
+  const made = make(place, "table");
+  const head = make(make(made, "thead"), "tr");
+  for (const one of heads) make(head, "th", "", one).scope = "col";
+  make(made, "tbody");
+  return made;
+}
+
+/** Fills a table; cells are texts or {text, look}, the first of a row is its head. */
+function rows(of, all) {
+  const body = of.tBodies[0];
+  while (body.rows.length > all.length) body.deleteRow(-1);
+  all.forEach((cells, i) => {
+    const row = body.rows[i] ?? body.insertRow();
+    cells.forEach((cell, j) => {
+      if (!row.cells[j]) row.append(document.createElement(j === 0 ? "th" : "td"));
+      const { text, look = "" } = typeof cell === "string" ? { text: cell } : cell;
+      let at = row.cells[j];
+      if (j === 0) at.scope = "row";
+      if (look) {
+        at = at.firstElementChild ?? make(at, "span");
+        at.className = look;
+      }
+      if (at.textContent !== text) at.textContent = text;
+    });
+  });
+}

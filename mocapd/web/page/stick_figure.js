@@ -1,0 +1,204 @@
+// The body in 3D on the floor of the play area, with the cameras. World: +Y up, metres.
+// Turned by dragging (mouse, pen, one finger) and by the arrow keys; nearer by wheel, two fingers, + and -.
+
+const FLOOR_M = 2; // half of the grid
+const LOOK_AT_M = [0, 0.9, 0];
+const FIELD_OF_VIEW = 0.75; // rad
+const KEY_TURN = 0.12; // rad
+const NEAREST_M = 1.5;
+const FARTHEST_M = 20;
+const SURE = 0.35; // as wizard/bone_shapes.py: joints of less confidence are drawn as guesses
+
+export class StickFigure {
+  constructor(root) {
+    this.canvas = document.createElement("canvas");
+    this.canvas.className = "stick-figure";
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute(
+      "aria-label",
+      "The body in 3D. Arrow keys turn it, plus and minus bring it nearer or farther.",
+    );
+    root.append(this.canvas);
+    this.turn = 0.5; // rad about the vertical; 0 looks at the person's front
+    this.tilt = 0.3; // rad above the horizon
+    this.distance_m = 5.5;
+    this.moved = false; // by a person
+    this.scene = { cameras: [], parents: [] };
+    this.body = null;
+    this.pointers = new Map();
+    for (const type of ["pointerdown", "pointermove", "pointerup", "pointercancel"]) {
+      this.canvas.addEventListener(type, (event) => this.pointer(event));
+    }
+    this.canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    this.resized = new ResizeObserver(() => this.draw());
+    this.resized.observe(this.canvas);
+  }
+
+  setScene(scene) {
+    this.scene = scene;
+    if (!this.moved) this.distance_m = this.distanceToSeeAll();
+    this.draw();
+  }
+
+  /** So far away [m] that every camera is in the picture. */
+  distanceToSeeAll() {
+    const reach = this.scene.cameras.map(({ centre_m: c }) => Math.hypot(c[0], c[1] - LOOK_AT_M[1], c[2]));
+    return Math.min(FARTHEST_M, Math.max(4.5, 2.4 * Math.max(0, ...reach)));
+  }
+
+  setBody(body) {
+    this.body = body;
+    this.draw();
+  }
+
+  pointer(event) {
+    if (event.type === "pointerdown") {
+      this.canvas.setPointerCapture(event.pointerId);
+      this.pointers.set(event.pointerId, event);
+      return;
+    }
+    const before = this.pointers.get(event.pointerId);
+    if (!before) return;
+    if (event.type !== "pointermove") {
+      this.pointers.delete(event.pointerId);
+      return;
+    }
+    const others = [...this.pointers.values()].filter((one) => one.pointerId !== event.pointerId);
+    this.pointers.set(event.pointerId, event);
+    if (others.length > 0) {
+      const from = apart(before, others[0]);
+      if (from > 0) this.nearer(from / Math.max(1, apart(event, others[0])));
+    } else {
+      this.orbit((event.clientX - before.clientX) * -0.008, (event.clientY - before.clientY) * 0.008);
+    }
+  }
+
+  wheel(event) {
+    event.preventDefault();
+    this.nearer(Math.exp(event.deltaY * 0.001));
+  }
+
+  key(event) {
+    const turns = {
+      ArrowLeft: [KEY_TURN, 0],
+      ArrowRight: [-KEY_TURN, 0],
+      ArrowUp: [0, KEY_TURN],
+      ArrowDown: [0, -KEY_TURN],
+    };
+    if (turns[event.key]) this.orbit(...turns[event.key]);
+    else if (event.key === "+" || event.key === "=") this.nearer(1 / 1.15);
+    else if (event.key === "-") this.nearer(1.15);
+    else return;
+    event.preventDefault();
+  }
+
+  orbit(turn, tilt) {
+    this.turn += turn;
+    this.tilt = Math.min(1.5, Math.max(-0.1, this.tilt + tilt));
+    this.draw();
+  }
+
+  nearer(factor) {
+    this.moved = true;
+    this.distance_m = Math.min(FARTHEST_M, Math.max(NEAREST_M, this.distance_m * factor));
+    this.draw();
+  }
+
+  draw() {
+    const unit = window.devicePixelRatio || 1;
+    const width = Math.round(this.canvas.clientWidth * unit);
+    const height = Math.round(this.canvas.clientHeight * unit);
+    if (width === 0 || height === 0) return;
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    const context = this.canvas.getContext("2d");
+    context.clearRect(0, 0, width, height);
+    context.lineCap = "round";
+    const css = getComputedStyle(this.canvas);
+    const colour = (name) => css.getPropertyValue(`--${name}`).trim();
+    const pen = { context, unit, see: this.eye(width, height) };
+    drawFloor(pen, colour("line"));
+    for (const camera of this.scene.cameras) drawCamera(pen, camera, colour("text-soft"));
+    if (this.body?.joints_m) drawBody(pen, this.body, this.scene.parents, colour);
+  }
+
+  /** From world points [m] to canvas pixels; null before the eye's near plane. */
+  eye(width, height) {
+    const focal = height / 2 / Math.tan(FIELD_OF_VIEW / 2);
+    const [cosTurn, sinTurn] = [Math.cos(this.turn), Math.sin(this.turn)];
+    const [cosTilt, sinTilt] = [Math.cos(this.tilt), Math.sin(this.tilt)];
+    return ([px, py, pz]) => {
+      const [x, y, z] = [px - LOOK_AT_M[0], py - LOOK_AT_M[1], pz - LOOK_AT_M[2]];
+      const right = x * cosTurn - z * sinTurn;
+      const towards = x * sinTurn + z * cosTurn;
+      const up = y * cosTilt - towards * sinTilt;
+      const depth = this.distance_m - (y * sinTilt + towards * cosTilt);
+      if (depth < 0.05) return null;
+      return [width / 2 + (right * focal) / depth, height / 2 - (up * focal) / depth, focal / depth];
+    };
+  }
+
+  destroy() {
+    this.resized.disconnect();
+    this.canvas.remove();
+  }
+}
+
+function apart(one, other) {
+  return Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
+}
+
+function drawFloor(pen, colour) {
+  for (let i = -FLOOR_M; i <= FLOOR_M; i += 0.5) {
+    const width = i === 0 ? 2 : 1;
+    // in pieces, so that one end behind the eye does not take the whole line away
+    for (let j = -FLOOR_M; j < FLOOR_M; j += 0.5) {
+      line(pen, [i, 0, j], [i, 0, j + 0.5], colour, width);
+      line(pen, [j, 0, i], [j + 0.5, 0, i], colour, width);
+    }
+  }
+}
+
+function drawCamera(pen, camera, colour) {
+  camera.corners_m.forEach((corner, i) => {
+    line(pen, camera.centre_m, corner, colour, 1.5);
+    line(pen, corner, camera.corners_m[(i + 1) % 4], colour, 1.5);
+  });
+  const at = pen.see(camera.centre_m);
+  if (!at) return;
+  pen.context.fillStyle = colour;
+  pen.context.font = `${13 * pen.unit}px system-ui, sans-serif`;
+  pen.context.fillText(camera.name, at[0] + 6 * pen.unit, at[1] - 6 * pen.unit);
+}
+
+function drawBody(pen, body, parents, colour) {
+  const sure = body.tracking === "live" ? colour("shape-bone") : colour("shape-hint");
+  body.joints_m.forEach((joint, i) => {
+    const parent = parents[i];
+    line(pen, [joint[0], 0, joint[2]], [joint[0], 0, joint[2]], colour("line"), 6); // its shadow
+    if (parent === undefined || parent < 0) return;
+    const known = body.confidence[i] >= SURE;
+    line(pen, body.joints_m[parent], joint, known ? sure : colour("shape-hint"), known ? 5 : 2.5);
+  });
+  const head = body.joints_m[parents.length > 5 ? 5 : 0]; // VRM order: the head is the sixth
+  const at = pen.see([head[0], head[1] + 0.09, head[2]]);
+  if (!at) return;
+  pen.context.strokeStyle = sure;
+  pen.context.lineWidth = 4 * pen.unit;
+  pen.context.beginPath();
+  pen.context.arc(at[0], at[1], 0.1 * at[2], 0, 2 * Math.PI);
+  pen.context.stroke();
+}
+
+function line(pen, from, to, colour, width) {
+  const [a, b] = [pen.see(from), pen.see(to)];
+  if (!a || !b) return;
+  pen.context.strokeStyle = colour;
+  pen.context.lineWidth = width * pen.unit;
+  pen.context.beginPath();
+  pen.context.moveTo(a[0], a[1]);
+  pen.context.lineTo(b[0], b[1]);
+  pen.context.stroke();
+}

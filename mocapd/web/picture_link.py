@@ -1,0 +1,116 @@
+"""The WebSocket `/pictures`: the page asks for each picture, so a slow page is never flooded.
+
+Request, JSON: {camera, width, after}: width in px of the screen; after: `seq` of the last picture it
+got, null at first. Answer, one binary message: uint32 (little-endian) length of the header, the
+header {camera, seq, t_ns, size_px, shapes} as JSON, the JPEG. No new frame within a second: `seq` is
+null, `why` says the reason, and there is no JPEG.
+"""
+
+import asyncio
+from collections.abc import Iterable
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+from starlette.websockets import WebSocket
+
+from mocapd.web.encoder import Picture, PictureEncoder
+from mocapd.web.host import Host
+from mocapd.web.links import BadMessageError, as_json, send_bytes, serve, understood
+from mocapd.wizard.bone_shapes import bone_shapes
+from mocapd.wizard.step import Shape, StepName
+
+DEFAULT_WIDTH_PX = 480
+BODY_WAIT_S = 0.08  # the pose of a frame comes a little after the frame [s]
+SAME_MOMENT_NS = 8_000_000  # a body this close to a frame is the frame's
+_LOOK_EVERY_S = 0.008
+MOST_UNDER_WAY = 32  # of one page
+
+
+class Request(msgspec.Struct, frozen=True):
+    """What a page asks for."""
+
+    camera: str
+    width: Annotated[int, Meta(ge=1, le=8192)] = DEFAULT_WIDTH_PX
+    after: int | None = None
+
+
+async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -> None:
+    """Answer requests until the page leaves. Several may be under way, one for each camera."""
+
+    async def answers() -> None:
+        under_way = 0
+
+        def ended(_task: asyncio.Task[None]) -> None:
+            nonlocal under_way
+            under_way -= 1
+
+        async with asyncio.TaskGroup() as group:
+            while True:
+                request = await understood(socket, Request)
+                if under_way >= MOST_UNDER_WAY:
+                    raise BadMessageError("more requests than cameras")
+                under_way += 1
+                group.create_task(_answer(socket, host, encoder, request)).add_done_callback(ended)
+
+    await serve(socket, answers())
+
+
+async def _answer(socket: WebSocket, host: Host, encoder: PictureEncoder, request: Request) -> None:
+    picture = await encoder.picture(request.camera, request.width, request.after)
+    if picture is None:
+        hub = host.hub
+        why = "no new picture" if hub and request.camera in hub.names else "no such camera now"
+        await send_bytes(socket, message({"camera": request.camera, "seq": None, "why": why}, b""))
+        return
+    header = {
+        "camera": picture.camera,
+        "seq": picture.seq,
+        "t_ns": picture.t_ns,
+        "size_px": picture.size_px,
+        "shapes": shapes_json(await shapes_over(host, picture)),
+    }
+    await send_bytes(socket, message(header, picture.jpeg))
+
+
+async def shapes_over(host: Host, picture: Picture) -> tuple[Shape, ...]:
+    """The setup's overlays while one is on; else, and in its step Check, the body at the moment of the
+    picture."""
+    wizard = host.wizard
+    if wizard is not None:
+        shown = wizard.view()
+        if shown.step is not StepName.CHECK:
+            return shown.view.overlays.get(picture.camera, ())
+    rig = host.rig
+    cameras = {camera.name: camera for camera in rig.cameras} if rig is not None else {}
+    if picture.camera not in cameras:
+        return ()
+    loop = asyncio.get_running_loop()
+    until_s = loop.time() + BODY_WAIT_S
+    while True:
+        found = host.body()
+        if found is None:
+            return ()
+        body, skeleton = found
+        if body.t_ns >= picture.t_ns - SAME_MOMENT_NS or loop.time() > until_s:
+            return bone_shapes(cameras[picture.camera], body, skeleton)
+        await asyncio.sleep(_LOOK_EVERY_S)
+
+
+def message(header: object, jpeg: bytes) -> bytes:
+    """One binary message; see the module's docstring."""
+    encoded = as_json(header)
+    return len(encoded).to_bytes(4, "little") + encoded + jpeg
+
+
+def shapes_json(shapes: Iterable[Shape]) -> list[dict[str, object]]:
+    """As the page takes them; a tenth of a pixel is enough."""
+    return [
+        {
+            "kind": shape.kind,
+            "at_px": [(round(float(x), 1), round(float(y), 1)) for x, y in shape.at_px],
+            "style": shape.style,
+            "text": shape.text,
+        }
+        for shape in shapes
+    ]

@@ -1,0 +1,167 @@
+"""The web server: uvicorn in a thread of its own, on 127.0.0.1 only."""
+
+import asyncio
+import secrets
+import socket
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import TracebackType
+
+import uvicorn
+from starlette.requests import ClientDisconnect
+from starlette.types import ASGIApp, Receive, Scope, Send
+from uvicorn.protocols.utils import ClientDisconnected
+
+from mocapd.errors import UnavailableError
+from mocapd.outputs.socket_owners import holder_of
+from mocapd.web.access import TOKEN, Access
+from mocapd.web.app import make_app
+from mocapd.web.encoder import PictureEncoder
+from mocapd.web.host import Host
+from mocapd.web.links import LONGEST_MESSAGE
+from mocapd.web.runtime_file import announce, withdraw
+from mocapd.web_params import Params
+
+ADDRESS = "127.0.0.1"
+STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
+
+
+class WebServer:
+    """Serves the page from `start` to `stop`, or as a context manager.
+
+    `died` is called, in the server's thread, with whatever unexpected happened there. `announce_at`:
+    the file where the URL is said (see runtime_file), if it shall be. `encoder` counts its work.
+    """
+
+    def __init__(
+        self,
+        host: Host,
+        params: Params,
+        died: Callable[[BaseException], None],
+        announce_at: Path | None = None,
+    ) -> None:
+        self._host, self._port, self._died = host, params.port, died
+        self._announce_at = announce_at
+        self._token = secrets.token_urlsafe(24)
+        self._executor = ThreadPoolExecutor(1, thread_name_prefix="web-encode")
+        self.encoder = PictureEncoder(lambda: host.hub, self._executor)
+        self._server: uvicorn.Server | None = None
+        self._thread: threading.Thread | None = None
+
+    def __enter__(self) -> "WebServer":
+        self.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    @property
+    def port(self) -> int:
+        """The TCP port; valid once started."""
+        return self._port
+
+    @property
+    def url(self) -> str:
+        """Where the page is, with the token of this start; valid once started."""
+        return f"http://{ADDRESS}:{self._port}/?{TOKEN}={self._token}"
+
+    def start(self) -> None:
+        """Returns as soon as the page can be asked for.
+
+        Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced.
+        """
+        listening = _listen(self._port)
+        self._port = listening.getsockname()[1]
+        app = Access(make_app(self._host, self.encoder), self._port, self._token)
+        config = uvicorn.Config(
+            _Deadly(app, self._died),
+            loop="asyncio",
+            http="h11",
+            lifespan="off",
+            log_config=None,
+            log_level="warning",
+            access_log=False,  # URLs hold the token
+            server_header=False,
+            proxy_headers=False,
+            ws_max_size=LONGEST_MESSAGE,
+            ws_ping_interval=None,  # on one machine the system tells when a browser has gone
+            ws_per_message_deflate=False,  # JPEG does not get any smaller
+            timeout_graceful_shutdown=1,
+        )
+        self._server = uvicorn.Server(config)
+        try:
+            if self._announce_at is not None:
+                announce(self._announce_at, self.url)
+        except BaseException:
+            listening.close()
+            raise
+        # a daemon thread: a browser that does not read must not keep the process from ending
+        self._thread = threading.Thread(
+            target=self._run, args=(self._server, listening), name="web", daemon=True
+        )
+        self._thread.start()
+
+    def let_go(self) -> None:
+        """First pass of stopping: no new page, the open ones are told; never blocks."""
+        if self._server is not None:
+            self._server.should_exit = True
+
+    def stop(self, timeout_s: float = STOP_S) -> bool:
+        """Let go and join; False when something still blocks the thread after `timeout_s` [s]."""
+        self.let_go()
+        if self._announce_at is not None:
+            withdraw(self._announce_at)
+        if self._thread is None:
+            return True
+        self._thread.join(timeout_s)
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        return not self._thread.is_alive()
+
+    def _run(self, server: uvicorn.Server, listening: socket.socket) -> None:
+        try:
+            # in this thread uvicorn leaves the signals alone
+            server.run(sockets=[listening])
+        except BaseException as error:
+            self._died(error)
+            raise
+
+
+class _Deadly:
+    """ASGI middleware: uvicorn would log what nobody expected, and go on."""
+
+    def __init__(self, app: ASGIApp, died: Callable[[BaseException], None]) -> None:
+        self._app, self._died = app, died
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        try:
+            await self._app(scope, receive, send)
+        except (asyncio.CancelledError, ClientDisconnect, ClientDisconnected):  # the page has left
+            raise
+        except BaseException as error:
+            self._died(error)
+            raise
+
+
+def _listen(port: int) -> socket.socket:
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind((ADDRESS, port))
+        listening.listen(64)
+    except OSError as error:
+        listening.close()
+        holder = holder_of(port) if port else ""
+        raise UnavailableError(
+            f"port {port} cannot be had: {error.strerror}"
+            + (f", {holder} has it" if holder else ""),
+            "web.port",
+            "choose another port, or 0 for any free one",
+        ) from error
+    return listening

@@ -1,0 +1,27 @@
+"""What other processes ask of a running page: is it alive, begin a setup."""
+
+import msgspec
+
+
+class Status(msgspec.Struct, frozen=True):
+    """GET /status. setup: the step that is shown; None without a setup. tracks: whether bodies come."""
+
+    version: str
+    pid: int
+    cameras: tuple[str, ...]
+    setup: str | None
+    tracks: bool
+
+
+class SetupRequest(msgspec.Struct, frozen=True):
+    """POST /setup: begin one, or go on with the one there is; `step`: shown at once."""
+
+    step: str | None = None
+
+
+class SetupAnswer(msgspec.Struct, frozen=True):
+    """Its answer: empty when the setup is going on, else (503) why it cannot be now."""
+
+    what: str = ""
+    where: str = ""
+    fix: str = ""

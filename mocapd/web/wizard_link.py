@@ -1,0 +1,117 @@
+"""The WebSocket `/ws`: what the setup shows goes to the page when it changes, commands come back.
+
+To the page, JSON: {setup: false, cameras, driver, refused} when no setup is going on, else {setup:
+true, serial, step, steps, done, view: {state, sentence, progress, problems, details}, refused, saved,
+ended, driver, cameras}. From the page: {verb, args}; `take_over` is answered here, `begin` begins a
+setup, the rest is the wizard's.
+"""
+
+import asyncio
+from dataclasses import asdict
+
+import msgspec
+from starlette.websockets import WebSocket
+
+from mocapd.errors import UnavailableError
+from mocapd.web.host import Host
+from mocapd.web.links import MOST_HZ, as_json, received, send_json, serve
+from mocapd.web.seat import Seat
+from mocapd.wizard.step import Problem
+from mocapd.wizard.wizard import WizardView
+
+NOT_THE_DRIVER = Problem(
+    "another window leads this setup", "this window", "choose Take over to lead it from here"
+)
+
+
+class Command(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a person did on the page."""
+
+    verb: str
+    args: dict[str, object] = {}
+
+
+class WizardLink:
+    """One browser window."""
+
+    def __init__(self, socket: WebSocket, host: Host, seat: Seat) -> None:
+        self._socket, self._host, self._seat = socket, host, seat
+        self._refused: Problem | None = None  # by us, not by the wizard
+
+    async def run(self) -> None:
+        """Until the window leaves."""
+        self._seat.join(self)
+        try:
+            await serve(self._socket, self._show(), self._obey())
+        finally:
+            self._seat.leave(self, asyncio.get_running_loop().time())
+
+    async def _show(self) -> None:
+        last = b""
+        while True:
+            message = self._message()
+            now = as_json(message | {"serial": 0})  # it grows also when nothing else changes
+            if now != last:
+                last = now
+                await send_json(self._socket, message)
+            await asyncio.sleep(1.0 / MOST_HZ)
+
+    def _message(self) -> dict[str, object]:
+        wizard, hub = self._host.wizard, self._host.hub
+        message: dict[str, object] = {"setup": False}
+        if wizard is not None:
+            message = view_json(wizard.view())
+        message["driver"] = self._seat.drives(self, asyncio.get_running_loop().time())
+        message["cameras"] = list(hub.names) if hub is not None else []
+        if self._refused is not None or wizard is None:
+            message["refused"] = self._refused and asdict(self._refused)
+        return message
+
+    async def _obey(self) -> None:
+        while True:
+            text = await received(self._socket)
+            try:
+                command = msgspec.json.decode(text, type=Command)
+            except msgspec.DecodeError as error:
+                self._refused = Problem(f"not understood: {error}", "the page", "reload the page")
+                continue
+            self._refused = None
+            await self._take(command)
+
+    async def _take(self, command: Command) -> None:
+        begins = command.verb == "begin" and self._host.wizard is None
+        if begins or command.verb == "take_over":
+            self._seat.take_over(self)
+        if command.verb == "take_over":
+            return
+        if not self._seat.drives(self, asyncio.get_running_loop().time()):
+            self._refused = NOT_THE_DRIVER
+        elif command.verb == "begin":
+            try:
+                await asyncio.to_thread(self._host.setup)
+            except UnavailableError as error:
+                self._refused = Problem.of(error)
+        elif (wizard := self._host.wizard) is not None:
+            wizard.send(command.verb, command.args)
+
+
+def view_json(shown: WizardView) -> dict[str, object]:
+    """What the page shows of the setup, without what depends on the window."""
+    view = shown.view
+    return {
+        "setup": True,
+        "serial": shown.serial,
+        "step": shown.step.value,
+        "steps": [name.value for name in shown.steps],
+        "done": sorted(name.value for name in shown.done),
+        "view": {
+            "state": view.state.value,
+            "sentence": view.sentence,
+            "progress": view.progress,
+            "problems": [asdict(problem) for problem in view.problems],
+            "details": view.details,
+        },
+        "refused": asdict(shown.refused) if shown.refused is not None else None,
+        "saved": shown.saved,
+        "ended": shown.ended,
+    }

@@ -1,0 +1,137 @@
+"""A host of the page without daemon: cameras whose pictures a test hands in, a body, a step that listens."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from mocapd.body.skeleton import joint_positions, standard_skeleton
+from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.clock import monotonic_ns
+from mocapd.daemon import Snapshot
+from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.outputs.base import SinkStatus
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.metrics import Metrics
+from mocapd.pipeline.rolling import Percentiles
+from mocapd.trackers.canned.tracker import CannedParams, canned_pose
+from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
+from mocapd.wizard.step import Context, Json, Problem, Shape, StepName, StepState, StepView
+from mocapd.wizard.wizard import Wizard
+from tests.geometry.rigs import ring
+
+OVERLAY = Shape("text", ((10.0, 40.0),), "hint", "seen")
+
+
+class ListeningStep:
+    """Keeps what it is told; `bad` does not fit, `long` makes it say as much as its argument asks."""
+
+    name = StepName.CAMERAS
+
+    def __init__(self, context: Context) -> None:
+        self.commands: list[tuple[str, Mapping[str, Json]]] = []
+        self._names = context.hub.names
+
+    def enter(self) -> None:
+        """Nothing to prepare."""
+
+    def tick(self, now_ns: int) -> None:
+        """Nothing to do."""
+
+    def command(self, verb: str, args: Mapping[str, Json]) -> None:
+        if verb == "bad":
+            raise InputError("strokes for 3 of 10 colours", "cam0", "paint the others")
+        self.commands.append((verb, args))
+
+    def job_failed(self, error: MocapdError) -> None:
+        """It has no job."""
+
+    def view(self) -> StepView:
+        return StepView(
+            StepState.WAITING,
+            f"Told {len(self.commands)} times.",
+            0.4,
+            (Problem("too dark", "cam1", "switch on a lamp"),),
+            dict.fromkeys(self._names, (OVERLAY,)),
+            {"lengths": [len(str(args)) for _, args in self.commands], "picture": "strokes/1"},
+            {"strokes/1": b"\x89PNG and so on"},
+        )
+
+    def leave(self) -> None:
+        """Nothing to undo."""
+
+
+class TinyHost:
+    """See web.host.Host. `begun` counts the setups; they are stopped by `stop`."""
+
+    def __init__(self, state_dir: Path, cameras: int = 2) -> None:
+        self.hub: FrameHub | None = FrameHub(f"cam{i}" for i in range(cameras))
+        self.rig: Rig | None = Rig(ring(cameras))
+        self.wizard: Wizard | None = None
+        self.why_not = ""
+        self.begun = 0
+        self.tracks = True
+        self.skeleton = standard_skeleton(1.75)
+        self._state_dir = state_dir
+        self._died: list[BaseException] = []
+
+    def show(self, camera: str, seq: int, t_ns: int | None = None) -> Frame:
+        """Hand in a picture: grey, as bright as `seq`, 640x480."""
+        pixels = np.full((480, 640, 3), seq % 256, dtype=np.uint8)
+        frame = Frame(camera, seq, monotonic_ns() if t_ns is None else t_ns, pixels)
+        assert self.hub is not None
+        self.hub.put(frame)
+        return frame
+
+    def setup(self) -> Wizard:
+        if self.why_not:
+            raise UnavailableError(self.why_not, "cam0", "plug it in")
+        if self.wizard is None:
+            assert self.hub is not None
+            steps = {StepName.CAMERAS: ListeningStep}
+            self.wizard = Wizard(
+                self.hub, steps, dict, self._state_dir, self._state_dir, self._died.append
+            )
+            self.wizard.start()
+            self.begun += 1
+        return self.wizard
+
+    def body(self) -> tuple[BodyState, Skeleton] | None:
+        if not self.tracks:
+            return None
+        now_ns = monotonic_ns()
+        pose = canned_pose(self.skeleton, CannedParams(), now_ns)
+        joints_m = joint_positions(self.skeleton, pose)
+        confidence = np.ones(len(joints_m))
+        confidence[-4:] = 0.1
+        state = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)
+        return state, self.skeleton
+
+    def snapshot(self) -> Snapshot | None:
+        if not self.tracks:
+            return None
+        assert self.hub is not None
+        t_s = monotonic_ns() / 1e9
+        ms = Percentiles(31.0 + 4 * np.sin(t_s / 5), 48.0 + 9 * np.sin(t_s / 3))
+        never = Percentiles(float("nan"), float("nan"))
+        metrics = Metrics(
+            29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}
+        )
+        lost = "/dev/video2: gone -- plug it in again"
+        status = {
+            name: CaptureStatus(
+                name,
+                CaptureState.LOST if i == 1 else CaptureState.LIVE,
+                *(lost if i == 1 else "", 100, 0, 0, 29.9, None),
+            )
+            for i, name in enumerate(self.hub.names)
+        }
+        return Snapshot(
+            metrics, status, {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")}
+        )
+
+    def stop(self) -> None:
+        """End the setup, if one was begun."""
+        if self.wizard is not None:
+            assert self.wizard.stop()
+        assert self._died == []
