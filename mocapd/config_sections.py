@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta
 
+from mocapd import web_params
 from mocapd.capture.controls import Controls
 from mocapd.errors import ConfigError
 from mocapd.outputs import osc_sink, zenoh_config
@@ -37,6 +38,8 @@ class ControlsSection(Controls):
     gain: without a unit
     wb_temperature: [K]
     focus: without a unit
+    dynamic_framerate: whether the camera may lower its rate in dim light
+    power_line_hz: the mains whose flicker the camera filters: 50 or 60, 0 for none
     """
 
 
@@ -118,13 +121,22 @@ class OscSection(osc_sink.Params):
 
 
 @dataclass(frozen=True, slots=True)
+class WebSection(web_params.Params):
+    """See web_params.Params.
+
+    enabled: serve the page with the setup and the live view, to this machine only
+    """
+
+
+@dataclass(frozen=True, slots=True)
 class Config:
     """Everything a user may set.
 
     instance: this daemon's name in the Zenoh keys; empty: the machine's name
-    rig: the calibration of the cameras, a rig file
+    rig: the calibration of the cameras: a rig file, a calibration.toml or a folder with one; without it that of state_dir
     log_level: how much is logged on stderr
     cache_dir: where what can be made again is kept (compiled code, pose database)
+    state_dir: where the calibration is kept that `mocapd calibrate` saves
     camera: the cameras, one [[camera]] section each
     """
 
@@ -134,11 +146,15 @@ class Config:
     cache_dir: Annotated[
         Path, Meta(extra={"default": "$CACHE_DIRECTORY or $XDG_CACHE_HOME/mocapd"})
     ] = field(default_factory=default_cache_dir)
+    state_dir: Annotated[
+        Path, Meta(extra={"default": "$STATE_DIRECTORY or $XDG_STATE_HOME/mocapd"})
+    ] = field(default_factory=default_state_dir)
     camera: tuple[CameraSection, ...] = ()
     tracker: TrackerSection = field(default_factory=TrackerSection)
     smoothing: SmoothingSection = field(default_factory=SmoothingSection)
     zenoh: ZenohSection = field(default_factory=ZenohSection)
     osc: OscSection = field(default_factory=OscSection)
+    web: WebSection = field(default_factory=WebSection)
 
 
 # Set by the top-level key `instance`.

@@ -1,7 +1,7 @@
 """What one run of the daemon works on: cameras, rig and tracker, from the configuration.
 
-Cameras that are all of one capture folder, or all of one simulated scenario, bring rig, stature and
-colours with them; what the configuration gives itself wins.
+The saved calibration gives cameras, rig, wearer and colours. So do cameras that are all of one capture
+folder, or all of one simulated scenario. What the configuration gives itself wins.
 """
 
 import logging
@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.capture.folder import load_folder
 from mocapd.config_sections import CameraSection, Config
@@ -16,6 +17,7 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
 from mocapd.pipeline.rehearsal import rehearse
+from mocapd.saved_session import Saved, calibration_of, cameras_of_calibration
 from mocapd.tracker_setup import (
     Progress,
     build_tracker,
@@ -56,26 +58,46 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
 def open_session(config: Config, progress: Progress) -> Session:
     """Check and prepare everything; `progress` is told while something long is made for the first
     time. Raises ConfigError, InputError or CannotCreateError."""
-    if not config.camera:
+    saved = calibration_of(config)
+    cameras = config.camera or (cameras_of_calibration(saved.tables) if saved else ())
+    if not cameras:
         raise ConfigError(
-            "no camera is configured",
-            "camera",
-            "add [[camera]] with id and source (see `mocapd cameras`), or --camera ID=SOURCE",
+            "no camera is configured, and no calibration is saved",
+            str(config.state_dir),
+            "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
+            "--camera ID=SOURCE",
         )
-    origin = _common_origin(config.camera)
+    config = replace(config, camera=cameras)
+    origin = _common_origin(cameras)
     if origin.startswith(SIM):
-        return _simulated(config, origin, progress)
-    rig, rig_source = (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
-    if rig is None and not origin and len(config.camera) == 1 and entry(config.tracker.name).sees:
-        rig, rig_source = _assumed_rig(config.camera[0]), "assumed"
-    inputs = inputs_of_config(config.tracker, config.camera, rig)
-    if origin:
+        return _simulated(config, origin, saved, progress)
+    rig, rig_source = _given_rig(config, saved)
+    if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
+        rig, rig_source = _assumed_rig(cameras[0]), "assumed"
+    inputs = _own_inputs(config, rig, saved)
+    if origin and saved is None:
         folder = load_folder(Path(origin))
         told = inputs_of_capture(folder, config.tracker.stature_m)
         inputs = _merged(inputs, told)
         rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
-    cameras = camera_inputs(config.camera, rig)
-    return Session(cameras, rig, rig_source, _ready_tracker(config, inputs, progress))
+    return Session(
+        camera_inputs(cameras, rig), rig, rig_source, _ready_tracker(config, inputs, progress)
+    )
+
+
+def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
+    """The rig of the calibration or the rig file, and which file that is."""
+    if saved is not None:
+        return saved.known.rig, str(saved.path)
+    return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
+
+
+def _own_inputs(config: Config, rig: Rig | None, saved: Saved | None) -> TrackerInputs:
+    """What configuration and calibration tell a tracker."""
+    own = inputs_of_config(config.tracker, config.camera, rig)
+    if saved is None:
+        return own
+    return _merged(own, inputs_of_calibration(saved.known, config.tracker.stature_m))
 
 
 def _assumed_rig(camera: CameraSection) -> Rig:
@@ -89,18 +111,22 @@ def _assumed_rig(camera: CameraSection) -> Rig:
     return nominal_rig(camera.id, picture_size(camera))
 
 
-def _simulated(config: Config, source: str, progress: Progress) -> Session:
+def _simulated(config: Config, source: str, saved: Saved | None, progress: Progress) -> Session:
     from mocapd import simulation
 
     film = simulation.open_film(source, config.cache_dir, progress)
-    inputs = _merged(
-        inputs_of_config(config.tracker, config.camera, None),
-        simulation.inputs_of_simulation(film.setup),
-    )
+    if saved is None:
+        rig, rig_source = film.setup.rig, source
+        inputs = _merged(
+            _own_inputs(config, None, None), simulation.inputs_of_simulation(film.setup)
+        )
+    else:
+        rig, rig_source = saved.known.rig, str(saved.path)
+        inputs = _own_inputs(config, rig, saved)
     tracker = _ready_tracker(config, inputs, progress)
     # last, as they begin to play now
     cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, film.setup.rig, source, tracker)
+    return Session(cameras, rig, rig_source, tracker)
 
 
 def _ready_tracker(config: Config, inputs: TrackerInputs, progress: Progress) -> Tracker:

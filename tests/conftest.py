@@ -55,9 +55,14 @@ def clean_env(tmp_path: Path, cache_home: Path) -> dict[str, str]:
 
     What is made once and kept is that user's already, apart from the first who needs it.
     """
+    return environment(tmp_path, cache_home)
+
+
+def environment(folder: Path, cache_home: Path) -> dict[str, str]:
+    """See `clean_env`; the home is made in `folder`."""
     dropped = ("MOCAPD_", "XDG_", "JOURNAL_STREAM", "STATE_DIRECTORY", "CACHE_DIRECTORY")
     env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
-    home = tmp_path / "home"
+    home = folder / "home"
     home.mkdir()
     env |= {"HOME": str(home), "XDG_CACHE_HOME": str(cache_home)}
     return env | {"NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}

@@ -11,6 +11,7 @@ from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_
 if TYPE_CHECKING:
     from mocapd.config import Setting
     from mocapd.config_keys import Key
+    from mocapd.config_sections import Config
 
 
 def add_to(app: typer.Typer) -> None:
@@ -28,7 +29,7 @@ def check_config(
         bool, typer.Option("--markdown", help="The table of all keys for the README.")
     ] = False,
 ) -> None:
-    """Print each setting and where it came from.
+    """Print each setting and where it came from, and the calibration that `mocapd run` would use.
 
     Ends with 78 and one line when something is wrong.
 
@@ -43,6 +44,29 @@ def check_config(
         print(json.dumps({s.key.path: {"value": _plain(s.value), "from": s.origin} for s in rows}))
         return
     _print_table(rows)
+    if not changed:
+        _print_calibration(effective.config)
+
+
+def _print_calibration(config: "Config") -> None:
+    """What it is, as comments below the settings."""
+    from mocapd.saved_session import calibration_of
+
+    saved = calibration_of(config)
+    if saved is None:
+        used = (
+            f"the rig {config.rig}" if config.rig else "none saved (`mocapd calibrate` makes one)"
+        )
+        print(f"# calibration: {used}")
+        return
+    tables = saved.tables
+    told = [f"made {tables.made.when:%Y-%m-%d %H:%M} UTC by {tables.made.by}"]
+    told += [f"{tables.room.rms_px:.2f} px"] if tables.room.rms_px is not None else []
+    told += [f"{tables.room.play_area_cm:.1f} cm"] if tables.room.play_area_cm is not None else []
+    print(f"# calibration: {saved.path} ({', '.join(told)})")
+    for camera in tables.camera:
+        width, height = camera.size_px
+        print(f"#   {camera.id}: {camera.source}, {width}x{height} at {camera.fps_hz:g} Hz")
 
 
 def _print_table(rows: "list[Setting]") -> None:

@@ -1,5 +1,6 @@
 """`mocapd run`"""
 
+import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,6 +10,8 @@ from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_
 
 if TYPE_CHECKING:
     from mocapd.config_sections import Config
+
+_log = logging.getLogger(__name__)
 
 
 def add_to(app: typer.Typer) -> None:
@@ -54,14 +57,31 @@ def run_with(config: "Config", hint: str = "") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
+    from mocapd.cli.daemon_page import DaemonPage
     from mocapd.cli.first_start import prepare_apart
     from mocapd.cli.progress import ProgressBars
-    from mocapd.cli.running import Signals, run_daemon
+    from mocapd.cli.running import Signals, end_despite_work, run_daemon
     from mocapd.daemon import Daemon
     from mocapd.session import open_session
 
     signals = Signals()
     prepare_apart(config)
-    with ProgressBars() as progress:
-        session = open_session(config, progress)
-    return run_daemon(Daemon(config, session), signals, hint)
+    page = DaemonPage(config) if config.web.enabled else None
+    try:
+        while True:
+            with ProgressBars() as progress:
+                session = open_session(config, progress)
+            daemon = Daemon(config, session)
+            if page is not None:
+                page.serve(daemon, session)
+            code = run_daemon(daemon, signals, hint, page)
+            if code is not None:
+                break
+            signals.alone()
+            _log.info("opening the cameras anew, with the calibration that was saved")
+            hint = ""
+    finally:
+        if page is not None:
+            page.close()
+    end_despite_work(code)
+    return code

@@ -1,19 +1,30 @@
 """What `run` and `demo` share: signals, the status line, and how the process ends."""
 
+import os
 import signal
 import sys
 import threading
+import time
 import traceback
 from types import FrameType
+from typing import Protocol
 
 from mocapd.cli.status_line import StatusLine
-from mocapd.daemon import Daemon, ThreadDiedError
+from mocapd.daemon import Daemon, Snapshot, ThreadDiedError
 
 SHOW_EVERY_S = 0.25  # how often the status line changes [s]
 TELL_EVERY = 4  # health goes out with every fourth of them
 
+JOIN_S = 0.2  # what idle threads may take to end [s]
+
 INTERNAL_ERROR = 70  # EX_SOFTWARE
 SIGINT_EXIT = 130
+
+
+class Ends(Protocol):
+    """Something that runs until it is told to end."""
+
+    def end(self) -> None: ...
 
 
 class Signals:
@@ -24,25 +35,49 @@ class Signals:
 
     def __init__(self) -> None:
         self.exit_code = 0
-        self._daemon: Daemon | None = None
+        self._caught_one = False
+        self._daemon: Ends | None = None
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._caught)
 
-    def ends(self, daemon: Daemon) -> None:
-        """From now on a signal ends this daemon in order."""
+    def ends(self, daemon: Ends) -> None:
+        """From now on a signal ends this in order."""
         self._daemon = daemon
+
+    def alone(self) -> None:
+        """Nothing runs that could be ended in order: a signal, also one that came already, ends the
+        process at once."""
+        self._daemon = None
+        if self._caught_one:
+            sys.exit(self.exit_code)
 
     def _caught(self, number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+        self._caught_one = True
         self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
         if self._daemon is None:
             sys.exit(self.exit_code)
         self._daemon.end()
 
 
-def run_daemon(daemon: Daemon, signals: Signals, hint: str = "") -> int:
-    """Run until it ends; the exit code. Raises MocapdError when a named error killed a thread."""
+class Beside(Protocol):
+    """Something that lives beside the daemon, such as its page."""
+
+    def beat(self, snapshot: Snapshot) -> bool:
+        """Called several times a second; whether the daemon is to end, to be made anew."""
+        ...
+
+    def let_go(self, anew: bool) -> None:
+        """The daemon is about to end, whether another follows; never blocks for long."""
+        ...
+
+
+def run_daemon(
+    daemon: Daemon, signals: Signals, hint: str = "", beside: Beside | None = None
+) -> int | None:
+    """Run until it ends; the exit code, or None when it is to be made anew. Raises MocapdError when a
+    named error killed a thread."""
     # a thread nobody watches must not die unseen either
     threading.excepthook = lambda args: daemon.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(daemon)
@@ -50,14 +85,37 @@ def run_daemon(daemon: Daemon, signals: Signals, hint: str = "") -> int:
         with daemon, StatusLine() as line:
             if hint:
                 print(hint, flush=True)
-            beats = 0
-            while not daemon.wait(SHOW_EVERY_S):
-                snapshot = daemon.snapshot()
-                line.show(snapshot)
-                if beats % TELL_EVERY == 0:
-                    daemon.tell(snapshot)
-                beats += 1
+            beats, anew = 0, False
+            try:
+                while not daemon.wait(SHOW_EVERY_S):
+                    snapshot = daemon.snapshot()
+                    line.show(snapshot)
+                    if beats % TELL_EVERY == 0:
+                        daemon.tell(snapshot)
+                    beats += 1
+                    if beside is not None and beside.beat(snapshot):
+                        anew = True
+                        return None
+            finally:
+                if beside is not None:
+                    beside.let_go(anew)
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR
     return signals.exit_code
+
+
+def end_despite_work(exit_code: int) -> None:
+    """End the process at once when threads still work on what nobody waits for any more.
+
+    The interpreter would wait for them: the pose database takes half a minute, a kernel to compile
+    some seconds, and neither can be told to stop.
+    """
+    until_s = time.monotonic() + JOIN_S
+    for thread in threading.enumerate():
+        if thread is not threading.current_thread() and not thread.daemon:
+            thread.join(max(0.0, until_s - time.monotonic()))
+            if thread.is_alive():
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(exit_code)

@@ -23,6 +23,14 @@ def track(
         str | None,
         typer.Option(help="full, paper (as published) or baseline [default: that of the config]"),
     ] = None,
+    calibration: Annotated[
+        Path | None,
+        typer.Option(
+            help="A calibration saved by `mocapd calibrate` (its file or folder), in place of the "
+            "capture's own rig, wearer and colours.",
+            metavar="PLACE",
+        ),
+    ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -44,13 +52,17 @@ def track(
     from mocapd.capture.folder import frame_sets, load_folder
     from mocapd.cli.progress import ProgressBars
     from mocapd.offline import check_writable, track_all, write_track
+    from mocapd.saved_session import inputs_of_saved, load_saved
     from mocapd.tracker_setup import build_tracker, inputs_of_capture, with_cache
 
     check_writable(out)
     folder = load_folder(capture)
     frames = max(camera.frames for camera in folder.cameras)
     own = effective.tracker
-    inputs = inputs_of_capture(folder, own.stature_m, own.variant, own)
+    if calibration is None:
+        inputs = inputs_of_capture(folder, own.stature_m, own.variant, own)
+    else:
+        inputs = inputs_of_saved(load_saved(calibration), folder, own)
     with ProgressBars() as progress:
         result = track_all(
             build_tracker(own.name, with_cache(inputs, effective.cache_dir, progress)),

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mocapd.calibrate.board import BoardSpec
+from mocapd.calibrate.detection import BoardView
 from mocapd.calibrate.lens import Lens
 from mocapd.capture.controls import Controls
 from mocapd.types import Bytes, Floats, Rig
@@ -14,7 +15,8 @@ class DraftCamera:
     """A camera that takes part.
 
     id: its name in the rig; source: what a configuration calls it (`usb:...`, `/dev/video0`, a file,
-    `sim:...`); controls: what it was locked to, to be set again whenever the daemon opens it.
+    `sim:...`); controls: what it was locked to, to be set again whenever the daemon opens it; label:
+    what the person calls it, empty for its id.
     """
 
     id: str
@@ -22,6 +24,7 @@ class DraftCamera:
     size_px: tuple[int, int]
     fps_hz: float = 30.0
     controls: Controls = field(default_factory=Controls)
+    label: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +54,16 @@ class DraftColours:
 class Draft:
     """Everything found so far; None or empty where a step has not been done yet.
 
-    lenses, colours: by camera id; lens_saved: ids whose lens was taken over from an earlier setup;
-    floor_known: whether floor and up were measured, not guessed; personal: whether the wearer's own
-    colours (from the strokes) replace the shirt's standard; factors: the wearer's proportions, the
-    N_SHAPE factors of `body.shape`.
+    board_views: by camera id the pictures of the board that lens and room are solved from, by the index
+    of their moment: views of one index are of one moment. lenses, colours: by camera id; lens_saved:
+    ids whose lens was taken over from an earlier setup; floor_known: whether floor and up were
+    measured, not guessed; personal: whether the wearer's own colours (from the strokes) replace the
+    shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`.
     """
 
     cameras: tuple[DraftCamera, ...] = ()
     board: BoardSpec | None = None
+    board_views: Mapping[str, Mapping[int, BoardView]] = field(default_factory=dict)
     lenses: Mapping[str, Lens] = field(default_factory=dict)
     lens_saved: frozenset[str] = frozenset()
     rig: Rig | None = None

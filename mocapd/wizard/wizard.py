@@ -33,8 +33,8 @@ MakeStep = Callable[[Context], Step]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WizardView:
-    """A snapshot: `serial` grows with every change; done: the steps whose result is in the draft;
-    refused: why the last command was not taken, None when it was."""
+    """A snapshot: `serial` grows with every change; steps: those there are; done: the steps whose result
+    is in the draft; refused: why the last command was not taken, None when it was."""
 
     serial: int
     step: StepName
@@ -43,6 +43,7 @@ class WizardView:
     refused: Problem | None
     saved: bool
     ended: bool
+    steps: tuple[StepName, ...] = tuple(StepName)
 
 
 class Wizard:
@@ -60,7 +61,7 @@ class Wizard:
         state_dir: Path,
         cache_dir: Path,
         died: Callable[[BaseException], None],
-        scene: Callable[[Scene], None] | None = None,
+        scene: Callable[[Scene], object] | None = None,
         first: StepName = StepName.CAMERAS,
         draft: Draft | None = None,
         on_saved: Callable[[], None] | None = None,
@@ -75,8 +76,10 @@ class Wizard:
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
         self._job: Future[Any] | None = None
         self._job_done: Callable[[Any], None] | None = None
-        self._told: tuple[str, float] = ("", 0.0)
-        self._done: set[StepName] = set()
+        self._told: list[tuple[str, float]] = []  # by the job that runs; each job has its own
+        self._reached: set[StepName] = set()  # those that were done since the start
+        if self.draft.rig is not None:  # an earlier setup, of which some steps are done again
+            self._reached |= set(StepName)
         self._saved = False  # since the start
         self._refused: Problem | None = None
         self._step: Step = steps[first](self)
@@ -131,9 +134,14 @@ class Wizard:
     def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
         """See Context."""
         assert self._job is None, "one job at a time"
-        self._told = ("", 0.0)
+        self._told = told = [("", 0.0)]
+
+        # bound to this job: one that nobody listens to any more may still be telling
+        def tell(what: str, share: float) -> None:
+            told[0] = (what, share)
+
         self._job_done = done
-        self._job = self._worker.submit(job, self._tell)
+        self._job = self._worker.submit(job, tell)
 
     def saved(self) -> None:
         """See Context."""
@@ -144,12 +152,9 @@ class Wizard:
     @property
     def job(self) -> tuple[str, float] | None:
         """See Context."""
-        return self._told if self._job is not None else None
+        return self._told[0] if self._job is not None else None
 
     # -- the wizard's thread ---------------------------------------------------------------------
-
-    def _tell(self, what: str, share: float) -> None:
-        self._told = (what, share)
 
     def _run(self) -> None:
         try:
@@ -160,6 +165,7 @@ class Wizard:
                 self._publish()
                 self._take_commands()
             self._step.leave()
+            self._publish()  # that it has ended
         except BaseException as error:
             self._died(error)
             raise
@@ -211,27 +217,43 @@ class Wizard:
             self._step.command(verb, args)
 
     def _show(self, name: StepName) -> None:
+        step = self._steps[name](self)  # refused when what it builds on is missing: this one stays
         self._step.leave()
         # a job that runs on ends for itself: nobody hears of it
         if self._job is not None and not self._job.done():
             self._worker.shutdown(wait=False, cancel_futures=True)
             self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
         self._job = self._job_done = None
-        self._step = self._steps[name](self)
+        self._step = step
         self._step.enter()
+
+    def _is_done(self, name: StepName) -> bool:
+        """Whether its result is in the draft."""
+        draft = self.draft
+        ids = {camera.id for camera in draft.cameras}
+        results = {
+            StepName.CAMERAS: bool(ids),
+            StepName.LENS: bool(ids) and ids <= draft.lenses.keys(),
+            StepName.ROOM: draft.rig is not None and ids == set(draft.rig.names),
+            StepName.COLOUR: bool(ids) and ids <= draft.colours.keys(),
+            StepName.BODY: draft.stature_m is not None,
+            StepName.CHECK: self._saved,
+        }
+        return name in self._reached and results[name]
 
     def _snapshot(self, serial: int) -> WizardView:
         view = self._step.view()
         if view.state is StepState.DONE:
-            self._done.add(self._step.name)
+            self._reached.add(self._step.name)
         return WizardView(
             serial,
             self._step.name,
-            frozenset(self._done),
+            frozenset(name for name in self._names if self._is_done(name)),
             view,
             self._refused,
             self._saved,
             self._stopping.is_set(),
+            self._names,
         )
 
     def _publish(self) -> None:

@@ -3,12 +3,17 @@
 import json
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
+from mocapd.body.shirt import standard_shirt
 from mocapd.geometry.rig_file import load_rig
+from mocapd.saved_session import load_saved
 from tests.calibrate.board_rooms import cameras, floor_pose, held_poses, write_pictures
 from tests.cli.mocapd_process import Outcome, mocapd
 
+SIZE_PX = (640, 480)
 BOARD = ("--board", "charuco", "--square", "0.07", "--marker", "0.052")
 
 
@@ -86,3 +91,45 @@ def test_what_cannot_be_is_refused_at_once(
     outcome = calibrate(clean_env, pictures, tmp_path / "no" / "rig.json")
     assert outcome.code == 73
     assert not out.exists()
+
+
+def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
+    clean_env: dict[str, str], pictures: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "state" / "calibration.toml"
+    out.parent.mkdir()
+    strokes = tmp_path / "strokes"
+    write_strokes(strokes / "cam0.png", SIZE_PX, colours=3)
+    refused = calibrate(clean_env, pictures, out, "--strokes", str(strokes))
+    assert refused.code == 66
+    assert "only 3 of 10 colours" in refused.err
+    assert not out.exists()
+    write_strokes(strokes / "cam0.png", SIZE_PX, colours=10)
+    words = ("--strokes", str(strokes), "--floor-frame", "9")
+    outcome = calibrate(clean_env, pictures, out, *words)
+    assert outcome.code == 0, outcome.err
+    saved = load_saved(out)
+    assert saved.known.rig.names == ("cam0", "cam1")
+    assert saved.tables.room.floor_known
+    assert set(saved.known.pictures) == {"cam0"}
+    # the strokes lie on the standard's own colours
+    assert np.abs(saved.known.W["cam0"] - np.eye(3)).max() < 0.1
+    lens = saved.tables.camera[1].lens
+    assert lens is not None
+    assert lens.views >= 9
+
+
+def write_strokes(path: Path, size_px: tuple[int, int], colours: int) -> None:
+    """A picture with patches of the shirt's colours, and a stroke on each of the first of them."""
+    path.parent.mkdir(exist_ok=True)
+    width, height = size_px
+    picture = np.full((height, width, 3), 90, np.uint8)
+    strokes = np.zeros((height, width), np.uint8)
+    side = width // 12
+    for i, rgb in enumerate(standard_shirt().srgb):
+        across = slice((i + 1) * side, (i + 2) * side)
+        picture[:, across] = rgb[::-1]
+        if i < colours:
+            strokes[height // 3 : 2 * height // 3, across] = i + 1
+    cv2.imwrite(str(path), picture)
+    cv2.imwrite(str(path.with_name(f"{path.stem}_strokes.png")), strokes)

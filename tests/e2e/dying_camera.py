@@ -31,7 +31,7 @@ def main() -> int:
     config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
     tracker = CannedTracker(standard_skeleton(1.75))
     session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker)
-    return run_daemon(Daemon(config, session), Signals())
+    return run_daemon(Daemon(config, session), Signals()) or 0
 
 
 if __name__ == "__main__":

@@ -1,0 +1,21 @@
+"""The lengths of a body that people know of themselves."""
+
+from mocapd.body.shape import BodyShape, skeleton_of
+
+
+def lengths_cm(shape: BodyShape) -> dict[str, float]:
+    """By name, between the centres of joints [cm]."""
+    skeleton = skeleton_of(shape)
+    at = {name: skeleton.rest_m[i] for i, name in enumerate(skeleton.names)}
+
+    def between(a: str, b: str) -> float:
+        return float(100.0 * sum((at[a] - at[b]) ** 2) ** 0.5)
+
+    upper, fore = between("leftUpperArm", "leftLowerArm"), between("leftLowerArm", "leftHand")
+    return {
+        "shoulder to shoulder": between("leftUpperArm", "rightUpperArm"),
+        "upper arm": upper,
+        "forearm": fore,
+        "arm to the wrist": upper + fore,
+        "hips to neck": between("hips", "neck"),
+    }

@@ -1,0 +1,34 @@
+"""What stays true of a draft when its cameras change."""
+
+from dataclasses import replace
+
+from mocapd.wizard.draft import Draft, DraftCamera
+
+
+def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
+    """The draft with these cameras. What belonged to others is dropped: the lens of a camera with
+    another size, colours of one that left or sees them through other controls, the room of a set
+    that is not the same."""
+    if cameras == draft.cameras:
+        return draft
+    before = {camera.id: camera for camera in draft.cameras}
+    # without cameras before, what is there was read from the saved calibration of just these
+    same_size = {one.id for one in cameras if before.get(one.id, one).size_px == one.size_px}
+    same_look = {
+        one.id
+        for one in cameras
+        if one.id in same_size and before.get(one.id, one).controls == one.controls
+    }
+    lenses = {name: lens for name, lens in draft.lenses.items() if name in same_size}
+    colours = {name: one for name, one in draft.colours.items() if name in same_look}
+    draft = replace(
+        draft,
+        cameras=cameras,
+        lenses=lenses,
+        lens_saved=draft.lens_saved & lenses.keys(),
+        colours=colours,
+    )
+    names = {camera.id for camera in cameras}
+    if draft.rig is not None and (set(draft.rig.names) != names or len(same_size) < len(cameras)):
+        draft = replace(draft, rig=None, room=None, floor_known=False)
+    return draft

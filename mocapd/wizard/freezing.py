@@ -1,0 +1,43 @@
+"""A picture of each camera, of one moment, taken when a countdown has run out."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from mocapd.clock import nanoseconds, seconds
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.types import Frame
+
+_PATIENCE_S = 1.0  # for a camera that has no picture of after the countdown
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frozen:
+    """The pictures by camera id, and the cameras that gave none."""
+
+    frames: dict[str, Frame]
+    missing: tuple[str, ...]
+
+
+class Countdown:
+    """Counts down from its making; then takes the newest pictures, one by each camera."""
+
+    def __init__(self, now_ns: int, wait_s: float) -> None:
+        self._due_ns = now_ns + nanoseconds(wait_s)
+
+    def left_s(self, now_ns: int) -> float:
+        """Seconds until the pictures are taken; 0 when they are due."""
+        return max(0.0, seconds(self._due_ns - now_ns))
+
+    def taken(self, hub: FrameHub, cameras: Iterable[str], now_ns: int) -> Frozen | None:
+        """The pictures, none of before the countdown's end; None while they are waited for."""
+        if now_ns < self._due_ns:
+            return None
+        newest = {name: hub.newest(name) for name in cameras}
+        fresh = {
+            name: frame
+            for name, frame in newest.items()
+            if frame is not None and frame.t_ns >= self._due_ns
+        }
+        if len(fresh) < len(newest) and now_ns < self._due_ns + nanoseconds(_PATIENCE_S):
+            return None
+        return Frozen(fresh, tuple(name for name in newest if name not in fresh))

@@ -1,0 +1,85 @@
+"""What is needed of every frame to judge light and locks: the mean colour, and the brightness of the rows."""
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import threading
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.types import Bytes, Floats, Frame, Ints
+
+_KEPT = 90  # frames of a camera
+_ROWS = 48
+_COLUMNS = 64
+_BGR_TO_LUMA = np.array([0.114, 0.587, 0.299])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recent:
+    """The last frames of one camera, oldest first: t_ns (n,); rows (n,r), mean luma 0..255 of some
+    50 rows spread over the picture; bgr (n,3), mean colour 0..255."""
+
+    t_ns: Ints
+    rows: Floats
+    bgr: Floats
+
+    @property
+    def brightness(self) -> float:
+        """Mean luma 0..255; NaN without frames."""
+        return float((self.bgr @ _BGR_TO_LUMA).mean()) if len(self.t_ns) else float("nan")
+
+    @property
+    def warmth(self) -> float:
+        """Red over blue; NaN without frames."""
+        if not len(self.t_ns):
+            return float("nan")
+        blue, _green, red = self.bgr.mean(axis=0)
+        return float((red + 1.0) / (blue + 1.0))
+
+    def since(self, t_ns: int) -> "Recent":
+        """Those taken after that instant."""
+        later = self.t_ns > t_ns
+        return Recent(self.t_ns[later], self.rows[later], self.bgr[later])
+
+
+def row_means(pixels: Bytes) -> tuple[Floats, Floats]:
+    """Mean luma (r,) of rows spread over a BGR picture (h,w,3), and its mean colour (3,)."""
+    height, width = pixels.shape[:2]
+    thin = pixels[:: max(1, height // _ROWS), :: max(1, width // _COLUMNS)]
+    colours = cv2.reduce(np.ascontiguousarray(thin), 1, cv2.REDUCE_AVG, dtype=cv2.CV_32F)[:, 0]
+    means = np.asarray(colours, dtype=np.float64)
+    return means @ _BGR_TO_LUMA, means.mean(axis=0)
+
+
+class PictureWatch:
+    """Joins a FrameHub; `put` runs in the capture threads, the rest anywhere."""
+
+    def __init__(self, cameras: Iterable[str]) -> None:
+        self._lock = threading.Lock()  # guards what follows
+        self._seen: dict[str, deque[tuple[int, Floats, Floats]]] = {
+            name: deque(maxlen=_KEPT) for name in cameras
+        }
+
+    def put(self, frame: Frame) -> None:
+        """Note a frame."""
+        rows, bgr = row_means(frame.pixels)
+        with self._lock:
+            seen = self._seen.get(frame.camera)
+            if seen is None:
+                return
+            if seen and seen[-1][1].shape != rows.shape:
+                seen.clear()  # it was opened anew with another size
+            seen.append((frame.t_ns, rows, bgr))
+
+    def recent(self, camera: str) -> Recent:
+        """The frames that are kept, the last three seconds or so."""
+        with self._lock:
+            seen = list(self._seen[camera])
+        if not seen:
+            return Recent(np.zeros(0, np.int64), np.zeros((0, 1)), np.zeros((0, 3)))
+        times, rows, colours = zip(*seen, strict=True)
+        return Recent(np.array(times, np.int64), np.array(rows), np.array(colours))

@@ -1,0 +1,94 @@
+"""The step Room: where the cameras stand, with the board or from the wearer alone.
+
+Commands: `method` {method}: "board" or "wearer" (`wearer`: true does the same); the others are the
+method's own.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Protocol
+
+from mocapd.errors import InputError, MocapdError
+from mocapd.wizard.board_room import BoardRoom
+from mocapd.wizard.step import Context, Json, StepName, StepView
+from mocapd.wizard.wearer_room import WearerRoom
+
+
+class RoomMethod(Protocol):
+    """A way to find the room: as a Step, which see, but for the name."""
+
+    def enter(self) -> None: ...
+    def tick(self, now_ns: int) -> None: ...
+    def command(self, verb: str, args: Mapping[str, Json]) -> None: ...
+    def job_failed(self, error: MocapdError) -> None: ...
+    def view(self) -> StepView: ...
+    def leave(self) -> None: ...
+
+
+METHODS: Mapping[str, Callable[[Context], RoomMethod]] = MappingProxyType(
+    {"board": BoardRoom, "wearer": WearerRoom}
+)
+
+
+class RoomStep:
+    """Hands everything on to the method that was chosen; the board's to begin with."""
+
+    name = StepName.ROOM
+
+    def __init__(self, context: Context) -> None:
+        """Raises InputError when lenses are missing."""
+        missing = [
+            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.lenses
+        ]
+        if missing or not context.draft.cameras:
+            raise InputError(
+                f"the lens of {', '.join(missing)} is not known" if missing else "no cameras",
+                "room",
+                "do the step Lens first",
+            )
+        self._context = context
+        self._method_name = "board"
+        self._method: RoomMethod = METHODS["board"](context)
+
+    def enter(self) -> None:
+        """See Step."""
+        self._method.enter()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._method.tick(now_ns)
+
+    def command(self, verb: str, args: Mapping[str, Json]) -> None:
+        """See the head of this file."""
+        if verb == "method":
+            self._choose(args)
+        else:
+            self._method.command(verb, args)
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        self._method.job_failed(error)
+
+    def view(self) -> StepView:
+        """See Step."""
+        view = self._method.view()
+        details = {**view.details, "method": self._method_name, "methods": list(METHODS)}
+        return replace(view, details=details)
+
+    def leave(self) -> None:
+        """See Step."""
+        self._method.leave()
+
+    def _choose(self, args: Mapping[str, Json]) -> None:
+        name = "wearer" if args.get("wearer") is True else str(args.get("method", "board"))
+        if name not in METHODS:
+            raise InputError(f"no method {name!r}", "room", "one of " + ", ".join(METHODS))
+        if name == self._method_name:
+            return
+        if self._context.job is not None:
+            raise InputError("something is being worked out", "room", "wait a moment")
+        made = METHODS[name](self._context)
+        self._method.leave()
+        self._method_name, self._method = name, made
+        made.enter()

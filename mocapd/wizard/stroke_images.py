@@ -1,0 +1,72 @@
+"""Strokes and pictures as the page's files: grey PNG of colour ids, JPEG of what was frozen, PNG of what is seen."""
+
+import base64
+import binascii
+
+import cv2
+import numpy as np
+
+from mocapd.body.shirt import N_COLOURS, standard_shirt
+from mocapd.errors import InputError
+from mocapd.types import Bytes
+from mocapd.wizard.step import Json
+
+_LARGEST = 32 << 20  # bytes of a PNG that a page may send
+_ROOM = 0.35  # brightness of what is not the shirt
+_RELOAD = "reload the page and draw again"
+
+
+def decode_strokes(png_base64: Json, size_px: tuple[int, int], camera: str) -> Bytes:
+    """Strokes (h,w) 0..10 of an 8-bit grey PNG (or one in colour whose channels agree) in base64.
+
+    size_px: width and height of the camera's frozen picture. Raises InputError.
+    """
+    if not isinstance(png_base64, str) or len(png_base64) > _LARGEST:
+        raise InputError("the strokes did not come as a picture", camera, _RELOAD)
+    try:
+        data = np.frombuffer(base64.b64decode(png_base64, validate=True), np.uint8)
+    except binascii.Error:
+        raise InputError("the strokes are no base64", camera, _RELOAD) from None
+    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    if image is None or image.dtype != np.uint8:
+        raise InputError("the strokes are no 8-bit PNG", camera, _RELOAD)
+    if image.ndim == 3:
+        if (image[..., :3] != image[..., :1]).any():
+            raise InputError("the strokes are painted in colours, not in ids", camera, _RELOAD)
+        image = image[..., 0]
+    w, h = size_px
+    if image.shape != (h, w):
+        raise InputError(
+            f"the strokes are {image.shape[1]}x{image.shape[0]} pixels, the picture is {w}x{h}",
+            camera,
+            _RELOAD,
+        )
+    if image.max() > N_COLOURS:
+        raise InputError(f"there is no colour {image.max()}", camera, _RELOAD)
+    return np.ascontiguousarray(image, dtype=np.uint8)
+
+
+def encode_strokes(strokes: Bytes) -> bytes:
+    """Strokes (h,w) as an 8-bit grey PNG."""
+    return _encoded(".png", strokes, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+
+
+def encode_picture(pixels: Bytes) -> bytes:
+    """A frozen picture (h,w,3) BGR as JPEG, good enough to draw on."""
+    return _encoded(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, 90])
+
+
+def encode_seen(pixels: Bytes, ids: Bytes) -> bytes:
+    """What is read as the shirt, ids (h,w), in the standard's colours over the dimmed picture (h,w,3) BGR, as PNG."""
+    grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
+    shown = np.repeat((_ROOM * grey).astype(np.uint8)[..., None], 3, axis=2)
+    palette = np.zeros((N_COLOURS + 1, 3), np.uint8)
+    palette[1:] = standard_shirt().srgb[:, ::-1]
+    shown[ids > 0] = palette[ids[ids > 0]]
+    return _encoded(".png", shown, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+
+
+def _encoded(kind: str, image: Bytes, options: list[int]) -> bytes:
+    done, data = cv2.imencode(kind, image, options)
+    assert done, f"cv2 cannot write {kind}"
+    return data.tobytes()

@@ -1,0 +1,41 @@
+"""The value of a control that gives a wanted reading, when a reading grows with the value."""
+
+import math
+
+
+class ValueSearch:
+    """Bisection by trial: set `value`, look, tell `seen`, until `over`; then `value` is the best seen.
+
+    low, high: the control's range; first: the value it has now; wanted: the reading aimed at;
+    tolerance: of the reading, relative. Halves on a logarithmic scale, as exposures work.
+    """
+
+    def __init__(
+        self, low: int, high: int, first: int, wanted: float, tolerance: float, tries: int = 8
+    ) -> None:
+        self._low, self._high = max(low, 1), max(high, low, 1)
+        self._wanted, self._tolerance = wanted, tolerance
+        self._left = tries
+        self._best = (math.inf, first)
+        self.value = min(max(first, self._low), self._high)
+        self.over = False
+
+    @property
+    def reached(self) -> bool:
+        """Whether the best value came near enough."""
+        return self._best[0] <= math.log1p(self._tolerance)
+
+    def seen(self, reading: float) -> None:
+        """What was seen with `value`; sets the next one, or the best when it is over."""
+        self._left -= 1
+        off = math.log(max(reading, 1e-3) / max(self._wanted, 1e-3))
+        self._best = min(self._best, (abs(off), self.value))
+        if off < 0:
+            self._low = min(self.value + 1, self._high)
+        else:
+            self._high = max(self.value - 1, self._low)
+        following = round(math.sqrt(self._low * self._high))
+        if self.reached or self._left <= 0 or following == self.value:
+            self.value, self.over = self._best[1], True
+        else:
+            self.value = following

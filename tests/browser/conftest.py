@@ -1,0 +1,91 @@
+"""A real browser, and `mocapd calibrate` to open in it."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.conftest import environment
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome")
+_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Debian's Chromium; skips where there is none, unless MOCAPD_REQUIRE_BROWSER is set (.ci/run)."""
+    path = next((found for name in _NAMES if (found := shutil.which(name))), None)
+    if path is None:
+        if os.environ.get("MOCAPD_REQUIRE_BROWSER"):
+            pytest.fail("no browser: apt install chromium")
+        pytest.skip("no Chromium on this machine")
+    root = hasattr(os, "geteuid") and os.geteuid() == 0
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(
+            executable_path=path, args=["--no-sandbox"] if root else []
+        )
+        yield browser
+        browser.close()
+
+
+class Served:
+    """`mocapd calibrate --demo` in a process of its own, up to the URL that it prints."""
+
+    def __init__(self, state_dir: Path, env: dict[str, str], *options: str) -> None:
+        self.state_dir = state_dir
+        command = [sys.executable, "-m", "mocapd.cli.main", "calibrate", "--demo", "--no-browser"]
+        command += ["--state-dir", str(state_dir), *options]
+        self.process = subprocess.Popen(
+            command, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self.log: list[str] = []
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.log.append(line)
+            found = _URL.search(line)
+            if found:
+                self.url = found.group()
+                return
+        pytest.fail(f"no URL was printed:\n{''.join(self.log)}")
+
+    def stop(self) -> int:
+        """As systemd ends it; its exit code."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        assert self.process.stdout is not None
+        self.log.extend(self.process.stdout)
+        self.process.wait(timeout=20)
+        return self.process.returncode
+
+
+@pytest.fixture(scope="module")
+def user_env(tmp_path_factory: pytest.TempPathFactory, cache_home: Path) -> dict[str, str]:
+    """`clean_env` for a whole file."""
+    return environment(tmp_path_factory.mktemp("user"), cache_home)
+
+
+@pytest.fixture(scope="session")
+def pictures(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where screenshots are kept: MOCAPD_SCREENSHOTS, for the docs, else a folder that is forgotten."""
+    given = os.environ.get("MOCAPD_SCREENSHOTS")
+    folder = Path(given) if given else tmp_path_factory.mktemp("screenshots")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def problems_of(page: Page) -> list[str]:
+    """What the browser itself complains of, as it comes: errors of scripts, refusals by the CSP."""
+    heard: list[str] = []
+    page.on("pageerror", lambda error: heard.append(str(error)))
+    page.on(
+        "console",
+        lambda message: heard.append(message.text) if message.type == "error" else None,
+    )
+    return heard

@@ -1,0 +1,243 @@
+"""The whole setup in a real browser, by mouse and keyboard, on simulated webcams.
+
+How long it takes is printed: `python -m pytest -s tests/browser -k whole`.
+"""
+
+import json
+import subprocess
+import sys
+import time
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from mocapd.evaluate.score import JOINT_SETS
+from mocapd.sim.export import export_capture
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.scenario import load_scenario
+from mocapd.sim.setup import scribble_picture
+from mocapd.sim.world import World
+from mocapd.types import Bytes
+from tests.browser.conftest import Served, problems_of
+from tests.conftest import ROOT
+
+SCENARIO = ROOT / "calib" / "scenarios" / "first_setup.toml"
+STATURE_CM = 172
+STEP_MS = 120_000  # a step on a busy machine; the figure of the whole is printed, not asserted
+"""How long a step may take before the test gives up [ms]."""
+
+
+@dataclass
+class Setup:
+    """What one way through all steps left behind. seconds: by step; heard: what the browser said."""
+
+    saved: Path
+    seconds: dict[str, float] = field(default_factory=dict)
+    heard: list[str] = field(default_factory=list)
+    sentences: dict[str, str] = field(default_factory=dict)
+    log: str = ""
+
+
+def shown(page: Page, step: str) -> None:
+    """Wait until this step is shown."""
+    page.locator(f'[data-step="{step}"] #part > .part-{step}').wait_for(timeout=STEP_MS)
+
+
+def done(page: Page) -> None:
+    """Wait until the step says that it is done."""
+    expect(page.locator("#step-state")).to_have_text("Done", timeout=STEP_MS)
+
+
+def draw(page: Page, camera: str, strokes: Bytes) -> None:
+    """With the mouse: one line along each colour's largest stroke, its colour chosen by key."""
+    canvas = page.locator(f"#canvas-{camera}")
+    for _ in range(3):
+        page.keyboard.press("[")  # a thin brush: the cuffs are small
+    height, width = strokes.shape
+    for colour in range(1, 11):
+        count, parts, stats, _ = cv2.connectedComponentsWithStats(
+            (strokes == colour).astype(np.uint8)
+        )
+        if count < 2:
+            continue
+        y, x = np.nonzero(parts == 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA])))
+        page.keyboard.press(str(colour % 10))
+        canvas.scroll_into_view_if_needed()
+        box = canvas.bounding_box()
+        assert box is not None
+        line = [(x[i], y[i]) for i in np.argsort(x)[np.linspace(0, len(x) - 1, 5).astype(int)]]
+        at = [(box["x"] + u * box["width"] / width, box["y"] + v * box["height"] / height)
+              for u, v in line]  # fmt: skip
+        page.mouse.move(*at[0])
+        page.mouse.down()
+        for point in at[1:]:
+            page.mouse.move(*point, steps=3)
+        page.mouse.up()
+
+
+def truth_strokes(camera: str) -> Bytes:
+    """Where a careful user would draw, from the simulator's labels."""
+    scenario = load_scenario(SCENARIO)
+    renderer = {r.camera.name: r for r in camera_renderers(World(scenario))}[camera]
+    return scribble_picture(scenario, renderer).strokes
+
+
+def rms_after_turning_cm(capture: Path, track: Path) -> float:
+    """RMS [cm] of the upper joints, after the turn and shift that fit all frames best (Kabsch)."""
+    with np.load(capture / "truth.npz") as truth, np.load(track) as found:
+        names = [str(name) for name in truth["names"]], [str(name) for name in found["joint_names"]]
+        a, b = (
+            data["joints"][:, [own.index(joint) for joint in JOINT_SETS["upper"]]]
+            for data, own in zip((truth, found), names, strict=True)
+        )
+        rows = np.abs(truth["times"][:, None] - found["times"]).argmin(axis=0)
+    settled = np.isfinite(b).all(axis=(1, 2))
+    settled[: len(b) // 3] = False  # the tracker learns the wearer meanwhile
+    assert settled.sum() > len(b) // 2
+    p, q = b[settled].reshape(-1, 3), a[rows[settled]].reshape(-1, 3)
+    p, q = p - p.mean(axis=0), q - q.mean(axis=0)
+    U, _, Vt = np.linalg.svd(p.T @ q)
+    R = U @ np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))]) @ Vt
+    return 100.0 * float(np.sqrt(np.mean(np.sum((p @ R - q) ** 2, axis=1))))
+
+
+@pytest.fixture(scope="module")
+def setup(
+    request: pytest.FixtureRequest,
+    browser: Browser,
+    tmp_path_factory: pytest.TempPathFactory,
+    pictures: Path,
+    user_env: dict[str, str],
+) -> Setup:
+    """One way through the whole setup; screenshots of each step as it is done."""
+    state = tmp_path_factory.mktemp("state")
+    served = Served(state, user_env)
+    request.addfinalizer(served.stop)
+    by_hand = truth_strokes("cam1")
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    out = Setup(state / "calibration.toml", heard=problems_of(page))
+    began = time.monotonic()
+
+    def finished(step: str) -> None:
+        nonlocal began
+        now = time.monotonic()
+        out.seconds[step], began = now - began, now
+        out.sentences[step] = page.locator("#sentence").inner_text()
+        page.screenshot(path=pictures / f"setup_{step}.png", full_page=True)
+
+    request.addfinalizer(lambda: page.is_closed() or page.screenshot(path=pictures / "last.png"))  # noqa: PT021  many things end
+    page.goto(served.url)
+    shown(page, "cameras")
+    done(page)
+    finished("cameras")
+    page.click("#next")
+
+    shown(page, "lens")
+    page.wait_for_timeout(6000)
+    page.screenshot(path=pictures / "setup_lens_live.png", full_page=True)
+    done(page)
+    finished("lens")
+    page.locator("#next").focus()
+    page.keyboard.press("Enter")
+
+    shown(page, "room")
+    done(page)
+    finished("room")
+    page.keyboard.press("Tab")  # from the heading, where the focus went
+    page.click("#next")
+
+    shown(page, "colour")
+    page.click("#freeze")
+    done(page)
+    page.click('[data-action="clear-cam1"]')
+    expect(page.locator("#step-state")).not_to_have_text("Done", timeout=STEP_MS)
+    out.sentences["erased"] = page.locator("#sentence").inner_text()
+    draw(page, "cam1", by_hand)
+    done(page)
+    finished("colour")
+    page.check("#as-seen")
+    page.wait_for_timeout(700)
+    page.screenshot(path=pictures / "setup_colour_seen.png", full_page=True)
+    page.click("#next")
+
+    shown(page, "body")
+    page.fill("#stature-cm", str(STATURE_CM))
+    page.keyboard.press("Enter")
+    page.click("#measure")
+    done(page)
+    finished("body")
+    page.click("#next")
+
+    shown(page, "check")
+    done(page)
+    page.screenshot(path=pictures / "setup_check.png", full_page=True)
+    page.click("#save")
+    page.locator("#saved-to").get_by_text("calibration.toml").wait_for(timeout=STEP_MS)
+    finished("check")
+    page.close()
+    code = served.stop()
+    out.log = "".join(served.log)
+    assert code == 0, out.log
+    return out
+
+
+def test_the_whole_setup_is_done_and_saved(setup: Setup) -> None:
+    print(
+        f"\nthe whole setup: {sum(setup.seconds.values()):.0f} s ("
+        + ", ".join(f"{step} {s:.0f}" for step, s in setup.seconds.items())
+        + ")"
+    )
+    saved = tomllib.loads(setup.saved.read_text(encoding="utf-8"))
+    assert [camera["id"] for camera in saved["camera"]] == ["cam0", "cam1"]
+    assert saved["wearer"]["stature_m"] == pytest.approx(STATURE_CM / 100)
+    assert str(setup.saved) in setup.log, "it says on the terminal what was written"
+
+
+def test_the_browser_had_nothing_to_complain_of(setup: Setup) -> None:
+    assert setup.heard == []
+
+
+def test_erased_strokes_are_asked_for(setup: Setup) -> None:
+    assert setup.sentences["erased"] != setup.sentences["colour"]
+
+
+def test_lenses_and_room_are_the_true_ones(setup: Setup) -> None:
+    truth = World(load_scenario(SCENARIO))
+    saved = tomllib.loads(setup.saved.read_text(encoding="utf-8"))
+    centres, true_centres = [], []
+    for camera, spec in zip(saved["camera"], truth.scenario.cameras, strict=True):
+        assert spec.focal_px is not None
+        focal = np.array([camera["K"][0][0], camera["K"][1][1]])
+        assert np.abs(focal / spec.focal_px - 1.0).max() <= 0.005
+        centres.append(-np.array(camera["R"]).T @ camera["t_m"])
+        true_centres.append(np.array(spec.position_m))
+    # which way the floor's board points is the user's choice: only its origin and up are compared
+    heights = np.array(centres)[:, 1] - np.array(true_centres)[:, 1]
+    assert np.abs(heights).max() <= 0.01
+    apart = np.linalg.norm(centres[0] - centres[1])
+    assert apart == pytest.approx(np.linalg.norm(true_centres[0] - true_centres[1]), abs=0.01)
+
+
+def test_a_recording_is_tracked_with_the_saved_file(
+    setup: Setup, tmp_path: Path, user_env: dict[str, str]
+) -> None:
+    """As well as with the true rig, but for the direction in which the board lay."""
+    scenario = load_scenario(SCENARIO)
+    late = msgspec.structs.replace(scenario, scribble_s=0.0)
+    capture = tmp_path / "capture"
+    export_capture(late, capture, 3.0)
+    errors = {}
+    for name, options in (("true", []), ("saved", ["--calibration", str(setup.saved)])):
+        track = tmp_path / f"{name}.npz"
+        command = [sys.executable, "-m", "mocapd.cli.main", "track", str(capture)]
+        command += ["--out", str(track), *options]
+        subprocess.run(command, env=user_env, check=True, capture_output=True)
+        errors[name] = rms_after_turning_cm(capture, track)
+    print("\n" + json.dumps(errors))
+    assert errors["saved"] <= max(1.3 * errors["true"], errors["true"] + 0.5)

@@ -1,0 +1,264 @@
+"""The step Body: stature, proportions of an odd wearer, and a room of another scale."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
+from mocapd.clock import monotonic_ns
+from mocapd.errors import InputError
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.colour.build import build_colour_tracker
+from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.trackers.registry import StrokedPicture
+from mocapd.types import Frame, FrameSet, Rig
+from mocapd.wizard.body_step import BodyStep
+from mocapd.wizard.colour_solving import Drawn, solve
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.saving import calibrated_of
+from mocapd.wizard.step import Scene, StepState, Tell
+from tests.wizard.context import FakeContext
+from tests.wizard.wearer import FPS_HZ, Wearer, wearer
+
+ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
+
+
+@pytest.fixture(scope="module")
+def database() -> PoseDatabase:
+    return build_database(DatabaseParams(count=1000, pool=1.1, cells=16))
+
+
+@pytest.fixture(scope="module")
+def person() -> Wearer:
+    return wearer(odd=True)
+
+
+@pytest.fixture(scope="module")
+def bends(person: Wearer) -> list[FrameSet]:
+    """One loop of the arm bends."""
+    loop = round(person.truth.scenario.loop_s * FPS_HZ)
+    return [person.frame_set(i) for i in range(loop)]
+
+
+@pytest.fixture(scope="module")
+def draft(person: Wearer) -> Draft:
+    """Room and colours are done."""
+    solved = solve(
+        {n: Drawn(one.pixels, one.strokes) for n, one in person.scribbles.items()}, True, {}
+    )
+    colours = {
+        name: DraftColours(one.drawn.pixels, one.drawn.strokes, one.W)
+        for name, one in solved.cameras.items()
+        if one.W is not None
+    }
+    return Draft(
+        cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
+        rig=person.rig,
+        room=RoomQuality("board", 0.3, {}, 0.2),
+        floor_known=True,
+        colours=colours,
+        personal=solved.personal,
+    )
+
+
+def kept(context: FakeContext) -> Draft:
+    """What is in the draft now."""
+    return context.draft
+
+
+@contextmanager
+def playing(context: FakeContext, bends: list[FrameSet]) -> Iterator[None]:
+    """The loop of arm bends goes to the hub, at its own pace."""
+    stop = threading.Event()
+
+    def play() -> None:
+        begin_ns, period_ns = monotonic_ns(), round(1e9 / FPS_HZ)
+        number = 0
+        while not stop.is_set():
+            due_ns = begin_ns + number * period_ns
+            if stop.wait(max(0.0, (due_ns - monotonic_ns()) / 1e9)):
+                return
+            frames = bends[number % len(bends)]
+            first_ns = min(frame.t_ns for frame in frames.frames.values())
+            for name, frame in frames.frames.items():
+                t_ns = due_ns + frame.t_ns - first_ns
+                context.hub.put(Frame(name, number, t_ns, frame.pixels))
+            number = max(number + 1, (monotonic_ns() - begin_ns) // period_ns)
+
+    thread = threading.Thread(target=play)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
+
+
+def measured(
+    context: FakeContext, person: Wearer, database: PoseDatabase, bends: list[FrameSet], m: float
+) -> BodyStep:
+    """The step after this stature was typed and the wearer was measured."""
+
+    def make(draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
+        told = inputs_of_calibration(calibrated_of(draft), 1.75)
+        return build_colour_tracker(
+            told.rig, told.stature_m, told.model, told.white_balance, database
+        )
+
+    step = BodyStep(context, make)
+    step.enter()
+    step.command("stature", {"m": m})
+    step.command("measure", {})
+    step.tick(0)
+    with playing(context, bends):
+        assert context.run_job(step)
+    return step
+
+
+def test_proportions_of_an_odd_wearer(
+    tmp_path: Path, person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+) -> None:
+    context = FakeContext(tmp_path, draft)
+    step = measured(context, person, database, bends, person.stature_m)
+    view = step.view()
+    assert view.state is StepState.DONE
+    assert view.problems == ()
+    factors = context.draft.factors
+    assert factors is not None
+    np.testing.assert_allclose(factors[:4], person.factors[:4], rtol=0.05)
+    np.testing.assert_allclose(factors, person.factors, rtol=0.12)
+    off, mean_off = np.abs(factors - person.factors), np.abs(1.0 - person.factors)
+    assert off[:4].mean() < 0.6 * mean_off[:4].mean()
+    usual, mine = view.details["usual_cm"], view.details["lengths_cm"]
+    assert mine["forearm"] < usual["forearm"]  # type: ignore[index]
+    assert len(view.pictures) == 2
+    assert context.draft.stature_m == person.stature_m
+    # another stature makes them void
+    step.command("stature", {"m": 1.8})
+    assert kept(context).factors is None
+    assert step.view().state is StepState.WAITING
+
+
+def test_a_stature_that_the_room_contradicts_is_told_with_its_likely_cause(
+    tmp_path: Path, person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+) -> None:
+    context = FakeContext(tmp_path, draft)
+    step = measured(context, person, database, bends, 1.12 * person.stature_m)
+    view = step.view()
+    assert view.state is StepState.DONE  # it is the person's to decide
+    assert len(view.problems) == 1
+    assert "less than the 1.90 m that you typed" in view.problems[0].what
+    assert "correct the stature" in view.problems[0].fix
+    assert "ruler" in view.problems[0].fix
+
+
+def test_a_tracker_starts_nearer_from_measured_proportions(
+    person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+) -> None:
+    known = inputs_of_calibration(
+        calibrated_of(replace(draft, stature_m=person.stature_m, factors=person.factors)), 1.75
+    )
+
+    def tracker(factors: np.ndarray | None) -> ColourTracker:
+        made = build_colour_tracker(
+            known.rig, known.stature_m, known.model, known.white_balance, database, factors=factors
+        )
+        assert isinstance(made, ColourTracker)
+        return made
+
+    def error_m(one: ColourTracker) -> float:
+        """Of the arms' joints over the first frames in which the wearer is known."""
+        errors = []
+        for frames in bends[:10]:
+            body = one.step(frames).body
+            if body.joints_m is not None:
+                truth = person.truth.at((frames.t_ns - 1_000_000_000) / 1e9).joints_m
+                errors.append(np.linalg.norm(body.joints_m - truth, axis=1)[ARMS].mean())
+        return float(np.mean(errors))
+
+    def shape_error_m(one: ColourTracker) -> float:
+        return float(np.abs(one.skeleton.rest_m - person.truth.skeleton.rest_m)[ARMS].mean())
+
+    assert known.factors is person.factors
+    given, unknown = tracker(known.factors), tracker(None)
+    np.testing.assert_allclose(given.skeleton.rest_m, person.truth.skeleton.rest_m, atol=1e-9)
+    assert error_m(given) < error_m(unknown)
+    assert shape_error_m(given) < 0.5 * shape_error_m(unknown)
+    given.reset()
+    np.testing.assert_allclose(given.skeleton.rest_m, person.truth.skeleton.rest_m, atol=1e-9)
+
+
+def test_a_stature_is_asked_for_and_checked(tmp_path: Path, draft: Draft) -> None:
+    context = FakeContext(tmp_path, draft)
+    step = BodyStep(context)
+    step.enter()
+    assert context.scenes == [Scene.ARM_BENDS]
+    assert "how tall" in step.view().sentence
+    for bad in (None, "1.8", True, float("nan"), 0.7, 2.4, 175):
+        with pytest.raises(InputError, match="stature"):
+            step.command("stature", {"m": bad})
+    with pytest.raises(InputError, match="not known"):
+        step.command("measure", {})
+    with pytest.raises(InputError, match="not known"):
+        step.command("skip", {})
+    assert kept(context).stature_m is None
+    step.command("stature", {"m": 1.62})
+    assert kept(context).stature_m == 1.62
+    view = step.view()
+    assert view.state is StepState.WAITING
+    assert view.details["can_measure"]
+    step.command("skip", {})
+    assert step.view().state is StepState.DONE
+    assert context.draft.factors is None
+
+
+@pytest.mark.parametrize(
+    ("lacking", "why"),
+    [
+        ({"rig": None}, "the room is not known"),
+        ({"colours": {}}, "the colours are not known"),
+        ({"rig": "one"}, "one camera cannot tell size from distance"),
+    ],
+)
+def test_where_nothing_can_be_measured_the_stature_is_enough(
+    tmp_path: Path, draft: Draft, lacking: dict[str, object], why: str
+) -> None:
+    if lacking.get("rig") == "one":
+        assert draft.rig is not None
+        lacking = {"rig": Rig(draft.rig.cameras[:1])}
+    context = FakeContext(tmp_path, replace(draft, **lacking))  # type: ignore[arg-type]
+    step = BodyStep(context)
+    step.enter()
+    step.command("stature", {"m": 1.7})
+    view = step.view()
+    assert view.state is StepState.DONE
+    assert why in view.sentence
+    with pytest.raises(InputError, match=why):
+        step.command("measure", {})
+
+
+def test_leaving_ends_the_measurement(
+    tmp_path: Path, draft: Draft, person: Wearer, database: PoseDatabase
+) -> None:
+    def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
+        step.leave()
+        stroked = {
+            n: StrokedPicture(one.pixels, one.strokes) for n, one in person.scribbles.items()
+        }
+        return build_colour_tracker(person.rig, person.stature_m, (), stroked, database)
+
+    context = FakeContext(tmp_path, draft)
+    step = BodyStep(context, make)
+    step.enter()
+    step.command("stature", {"m": 1.7})
+    step.command("measure", {})
+    step.tick(0)
+    assert context.run_job(step)  # nobody feeds the hub, yet it ends
+    assert context.draft.factors is None

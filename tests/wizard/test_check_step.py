@@ -1,0 +1,137 @@
+"""Check: what it asks for first, how it judges, and what Save does when it cannot."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mocapd.calibrate.calibration_file import FILE_NAME
+from mocapd.config_sections import TrackerSection
+from mocapd.errors import InputError
+from mocapd.wizard.check_measure import CameraMeasure, Measure
+from mocapd.wizard.check_step import CheckStep, Phase, missing
+from mocapd.wizard.check_tracking import CheckSettings
+from mocapd.wizard.check_verdict import Delivery, Grade, camera_verdict, room_problems, verdict_json
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.saving import load_draft, save_draft
+from mocapd.wizard.step import Scene, StepState
+from tests.wizard.context import FakeContext
+from tests.wizard.drafts import full_draft
+
+ALL_ARRIVE = Delivery(received=150, lost=0, rate_hz=29.9, asked_hz=30.0, width_px=640)
+
+
+def measures(
+    shift_px: float = 0.5, match: float = 0.9, lean_rad: float = 0.1, hips_m: float = 0.9,
+    scale: float = 1.0,
+) -> list[Measure]:  # fmt: skip
+    """Fifty frames, two of them with trouble."""
+    out = []
+    for i in range(50):
+        away = np.array([shift_px if i > 1 else 50.0, 0.0])
+        one = CameraMeasure(away, float(np.linalg.norm(away)) * 0.004, match)
+        out.append(Measure(i, {"cam0": one}, lean_rad, hips_m, np.full(3, scale)))
+    return out
+
+
+def check_step(context: FakeContext) -> CheckStep:
+    def died(error: BaseException) -> None:
+        raise error
+
+    return CheckStep(context, CheckSettings(TrackerSection()), NewestBody(), died)
+
+
+@pytest.mark.parametrize(
+    ("changes", "delivery", "grade", "says"),
+    [
+        ({}, {}, Grade.GOOD, ""),
+        ({"shift_px": 4.0}, {}, Grade.DOUBTFUL, "step Room"),
+        ({"shift_px": 12.0}, {}, Grade.BAD, "step Room"),
+        ({"shift_px": 4.0}, {"width_px": 1920}, Grade.DOUBTFUL, "cm"),
+        ({"match": 0.5}, {}, Grade.DOUBTFUL, "step Colour"),
+        ({"match": 0.2}, {}, Grade.BAD, "step Colour"),
+        ({}, {"lost": 20}, Grade.DOUBTFUL, "USB port"),
+        ({}, {"rate_hz": 15.0}, Grade.DOUBTFUL, "15 pictures a second"),
+    ],
+)
+def test_a_camera_is_judged_by_its_worst_figure(
+    changes: dict[str, float], delivery: dict[str, Any], grade: Grade, says: str
+) -> None:
+    verdict = camera_verdict("cam0", measures(**changes), replace(ALL_ARRIVE, **delivery))
+    assert verdict.grade is grade
+    if verdict.problem is None:
+        assert grade is Grade.GOOD
+    else:
+        assert says in f"{verdict.problem.what} {verdict.problem.fix}"
+
+
+def test_a_camera_that_saw_nobody_is_bad_and_has_no_figures() -> None:
+    verdict = camera_verdict("cam1", measures(), ALL_ARRIVE)
+    assert verdict.grade is Grade.BAD
+    assert verdict.seen == 0.0
+    assert math.isnan(verdict.cm)
+    assert verdict_json(verdict)["cm"] is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({}, None),
+        ({"lean_rad": 0.6}, "the floor"),
+        ({"hips_m": 1.2}, "the floor"),
+        ({"scale": 1.12}, "the scale"),
+    ],
+)
+def test_a_room_that_contradicts_the_person_is_told(
+    changes: dict[str, float], where: str | None
+) -> None:
+    found = room_problems(measures(**changes), hips_m=0.92, floor_known=True)
+    assert [one.where for one in found] == ([where] if where else [])
+
+
+def test_what_was_left_out_is_named_with_its_step(tmp_path: Path) -> None:
+    assert [one.where for one in missing(Draft())] == ["room", "body"]
+    assert [one.where for one in missing(replace(full_draft(), colours={}))] == ["colour"]
+    assert not missing(full_draft())
+    context = FakeContext(tmp_path, Draft())
+    step = check_step(context)
+    step.enter()
+    assert step.view().state is StepState.FAILED
+    assert context.job is None
+    assert context.scenes == [Scene.MOVING]
+
+
+def test_nothing_is_saved_before_it_is_judged(tmp_path: Path) -> None:
+    context = FakeContext(tmp_path, full_draft())
+    step = check_step(context)
+    step.enter()
+    assert step.view().state is StepState.WORKING
+    for verb in ("save", "measure", "dance"):
+        with pytest.raises(InputError):
+            step.command(verb, {})
+    step.leave()
+    assert context.times_saved == 0
+
+
+def test_a_place_that_cannot_be_written_is_told_and_can_be_mended(tmp_path: Path) -> None:
+    context = FakeContext(tmp_path, full_draft())
+    save_draft(replace(full_draft(), stature_m=1.5), context.state_dir)
+    before = (context.state_dir / FILE_NAME).read_bytes()
+    step = check_step(context)
+    step._phase = Phase.JUDGED
+    colours = context.state_dir / "colours"
+    colours.rename(tmp_path / "away")
+    colours.write_text("in the way")
+    with pytest.raises(InputError, match="untouched"):
+        step.command("save", {})
+    assert (context.state_dir / FILE_NAME).read_bytes() == before
+    assert context.times_saved == 0
+    colours.unlink()
+    step.command("save", {})
+    assert context.times_saved == 1
+    assert load_draft(context.state_dir).stature_m == 1.72
+    assert step.view().details["saved"] == str(context.state_dir / FILE_NAME)
