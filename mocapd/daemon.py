@@ -12,12 +12,14 @@ from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
 from mocapd.config_sections import Config
 from mocapd.errors import MocapdError
 from mocapd.health import camera_message, health_message
+from mocapd.mountings import Mountings
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.osc_sink import OscSink
 from mocapd.outputs.zenoh_sink import ZenohSink
 from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.smoothing import Smoother
@@ -59,9 +61,10 @@ class Daemon:
         self._session = session
         self._inputs = {camera.source.name: camera for camera in session.cameras}
         self._collector = FrameCollector(self._inputs)
+        self.hub = FrameHub(self._inputs, self._collector)  # who looks at the pictures joins it
+        self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
-            CaptureThread(c.source, self._collector, self.died, c.expected_hz)
-            for c in session.cameras
+            CaptureThread(c.source, self.hub, self.died, c.expected_hz) for c in session.cameras
         ]
         smoother = Smoother(config.smoothing.preset, session.tracker.skeleton)
         self._loop = PipelineLoop(
@@ -72,6 +75,7 @@ class Daemon:
         self._death: BaseException | None = None
         self._opened = ExitStack()
         self._started_unix_ns = 0
+        self.newest: tuple[BodyState, Skeleton] | None = None  # published; replaced whole
 
     def __enter__(self) -> "Daemon":
         """Open the outputs, then start the threads. Raises what opening an output raises."""
@@ -129,16 +133,21 @@ class Daemon:
         states = [capture.status().state for capture in self._captures]
         return ended or all(state is CaptureState.ENDED for state in states)
 
+    def statuses(self) -> dict[str, CaptureStatus]:
+        """How each camera fares, by id; from any thread."""
+        return {status.camera: status for status in (c.status() for c in self._captures)}
+
     def snapshot(self) -> Snapshot:
         """How everything fares now."""
         return Snapshot(
             self._loop.metrics(),
-            {status.camera: status for status in (c.status() for c in self._captures)},
+            self.statuses(),
             {sink.name: sink.status() for sink in self._sinks},
         )
 
     def tell(self, snapshot: Snapshot) -> None:
-        """Health and camera status to Zenoh; call it about once a second."""
+        """Look after the cameras, then health and camera status to Zenoh; call it about once a second."""
+        self._mountings.look()
         if self._zenoh is None:
             return
         self._zenoh.set_state(
@@ -153,11 +162,16 @@ class Daemon:
         for name, status in snapshot.cameras.items():
             self._zenoh.set_state(
                 camera_message(
-                    self.instance, self._inputs[name], status, snapshot.metrics.cameras[name]
+                    self.instance,
+                    self._inputs[name],
+                    status,
+                    snapshot.metrics.cameras[name],
+                    self._mountings.of(name),
                 )
             )
 
     def _publish(self, body: BodyState, skeleton: Skeleton, _frames: FrameSet) -> None:
+        self.newest = body, skeleton
         frame = skeleton_frame(
             body,
             skeleton,

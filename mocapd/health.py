@@ -4,6 +4,7 @@ import math
 import os
 
 import mocapd
+from mocapd.calibrate.bump_watch import Mounting
 from mocapd.camera_inputs import CameraInput
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
@@ -48,7 +49,11 @@ def health_message(
 
 
 def camera_message(
-    instance: str, camera: CameraInput, status: CaptureStatus, metrics: CameraMetrics
+    instance: str,
+    camera: CameraInput,
+    status: CaptureStatus,
+    metrics: CameraMetrics,
+    mounting: Mounting,
 ) -> CameraStatus:
     """How one camera fares."""
     return CameraStatus(
@@ -63,6 +68,7 @@ def camera_message(
         frames=status.frames,
         lost_frames=metrics.counts.lost + status.torn,
         reopened=status.reopens,
+        mounting=mounting.value,
     )
 
 

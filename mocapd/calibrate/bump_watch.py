@@ -1,21 +1,24 @@
-"""Whether a camera was bumped: its pictures and the body have come apart, and stay apart.
+"""Whether a camera was bumped: the room has moved in its pictures, all of it as by one turn, and stays so.
 
-A person who is half hidden, or tracked badly for a moment, also disagrees with the pictures; but then
-to every side and not for long. A camera that was turned disagrees by the same shift all the time.
+The wearer's body cannot tell: with two cameras, all that a turn does within the plane of both views
+is taken up by the body's place, and what a roll does too. The fixed points of the room are seen by
+each camera alone, with or without somebody there. See docs/decisions/calibration.md.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 
-from mocapd.clock import nanoseconds, seconds
-from mocapd.types import Floats
+from mocapd.calibrate.room_marks import RoomMarks, room_marks, seen_turn
+from mocapd.clock import nanoseconds
+from mocapd.geometry import rotations
+from mocapd.types import Bytes, Camera, Floats
 
 
 class Mounting(StrEnum):
-    """`unknown`: not yet watched for long enough; `steady`; `bumped`: calibrate the room again."""
+    """`unknown`: too little of the room is seen; `steady`; `bumped`: calibrate the room again."""
 
     UNKNOWN = "unknown"
     STEADY = "steady"
@@ -24,109 +27,107 @@ class Mounting(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class BumpParams:
-    """When a shift counts."""
+    """When a turn counts."""
 
-    window_s: float = 2.0  # over which a shift must persist
-    learning_s: float = 3.0  # of good frames, from which the usual shift is learned
-    least_shift_px: float = 1.5  # work px; the fit spreads a bump over the cameras
-    spreads: float = 4.0  # and as many times the usual spread of a window's shift
-    least_support_px: float = 200.0  # confirmed work px of a frame that counts
-    least_share: float = 0.6  # of the usual support: less is a body that is hidden in part
-    present: float = 0.6  # share of the window's frames that must count
+    least_turn_deg: float = 0.4  # 2 cm at 3 m; that of a camera at rest is measured to 0.1
+    least_marks: int = 10  # that agree, to say anything
+    least_share: float = 0.2  # and of the marks there were: somebody near hides most of the room
+    lasting_s: float = 1.5  # who leans against the table and goes is no bump
+    blind_s: float = 10.0  # without enough marks, what was said is no longer known
+    renewed_s: float = 10.0  # how often marks in the present light are kept beside the first ones
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Residual:
-    """One camera in one frame: the mean way (2,) from what is drawn to what is seen [work px], and how
-    many confirmed pixels it rests on."""
+class _Anchor:
+    """Marks, and how far the camera was turned when they were made (4,)."""
 
-    shift_px: Floats
-    support_px: float
+    marks: RoomMarks
+    turned_xyzw: Floats
 
 
 @dataclass(slots=True, eq=False)
 class _Watched:
-    """What is remembered of one camera: stamped residuals, and what is usual."""
+    """What is remembered of one camera. anchors: the first marks, and the latest while it was steady."""
 
-    recent: list[tuple[int, Residual]]
-    learned: list[Floats]
-    learned_s: float = 0.0
-    last_ns: int | None = None
-    usual: Floats | None = None
-    spread_px: float = 0.0
-    support_px: float = 0.0
+    camera: Camera
+    anchors: list[_Anchor] = field(default_factory=list)
+    renewed_ns: int = 0
+    seen_ns: int = 0  # when enough marks were seen last
+    seems: Mounting = Mounting.UNKNOWN  # what is seen, and since when
+    since_ns: int = 0
+    told: bool = False  # the first marks have shown to be of the room
+    turn_deg: float = 0.0
     mounting: Mounting = Mounting.UNKNOWN
 
 
 class BumpWatch:
-    """Fed every frame's residuals by camera; tells the mounting of each. Pure: time comes with the frames.
+    """Shown a picture of each camera now and then, about once a second; tells how each is mounted.
 
-    The body is fitted to all cameras at once, so of two cameras both may come apart from it when one
-    is bumped; then both are named, the worse first, and the background tells which to look after.
+    What is usual is what it sees first: make it anew when the room was calibrated anew.
     """
 
-    def __init__(self, cameras: Sequence[str], params: BumpParams | None = None) -> None:
+    def __init__(self, cameras: Sequence[Camera], params: BumpParams | None = None) -> None:
         self._p = params if params is not None else BumpParams()
-        self._watched = {name: _Watched([], []) for name in cameras}
+        self._watched = {camera.name: _Watched(camera) for camera in cameras}
 
-    def reset(self) -> None:
-        """The room was calibrated anew: learn again what is usual."""
-        for name in self._watched:
-            self._watched[name] = _Watched([], [])
+    def mounting(self, camera: str) -> Mounting:
+        """As last seen; `unknown` for a camera that is not watched."""
+        return self._watched[camera].mounting if camera in self._watched else Mounting.UNKNOWN
 
-    def step(self, t_ns: int, residuals: Mapping[str, Residual]) -> Mapping[str, Mounting]:
-        """The mounting of every camera; one without a body in this frame is absent from `residuals`."""
-        for name, residual in residuals.items():
-            self._see(self._watched[name], t_ns, residual)
-        return {name: one.mounting for name, one in self._watched.items()}
+    def turn_deg(self, camera: str) -> float:
+        """By how much it is turned from where it was at first, as last seen."""
+        return self._watched[camera].turn_deg
 
-    @property
-    def bumped(self) -> tuple[str, ...]:
-        """The cameras that came apart, the worst first."""
-        away = {
-            name: float(np.linalg.norm(self._window_shift(one) - one.usual))
-            for name, one in self._watched.items()
-            if one.mounting is Mounting.BUMPED and one.usual is not None and one.recent
-        }
-        return tuple(sorted(away, key=lambda name: -away[name]))
+    def look(self, name: str, t_ns: int, pixels: Bytes) -> Mounting:
+        """A picture (height,width,3) BGR of one camera, and when it was taken."""
+        p, one = self._p, self._watched[name]
+        turned = self._turned(one, pixels)
+        if turned is None:
+            blind = t_ns - one.seen_ns > nanoseconds(p.blind_s)
+            if blind:
+                one.mounting = one.seems = Mounting.UNKNOWN
+            if not one.anchors or (blind and not one.told):
+                self._begin(one, t_ns, pixels)
+            return one.mounting
+        one.seen_ns = t_ns
+        one.turn_deg = float(np.degrees(np.linalg.norm(rotations.log(turned))))
+        self._judge(one, t_ns)
+        if one.mounting is one.seems is Mounting.STEADY:
+            self._renew(one, t_ns, pixels, turned)
+        return one.mounting
 
-    def _see(self, one: _Watched, t_ns: int, residual: Residual) -> None:
+    def _turned(self, one: _Watched, pixels: Bytes) -> Floats | None:
+        """(4,) since the first picture, by the first marks of which enough are seen."""
         p = self._p
-        dt_s = 0.0 if one.last_ns is None else min(seconds(t_ns - one.last_ns), 0.2)
-        one.last_ns = t_ns
-        enough = max(p.least_support_px, p.least_share * one.support_px)
-        if residual.support_px >= enough and np.isfinite(residual.shift_px).all():
-            one.recent.append((t_ns, residual))
-        start_ns = t_ns - nanoseconds(p.window_s)
-        one.recent = [(t, r) for t, r in one.recent if t > start_ns]
-        if one.usual is None:
-            self._learn(one, dt_s, t_ns)
-            return
-        expected = p.window_s / max(dt_s, 1e-3)
-        if len(one.recent) < p.present * expected:
-            return  # too little is seen to say anything new
-        away = float(np.linalg.norm(self._window_shift(one) - one.usual))
-        limit = max(p.least_shift_px, p.spreads * one.spread_px)
-        if away > limit:
-            one.mounting = Mounting.BUMPED
-        elif away < 0.5 * limit:
-            one.mounting = Mounting.STEADY
+        for anchor in one.anchors:
+            seen = seen_turn(anchor.marks, pixels, one.camera)
+            if seen.agree >= max(p.least_marks, p.least_share * len(anchor.marks.places)):
+                return rotations.multiply(rotations.exp(seen.turn_rad), anchor.turned_xyzw)
+        return None
 
-    def _learn(self, one: _Watched, dt_s: float, t_ns: int) -> None:
-        """What is usual: middle and spread of the shift, from the first seconds that count."""
-        if not one.recent or one.recent[-1][0] != t_ns:
-            return
-        one.learned.append(one.recent[-1][1].shift_px)
-        one.support_px += (one.recent[-1][1].support_px - one.support_px) / len(one.learned)
-        one.learned_s += dt_s
-        if one.learned_s >= self._p.learning_s:
-            all_of_them = np.stack(one.learned)
-            one.usual = np.median(all_of_them, axis=0)
-            # neighbouring frames err alike: about five independent ones are in a window
-            one.spread_px = float(np.sqrt(all_of_them.var(axis=0).sum() / 5.0))
-            one.mounting = Mounting.STEADY
+    def _judge(self, one: _Watched, t_ns: int) -> None:
+        """What is seen for long enough becomes the mounting."""
+        limit_deg = self._p.least_turn_deg
+        if one.mounting is Mounting.BUMPED:
+            limit_deg *= 0.5
+        seems = Mounting.BUMPED if one.turn_deg > limit_deg else Mounting.STEADY
+        if seems is not one.seems:
+            one.seems, one.since_ns = seems, t_ns
+        if t_ns - one.since_ns >= nanoseconds(self._p.lasting_s):
+            one.mounting, one.told = seems, True
 
-    def _window_shift(self, one: _Watched) -> Floats:
-        """Middle of the shift over the window: a moment's trouble does not move it."""
-        shift: Floats = np.median(np.stack([r.shift_px for _, r in one.recent]), axis=0)
-        return shift
+    def _begin(self, one: _Watched, t_ns: int, pixels: Bytes) -> None:
+        """The first marks, once there are enough."""
+        marks = room_marks(pixels, one.camera)
+        if len(marks.places) >= 2 * self._p.least_marks:
+            one.anchors = [_Anchor(marks, rotations.IDENTITY_XYZW)]
+            one.seen_ns = one.renewed_ns = t_ns
+
+    def _renew(self, one: _Watched, t_ns: int, pixels: Bytes, turned: Floats) -> None:
+        """Marks of now, for when the light has changed so much that the first ones are not found."""
+        if t_ns - one.renewed_ns < nanoseconds(self._p.renewed_s):
+            return
+        one.renewed_ns = t_ns
+        marks = room_marks(pixels, one.camera)
+        if len(marks.places) >= 2 * self._p.least_marks:
+            one.anchors = [one.anchors[0], _Anchor(marks, turned)]

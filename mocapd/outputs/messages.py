@@ -57,6 +57,12 @@ class CameraStatus(msgspec.Struct, frozen=True):
     frames: Annotated[int, Meta(description="pictures taken since the start")]
     lost_frames: Annotated[int, Meta(description="pictures that the source lost or tore")]
     reopened: Annotated[int, Meta(description="how often it had to be opened again")]
+    mounting: Annotated[
+        str,
+        Meta(
+            description="`steady`; `bumped`: turned since the start, calibrate the room again; or `unknown`"
+        ),
+    ] = "unknown"
     schema: Annotated[str, Meta(description=f"always `{CAMERA_STATUS}`")] = CAMERA_STATUS
 
 
