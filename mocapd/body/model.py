@@ -109,8 +109,8 @@ def build_model(stature_m: float) -> BodyModel:
 def shaped(model: BodyModel, factors: Floats) -> tuple[Floats, Floats]:
     """T-pose vertices (V,3) and joints (J,3) of a body with these factors: linear in them."""
     offset = factors - 1.0
-    vertices = offset @ model.d_vertices.reshape(N_SHAPE, -1)
-    rest = offset @ model.d_rest.reshape(N_SHAPE, -1)
+    vertices = offset @ model.d_vertices.reshape(len(factors), -1)
+    rest = offset @ model.d_rest.reshape(len(factors), -1)
     return model.vertices_m + vertices.reshape(-1, 3), model.rest_m + rest.reshape(-1, 3)
 
 

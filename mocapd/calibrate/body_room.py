@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import N_POSE, N_SHAPE, BodyModel, build_model
-from mocapd.body.shape import FACTOR_SD
 from mocapd.calibrate.body_rows import (
     N_CAMERA,
     BodyRows,
@@ -15,36 +14,43 @@ from mocapd.calibrate.body_rows import (
     mean_camera,
     moved_camera,
 )
+from mocapd.calibrate.camera_doubt import Doubt, doubt
+from mocapd.calibrate.first_placing import first_placing
+from mocapd.calibrate.free_surface import FreeBody, free_body
 from mocapd.calibrate.keyframes import Keyframe, choose, starts, views
-from mocapd.calibrate.patch_tracks import MARKS, Moment, unplaced
-from mocapd.calibrate.relative_pose import relative_pose
+from mocapd.calibrate.patch_tracks import Moment
 from mocapd.calibrate.standing import upright
 from mocapd.errors import ConfigError
 from mocapd.geometry.cameras import centre
+from mocapd.trackers.colour.drawing import work_factors
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, stepped
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera, Floats, Rig
+
+_SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 
 @dataclass(frozen=True, slots=True)
 class RoomParams:
     """How the room is solved."""
 
-    keyframes: int = 48
+    keyframes: int = 64
     rounds: int = 20
     averaged: int = (
         8  # last rounds: steps end in the noise of whole pixels, which their mean halves
     )
     radius_px: int = 14  # work px within which colours are looked for
-    polish: int = 3  # iterations of every pose in the room that was found
+    polish: int = 3  # rounds of the poses alone in the room that was found
     loose_s: float = 0.4  # a start is held to as loosely as a prediction over this time
     joint_sd_rad: float = 0.5  # how far a pose may yield to a change of room or shape
     least_match: float = 0.6  # of a keyframe that counts
-    tolerated_cost: float = 1.5  # and its cost, against that of the middle one
+    tolerated_cost: float = 3.0  # and its cost, against that of the middle one
     least_keyframes: int = 6
-    # how many of them count in full against what is known of proportions: their errors are alike
-    independent_frames: float = 32.0
+    # how many of them count in full against what is known of people: their errors are alike
+    independent_frames: float = 8.0
+    # how far a surface may be off from what the shape's factors make of it
+    off_sd_m: float = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +60,7 @@ class RoomReport:
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
     colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
     the first; match: share of the drawn shirt that the pictures confirm; factors (N_SHAPE,): the
-    wearer's proportions.
+    wearer's proportions; doubts: by camera but the first.
     """
 
     residual_px: Mapping[str, float]
@@ -62,11 +68,12 @@ class RoomReport:
     distance_m: Mapping[str, float]
     match: float
     factors: Floats
+    doubts: Mapping[str, Doubt]
 
 
 @dataclass(slots=True, eq=False)
 class _Scene:
-    """What is solved for: cameras, the factors, and a state per keyframe."""
+    """What is solved for: cameras, the factors (N,) of a free body, and a state per keyframe."""
 
     cameras: list[Camera]
     factors: Floats
@@ -78,64 +85,33 @@ def room_from_body(
     lenses: Sequence[Camera],
     stature_m: float,
     params: RoomParams | None = None,
+    near: Rig | None = None,
 ) -> tuple[Rig, RoomReport]:
     """The rig in world coordinates: floor at y = 0, the wearer at the origin facing +Z at the start.
 
-    moments: from `PatchTracks` of the same cameras. Raises ConfigError when they do not tell where
-    the cameras stand.
+    moments: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
+    Raises ConfigError when the moments do not tell where the cameras stand.
     """
     p = params if params is not None else RoomParams()
-    cameras = first_placing(moments, lenses)
-    names = [camera.name for camera in cameras]
-    keyframes = choose(moments, names, p.keyframes)
+    keyframes = choose(moments, [camera.name for camera in lenses], p.keyframes)
     model = build_model(stature_m)
-    solver = RoomSolver(model, cameras, keyframes, p)
-    scene, report = solver.solve()
-    return upright(Rig(tuple(scene.cameras)), moments, stature_m, scene.factors), report
+    solvers = [RoomSolver(model, first_placing(moments, lenses), keyframes, p)]
+    if near is not None:
+        old = {camera.name: camera for camera in near.cameras}
+        before = [replace(c, R=old[c.name].R, t_m=old[c.name].t_m) for c in lenses]
+        solvers.append(RoomSolver(model, before, keyframes, p))
+    rig, report = min(solvers, key=lambda solver: solver.cost).solve()
+    return upright(rig, moments, stature_m, report.factors), report
 
 
-def first_placing(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
-    """The first camera where a lone webcam would stand, the others by the bodies seen in common.
+@dataclass(slots=True, eq=False)
+class _Evidence:
+    """Normal equations H (n,n), b (n,) of shape and cameras without the poses; follows: by keyframe how
+    its pose answers to a step of those, and its own step; None for one that is not believed."""
 
-    Cameras that share nothing with the first are chained through others. Raises ConfigError naming
-    a camera that shares nothing with any.
-    """
-    alone = unplaced(lenses)
-    placed: dict[str, Camera] = {alone[0].name: alone[0]}
-    while len(placed) < len(alone):
-        candidates = [
-            (_shared(moments, a, b.name), a, b)
-            for a in placed
-            for b in alone
-            if b.name not in placed
-        ]
-        shared, known, new = max(candidates, key=lambda one: len(one[0]))
-        first = [m[known] for m in shared]
-        second = [m[new.name] for m in shared]
-        if not shared:
-            raise ConfigError(
-                "never saw the wearer together with another camera",
-                f"camera {new.name!r}",
-                "walk where both see the shirt, or turn the camera",
-            )
-        weights = np.array(
-            [
-                np.minimum(a.confidence[MARKS], b.confidence[MARKS])
-                for a, b in zip(first, second, strict=True)
-            ]
-        )
-        pose = relative_pose(
-            np.concatenate([s.joints_m[MARKS] for s in first]),
-            np.concatenate([s.joints_m[MARKS] for s in second]),
-            weights.ravel(),
-        )
-        old = placed[known]
-        placed[new.name] = replace(new, R=pose.R @ old.R, t_m=pose.R @ old.t_m + pose.t_m)
-    return [placed[camera.name] for camera in alone]
-
-
-def _shared(moments: Sequence[Moment], a: str, b: str) -> list[Moment]:
-    return [m for m in moments if a in m and b in m]
+    H: Floats
+    b: Floats
+    follows: list[tuple[Floats, Floats] | None]
 
 
 class RoomSolver:
@@ -148,30 +124,33 @@ class RoomSolver:
         keyframes: Sequence[Keyframe],
         params: RoomParams,
     ) -> None:
-        self._model, self._p = model, params
-        self._tracker = Params()
-        self._work = [
-            max(1, round(c.size_px[0] / self._tracker.work_width_px), -(-max(c.size_px) // 480))
-            for c in cameras
-        ]
-        self._n = N_SHAPE + N_CAMERA * (len(cameras) - 1)
+        self._p, self._tracker = params, Params()
+        self._body: FreeBody = free_body(model, params.off_sd_m)
+        self._work = work_factors(cameras, self._tracker.work_width_px)
+        self._n_shape = len(self._body.sd)
+        self._n = self._n_shape + N_CAMERA * (len(cameras) - 1)
         self._views: list[list[View]] = []
-        scene = _Scene(list(cameras), np.ones(N_SHAPE), [])
+        scene = _Scene(list(cameras), np.ones(self._n_shape), [])
         fitter = Fitter(model, cameras, self._work, self._tracker)
         for keyframe in keyframes:
             seen = views(keyframe, self._work)
             fits = [
                 fitter.fit(s, seen, params.loose_s, 8, learn_shape=False)
-                for s in starts(keyframe, cameras, model, scene.factors)
+                for s in starts(keyframe, cameras, model, np.ones(N_SHAPE))
             ]
             best = min(fits, key=lambda fit: fit.cost)
-            scene.states.append(best.state)
+            scene.states.append(replace(best.state, factors=scene.factors))
             self._views.append(seen)
-        self.scene = scene
+        self._scene = scene
 
-    def solve(self) -> tuple[_Scene, RoomReport]:
-        """The scene at rest, and how good it is. Raises ConfigError when too little agrees."""
-        p, scene = self._p, self.scene
+    @property
+    def cost(self) -> float:
+        """Of the middle keyframe as things are now, for each drawn pixel."""
+        return float(np.median([_cost(frame) for frame in self._gather()]))
+
+    def solve(self) -> tuple[Rig, RoomReport]:
+        """The room at rest, and how good it is. Raises ConfigError when too little agrees."""
+        p, scene = self._p, self._scene
         kept: list[tuple[tuple[Camera, ...], Floats]] = []
         for i in range(p.rounds):
             self._step(scene, self._gather())
@@ -182,51 +161,37 @@ class RoomSolver:
         ]
         scene.factors = np.mean([factors for _, factors in kept], axis=0)
         scene.states = [replace(state, factors=scene.factors) for state in scene.states]
-        self._polish()
-        return scene, self._report(scene, self._gather())
-
-    def _polish(self) -> None:
-        """Every pose to rest between the cameras as they are."""
-        p, scene = self._p, self.scene
-        fitter = Fitter(self._model, scene.cameras, self._work, self._tracker)
-        scene.states = [
-            fitter.fit(s, v, p.loose_s, p.polish, learn_shape=False).state
-            for s, v in zip(scene.states, self._views, strict=True)
-        ]
+        for _ in range(p.polish):
+            self._follow(scene, self._evidence(self._gather()), np.zeros(self._n))
+        rows = self._gather()
+        covariance: Floats = np.asarray(
+            np.linalg.inv(self._informed(self._evidence(rows)).H), dtype=np.float64
+        )
+        return Rig(tuple(scene.cameras)), self._report(scene, rows, covariance)
 
     def _gather(self) -> list[list[BodyRows]]:
         """The rows of every keyframe's views."""
-        scene = self.scene
+        scene = self._scene
         gatherer = RowGatherer(
-            Fitter(self._model, scene.cameras, self._work, self._tracker), self._p.radius_px
+            Fitter(self._body.model, scene.cameras, self._work, self._tracker), self._p.radius_px
         )
         return [
             [gatherer.gather(s, view) for view in v]
             for s, v in zip(scene.states, self._views, strict=True)
         ]
 
-    def _step(self, scene: _Scene, rows: Sequence[Sequence[BodyRows]]) -> None:
-        """One step of cameras and shape, the poses following.
-
-        All is moved by the same rows, with the poses eliminated (Schur complement). To alternate with
-        the tracker's own fit was tried: its cost differs a little, and room and poses then drift
-        together along what the pictures hardly tell.
-        """
+    def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> "_Evidence":
+        """What all keyframes say together. Raises ConfigError when too few agree with the body."""
         p = self._p
-        H, b = np.zeros((self._n, self._n)), np.zeros(self._n)
-        yields: list[tuple[Floats, Floats] | None] = []
+        out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
         tolerable = p.tolerated_cost * float(np.median([_cost(frame) for frame in rows]))
         for frame, seen in zip(rows, self._views, strict=True):
             if _match(frame) < p.least_match or _cost(frame) > tolerable:
-                yields.append(None)
+                out.follows.append(None)
                 continue
-            Hpp = np.diag(self._pose_information())
-            bp = np.zeros(N_POSE)
-            Hps, Hss, bs = (
-                np.zeros((N_POSE, self._n)),
-                np.zeros((self._n, self._n)),
-                np.zeros(self._n),
-            )
+            Hpp, bp = np.diag(self._pose_information()), np.zeros(N_POSE)
+            Hps, Hss = np.zeros((N_POSE, self._n)), np.zeros((self._n, self._n))
+            bs = np.zeros(self._n)
             for row, view in zip(frame, seen, strict=True):
                 J = self._columns(row, view.index)
                 Hpp += row.H[:N_POSE, :N_POSE]
@@ -236,10 +201,10 @@ class RoomSolver:
                 bp += row.b[:N_POSE]
             back: Floats = np.asarray(np.linalg.solve(Hpp, Hps), dtype=np.float64)
             own: Floats = np.asarray(np.linalg.solve(Hpp, bp), dtype=np.float64)
-            H += Hss - Hps.T @ back
-            b += bs - Hps.T @ own
-            yields.append((back, own))
-        counted = sum(one is not None for one in yields)
+            out.H += Hss - Hps.T @ back
+            out.b += bs - Hps.T @ own
+            out.follows.append((back, own))
+        counted = sum(one is not None for one in out.follows)
         if counted < p.least_keyframes:
             raise ConfigError(
                 f"body and pictures agree in {counted} moments only, {p.least_keyframes} are needed",
@@ -247,19 +212,39 @@ class RoomSolver:
                 "check the colours of each camera, then walk about again in the light of now",
             )
         gain = p.independent_frames / counted
-        H, b = H * gain, b * gain
-        prior = 1.0 / FACTOR_SD**2
-        H[:N_SHAPE, :N_SHAPE] += np.diag(prior)
-        b[:N_SHAPE] -= prior * (scene.factors - 1.0)
-        step: Floats = np.asarray(np.linalg.solve(H + 1e-9 * np.eye(self._n), b), dtype=np.float64)
-        scene.factors = np.clip(scene.factors + step[:N_SHAPE], 0.6, 1.6)
+        out.H *= gain
+        out.b *= gain
+        return out
+
+    def _informed(self, found: "_Evidence") -> "_Evidence":
+        """The same with what is known of people. Changes it."""
+        n, prior = self._n_shape, 1.0 / self._body.sd**2
+        found.H[:n, :n] += np.diag(prior)
+        found.H += 1e-9 * np.eye(self._n)
+        found.b[:n] -= prior * (self._scene.factors - 1.0)
+        return found
+
+    def _step(self, scene: _Scene, rows: Sequence[Sequence[BodyRows]]) -> None:
+        """One step of cameras and shape, the poses following.
+
+        All is moved by the same rows, with the poses eliminated (Schur complement). To alternate with
+        the tracker's own fit was tried: its cost differs a little, and room and poses then drift
+        together along what the pictures hardly tell.
+        """
+        found, n = self._informed(self._evidence(rows)), self._n_shape
+        step: Floats = np.asarray(np.linalg.solve(found.H, found.b), dtype=np.float64)
+        scene.factors = np.clip(scene.factors + step[:n], _SMALLEST, _LARGEST)
         for i in range(1, len(scene.cameras)):
-            k = N_SHAPE + N_CAMERA * (i - 1)
+            k = n + N_CAMERA * (i - 1)
             scene.cameras[i] = moved_camera(scene.cameras[i], step[k : k + N_CAMERA])
-        for k, (state, follows) in enumerate(zip(scene.states, yields, strict=True)):
+        self._follow(scene, found, step)
+
+    def _follow(self, scene: _Scene, found: "_Evidence", step: Floats) -> None:
+        """The poses after a step of shape and cameras."""
+        for k, (state, follow) in enumerate(zip(scene.states, found.follows, strict=True)):
             root, local = state.root_m, state.local_xyzw
-            if follows is not None:
-                root, local = stepped(self._model, root, local, follows[1] - follows[0] @ step)
+            if follow is not None:
+                root, local = stepped(self._body.model, root, local, follow[1] - follow[0] @ step)
             scene.states[k] = replace(state, root_m=root, local_xyzw=local, factors=scene.factors)
 
     def _pose_information(self) -> Floats:
@@ -268,11 +253,11 @@ class RoomSolver:
         return information
 
     def _columns(self, row: BodyRows, camera: int) -> Floats:
-        """(N_ROW, n): how the row's pose and shape columns make up those of shape and cameras."""
-        J = np.zeros((N_POSE + N_SHAPE, self._n))
-        J[N_POSE:, :N_SHAPE] = np.eye(N_SHAPE)
+        """(P, n): how the row's pose and shape columns make up those of shape and cameras."""
+        J = np.zeros((N_POSE + self._n_shape, self._n))
+        J[N_POSE:, : self._n_shape] = np.eye(self._n_shape)
         if camera > 0:
-            k = N_SHAPE + N_CAMERA * (camera - 1)
+            k = self._n_shape + N_CAMERA * (camera - 1)
             J[:N_CAMERA, k : k + N_CAMERA] = camera_columns(row.at_m).T
         return J
 
@@ -282,11 +267,17 @@ class RoomSolver:
         squared = sum(row.cost for row in mine) / self._tracker.row_weight
         return self._work[camera] * float(np.sqrt(squared / max(visible, 1.0)))
 
-    def _report(self, scene: _Scene, rows: Sequence[Sequence[BodyRows]]) -> RoomReport:
+    def _report(
+        self, scene: _Scene, rows: Sequence[Sequence[BodyRows]], covariance: Floats
+    ) -> RoomReport:
         good = [frame for frame in rows if _match(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
-        first = centre(scene.cameras[0])
+        first, n = centre(scene.cameras[0]), self._n_shape
+        doubts = {
+            camera.name: doubt(camera, first, covariance[k : k + N_CAMERA, k : k + N_CAMERA])
+            for camera, k in zip(scene.cameras[1:], range(n, self._n, N_CAMERA), strict=True)
+        }
         return RoomReport(
             residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(scene.cameras)},
             frames=len(good),
@@ -294,7 +285,8 @@ class RoomSolver:
                 c.name: float(np.linalg.norm(centre(c) - first)) for c in scene.cameras[1:]
             },
             match=matched / max(visible, 1.0),
-            factors=scene.factors,
+            factors=scene.factors[:N_SHAPE],
+            doubts=doubts,
         )
 
 

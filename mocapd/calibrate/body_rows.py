@@ -5,24 +5,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE
-from mocapd.body.posing_kernels import joint_shape_derivatives
-from mocapd.body.skeleton import N_JOINTS
+from mocapd.body.model import N_POSE
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.alignment_kernels import accumulate, spiral
+from mocapd.trackers.colour.alignment_kernels import spiral
+from mocapd.trackers.colour.camera_rows import CameraRows, Search
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, moved
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera, Floats
 
 N_CAMERA = 6  # world motion of a camera: v (3,) [m], then omega (3,) [rad]
-N_ROW = N_POSE + N_SHAPE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyRows:
-    """Normal equations H (N_ROW,N_ROW), b (N_ROW,) by pose, then shape; at_m (3,): the hips as drawn;
-    camera: its index.
+    """Normal equations H (P,P), b (P,) by pose, then shape; at_m (3,): the hips as drawn; camera: its
+    index.
 
     visible, matched, unexplained (21,) per patch as in `Fit`, in units of two work px; cost: of the
     robust residuals.
@@ -49,34 +46,26 @@ class RowGatherer:
     def __init__(self, fitter: Fitter, radius_px: int) -> None:
         """radius_px: work px within which a colour is looked for."""
         self.fitter = fitter
-        self._offsets = spiral(radius_px)
-        self._radius_px = float(radius_px)
-        self._d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
-        self._params: Params = fitter.params
+        self._search = Search(
+            spiral(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
+            stiffness=fitter.params.edge_stiffness,
+        )  # fmt: skip
 
     def gather(self, state: MotionState, view: View) -> BodyRows:
         """The rows of one camera, at every pixel."""
-        fitter, p, m = self.fitter, self._params, self.fitter.model
-        drawing = fitter.drawings[view.index]
-        root, local = moved(m, state, view.dt_s)
-        body = fitter.shaper(state.factors)
-        ids, triangle_at = drawing.draw(root, local, body, view.roi)
-        joint_shape_derivatives(m.parents, m.d_rest, drawing.R, self._d_joints)
-        H, b = np.zeros((N_ROW, N_ROW)), np.zeros(N_ROW)
-        visible, matched, unexplained = np.zeros(21), np.zeros(21), np.zeros(21)
-        camera, factor = drawing.camera, drawing.factor
-        cost = accumulate(
-            ids, triangle_at, view.ids, view.softness, self._offsets, len(self._offsets),
-            1.0, self._radius_px, 0.6 * self._radius_px, 0, 1, p.edge_stiffness, drawing.xy,
-            m.triangles, m.sleeves, m.sleeve_start, m.patch, body.centres, m.d_centres,
-            m.triangle_bones, m.triangle_weights, body.rest, m.d_rest, m.parents,
-            m.joint_of_group, m.group_of_joint, m.share_of_joint, drawing.R, drawing.joints,
-            self._d_joints, N_SHAPE, camera.R, camera.t_m,
-            camera.K[0, 0] / factor, camera.K[1, 1] / factor, p.row_weight,
-            H, b, visible, matched, unexplained,
+        fitter, n_shape = self.fitter, len(self.fitter.model.d_rest)
+        rows = CameraRows(n_shape)
+        drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
+        drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
+        rows.gather(
+            drawing, body, drawn, (view.ids, view.softness), self._search, n_shape,
+            fitter.params.row_weight,
         )  # fmt: skip
+        H, b = rows.system(N_POSE + n_shape)
         at_m = drawing.joints[0].copy()
-        return BodyRows(view.index, H, b, at_m, visible, matched, unexplained, cost)
+        return BodyRows(
+            view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost
+        )
 
 
 def camera_columns(at_m: Floats) -> Floats:
@@ -109,7 +98,10 @@ def mean_camera(cameras: Sequence[Camera]) -> Camera:
 
 
 def shift_px(rows: BodyRows, camera: Camera, factor: int) -> Floats:
-    """The way (2,) in work px that this camera alone would move the whole body: what `bump_watch` reads."""
+    """The way (2,) in work px that this camera alone would move the whole body.
+
+    It tells of a camera that was turned across the plane of both views, and of no other turn.
+    """
     way_m = np.linalg.solve(rows.H[:3, :3] + 1e-3 * np.eye(3), rows.b[:3])
     depth_m = float(camera.R[2] @ rows.at_m + camera.t_m[2])
     focal_px = np.array([camera.K[0, 0], camera.K[1, 1]]) / factor

@@ -18,10 +18,11 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.tracker_setup import build_tracker, with_cache
 from mocapd.trackers.base import Tracker
-from mocapd.types import BodyState, Bytes, Frame, Rig, Skeleton
+from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body_drawing import body_picture
 from mocapd.wizard.body_moments import BodyMoments, MomentParams
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibrated_of
 from mocapd.wizard.step import Tell
 
@@ -118,7 +119,7 @@ def _watch(
 ) -> bool:
     """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
     collector = FrameCollector(rig.names)
-    entry = _OfRig(collector, frozenset(rig.names))
+    entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)
     try:
@@ -151,15 +152,3 @@ def _asked(seen: bool, moments: BodyMoments) -> str:
     if not moments.bent:
         return "Arms out; now bend both elbows and stretch them again, slowly"
     return "Good. Go on bending and stretching the elbows"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _OfRig:
-    """Lets the calibrated cameras' frames through: others may be open too."""
-
-    collector: FrameCollector
-    names: frozenset[str]
-
-    def put(self, frame: Frame) -> None:
-        if frame.camera in self.names:
-            self.collector.put(frame)

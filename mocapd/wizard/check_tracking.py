@@ -14,9 +14,10 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.tracker_setup import build_tracker, with_cache
-from mocapd.types import Frame, Rig
+from mocapd.types import Rig
 from mocapd.wizard.check_measure import Measure, MeasuredTracker, Measures
 from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.only_cameras import OnlyCameras
 
 _BUILDING = 0.8  # share of the preparation that is not the rehearsal
 
@@ -83,7 +84,7 @@ class CheckTracking:
         tracker = prepared.tracker
         smoother = Smoother(smoothing, tracker.skeleton)
         self._loop = PipelineLoop(self._collector, tracker, smoother, shown.publish, died)
-        self._entry = _OfRig(self._collector, frozenset(prepared.rig.names))
+        self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
         self._loop.start()
         shown.loop = self._loop
         hub.join(self._entry)
@@ -105,15 +106,3 @@ class CheckTracking:
         self._hub.leave(self._entry)
         self._loop.stop()
         self._shown.forget()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _OfRig:
-    """Lets the calibrated cameras' frames through: others may be open too."""
-
-    collector: FrameCollector
-    names: frozenset[str]
-
-    def put(self, frame: Frame) -> None:
-        if frame.camera in self.names:
-            self.collector.put(frame)

@@ -16,8 +16,9 @@ from mocapd.geometry import rotations
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.types import Camera, Floats, Frame, Rig
+from mocapd.types import Camera, Floats, Rig
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.proposing import LoadDatabase
 from mocapd.wizard.saving import calibrated_of
 from mocapd.wizard.step import Tell
@@ -178,7 +179,7 @@ def _follow(
     """Follow the hub's frames until enough is seen; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
     collector = FrameCollector([camera.name for camera in tracks.cameras])
-    entry = _OfDraft(collector, names)
+    entry = OnlyCameras(collector, names)
     give_up_ns = clock() + nanoseconds(params.patience_s)
     hub.join(entry)
     try:
@@ -207,15 +208,3 @@ def _too_little(coverage: Coverage) -> InputError:
         else "room",
         "check the colours, walk where all cameras see the whole shirt, and begin again",
     )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _OfDraft:
-    """Lets the draft's cameras' frames through: others may be open too."""
-
-    collector: FrameCollector
-    names: frozenset[str]
-
-    def put(self, frame: Frame) -> None:
-        if frame.camera in self.names:
-            self.collector.put(frame)

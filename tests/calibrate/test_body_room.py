@@ -9,6 +9,7 @@ from mocapd.body.model import N_POSE, N_SHAPE, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.body_room import RoomParams, room_from_body
 from mocapd.calibrate.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.free_surface import free_body
 from mocapd.calibrate.patch_tracks import Sighting
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
@@ -17,7 +18,7 @@ from mocapd.geometry.cameras import centre, to_camera
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, initial_information
 from mocapd.trackers.colour.params import Params
-from mocapd.types import Camera
+from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 
 STATURE_M = 1.75
@@ -45,15 +46,17 @@ def walking(i: int) -> MotionState:
     return MotionState(root, local, np.zeros(N_POSE), np.ones(N_SHAPE), initial_information())
 
 
-def moments(n: int = 16) -> list[dict[str, Sighting]]:
+def moments(
+    n: int = 16, fitter: Fitter = FITTER, factors: Floats | None = None
+) -> list[dict[str, Sighting]]:
     """Both cameras' sightings; each judges depth wrongly by a few percent, as a lone camera does."""
     rng = np.random.default_rng(0)
     out = []
     for i in range(n):
-        state = walking(i)
+        state = walking(i) if factors is None else replace(walking(i), factors=factors)
         moment: dict[str, Sighting] = {}
-        joints, quats = FITTER.joints(state)
-        for camera, drawing in zip(CAMERAS, FITTER.drawings, strict=True):
+        joints, quats = fitter.joints(state)
+        for camera, drawing in zip(CAMERAS, fitter.drawings, strict=True):
             roi = drawing.region(state, 0.0, 24)
             assert roi is not None
             ids = drawing.render(state, 0.0, roi).copy()
@@ -89,6 +92,42 @@ def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
         tilt = np.degrees(np.arccos(np.clip(camera.R[:, 1] @ placed.R[:, 1], -1.0, 1.0)))
         assert tilt < 3.0
         assert centre(placed)[1] == pytest.approx(centre(camera)[1], abs=0.12)
+
+
+def rotation_deg(rig: Rig) -> float:
+    """How far the second camera is turned against the first, less how far it truly is."""
+    turned = [b.R @ a.R.T for a, b in (rig.cameras, CAMERAS)]
+    return float(np.degrees(rotations.angle_rad(*(rotations.from_matrix(R) for R in turned))))
+
+
+def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
+    """A body that is centimetres off everywhere, as none of the shape's factors makes it."""
+    free = free_body(MODEL, 0.02)
+    rng = np.random.default_rng(3)
+    factors = np.ones(len(free.sd))
+    factors[N_SHAPE:] += rng.normal(0.0, 0.012, len(free.sd) - N_SHAPE)
+    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], Params()), factors)
+    short = RoomParams(rounds=14, averaged=4)
+    free_rig, report = room_from_body(seen, lenses(), STATURE_M, short)
+    stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, replace(short, off_sd_m=1e-4))
+    assert rotation_deg(free_rig) < 2.0
+    assert rotation_deg(free_rig) < 0.7 * rotation_deg(stiff_rig)
+    assert rotation_deg(free_rig) < 3.0 * report.doubts["right"].rotation_deg
+
+
+def test_the_surface_is_off_alike_on_both_sides() -> None:
+    """What moves a point of the left side moves one of the right side by the mirrored way."""
+    free = free_body(MODEL, 0.02)
+    ways = free.model.d_vertices[N_SHAPE:]
+    mirror = np.array([-1.0, 1.0, 1.0])
+    at = MODEL.vertices_m
+    apart_m = np.linalg.norm(at[:, None] * mirror - at[None], axis=2)
+    twin = apart_m.argmin(axis=1)
+    # points in the plane of symmetry are their own twins; those of both tubes' ends have several
+    sure = (apart_m.min(axis=1) < 1e-9) & ((apart_m < 1e-9).sum(axis=1) == 1)
+    assert sure.mean() > 0.8
+    sure &= np.abs(at[:, 0]) > 1e-6
+    np.testing.assert_allclose(ways[:, twin[sure]], ways[:, sure] * mirror, atol=1e-9)
 
 
 def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:

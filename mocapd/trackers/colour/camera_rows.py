@@ -35,11 +35,12 @@ class Search:
 class CameraRows:
     """One camera's share of the normal equations: H (P,P), b (P,), counts (21,) per patch, cost."""
 
-    def __init__(self) -> None:
-        P = N_POSE + N_SHAPE
+    def __init__(self, n_shape: int = N_SHAPE) -> None:
+        """n_shape: how many factors the body's shape has."""
+        P = N_POSE + n_shape
         self._H, self._b = np.zeros(P * P), np.zeros(P)
         self.visible, self.matched, self.unexplained = np.zeros(21), np.zeros(21), np.zeros(21)
-        self._d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
+        self._d_joints = np.zeros((n_shape, N_JOINTS, 3))
         self.cost = 0.0
 
     def gather(
