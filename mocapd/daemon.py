@@ -3,10 +3,12 @@
 import itertools
 import threading
 import time
+from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import TracebackType
 
+from mocapd.calibrate.bump_watch import Mounting
 from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
 from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
 from mocapd.config_sections import Config
@@ -40,6 +42,7 @@ class Snapshot:
     metrics: Metrics
     cameras: dict[str, CaptureStatus]
     outputs: dict[str, SinkStatus]
+    mountings: Mapping[str, Mounting] = field(default_factory=dict)
 
 
 class Daemon:
@@ -143,6 +146,7 @@ class Daemon:
             self._loop.metrics(),
             self.statuses(),
             {sink.name: sink.status() for sink in self._sinks},
+            {name: self._mountings.of(name) for name in self._inputs},
         )
 
     def tell(self, snapshot: Snapshot) -> None:
@@ -166,7 +170,7 @@ class Daemon:
                     self._inputs[name],
                     status,
                     snapshot.metrics.cameras[name],
-                    self._mountings.of(name),
+                    snapshot.mountings[name],
                 )
             )
 

@@ -5,6 +5,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from mocapd.calibrate.bump_watch import Mounting
 from mocapd.daemon import Snapshot
 from mocapd.geometry.cameras import centre, rays
 from mocapd.types import BodyState, Camera, Rig, Skeleton
@@ -68,6 +69,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
             {
                 "name": name,
                 "state": status.state.value,
+                "bumped": snapshot.mountings.get(name) is Mounting.BUMPED,
                 "reason": status.reason,
                 "fps_hz": status.fps_hz,
                 "frames": status.frames,

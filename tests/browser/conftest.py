@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from tests.conftest import environment
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
-_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
+PAGE_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
 
 
 @pytest.fixture(scope="session")
@@ -49,7 +49,7 @@ class Served:
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self.log.append(line)
-            found = _URL.search(line)
+            found = PAGE_URL.search(line)
             if found:
                 self.url = found.group()
                 return

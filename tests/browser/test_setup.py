@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -107,20 +108,28 @@ def rms_after_turning_cm(capture: Path, track: Path) -> float:
 
 
 @pytest.fixture(scope="module")
-def setup(
-    request: pytest.FixtureRequest,
-    browser: Browser,
-    tmp_path_factory: pytest.TempPathFactory,
-    pictures: Path,
-    user_env: dict[str, str],
-) -> Setup:
-    """One way through the whole setup; screenshots of each step as it is done."""
-    state = tmp_path_factory.mktemp("state")
-    served = Served(state, user_env)
-    request.addfinalizer(served.stop)
-    by_hand = truth_strokes("cam1")
+def served(tmp_path_factory: pytest.TempPathFactory, user_env: dict[str, str]) -> Iterator[Served]:
+    """The setup on simulated webcams, in a process of its own."""
+    served = Served(tmp_path_factory.mktemp("state"), user_env)
+    yield served
+    served.stop()
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, pictures: Path) -> Iterator[Page]:
+    """A window; what it shows when something fails is kept."""
     page = browser.new_page(viewport={"width": 1100, "height": 800})
-    out = Setup(state / "calibration.toml", heard=problems_of(page))
+    yield page
+    if not page.is_closed():
+        page.screenshot(path=pictures / "last.jpg", quality=80)
+        page.close()
+
+
+@pytest.fixture(scope="module")
+def setup(served: Served, page: Page, pictures: Path) -> Setup:
+    """One way through the whole setup; screenshots of each step as it is done."""
+    by_hand = truth_strokes("cam1")
+    out = Setup(served.state_dir / "calibration.toml", heard=problems_of(page))
     began = time.monotonic()
 
     def finished(step: str) -> None:
@@ -129,9 +138,6 @@ def setup(
         out.seconds[step], began = now - began, now
         page.screenshot(path=pictures / f"setup_{step}.jpg", full_page=True, quality=80)
 
-    request.addfinalizer(
-        lambda: page.is_closed() or page.screenshot(path=pictures / "last.jpg", quality=80)
-    )  # noqa: PT021  many things end
     page.goto(served.url)
     shown(page, "cameras")
     done(page)

@@ -94,12 +94,14 @@ export class Live {
       this.cameras,
       figures.cameras.map((one) => [
         one.name,
-        { text: one.state, look: `state ${CAMERA_STATES[one.state] ?? ""}` },
+        one.bumped
+          ? { text: "bumped", look: "state failed" }
+          : { text: one.state, look: `state ${CAMERA_STATES[one.state] ?? ""}` },
         `${number(one.fps_hz)} Hz`,
         String(one.frames),
         String(one.torn),
         String(one.reopens),
-        one.reason,
+        one.bumped ? "It was turned: put it back, or do the setup's step Room again." : one.reason,
       ]),
     );
     rows(

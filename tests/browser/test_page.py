@@ -1,0 +1,146 @@
+"""The live view of a running daemon in a real browser, and who is let in."""
+
+import re
+import signal
+import subprocess
+import threading
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.conftest import PAGE_URL, problems_of
+from tests.cli.mocapd_process import mocapd, start
+
+WAIT_MS = 60_000
+
+
+@pytest.fixture(scope="module")
+def url(user_env: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Of a daemon on simulated webcams, told by the `mocapd calibrate` that attaches to it."""
+    env = user_env | {"XDG_RUNTIME_DIR": str(tmp_path_factory.mktemp("runtime"))}
+    process = start(env, "demo", "--set", "zenoh.port=7461", "--set", "osc.enabled=false")
+    try:
+        wait_for_page(process)
+        told = mocapd(env, "calibrate", "--no-browser")
+        found = PAGE_URL.search(told.out)
+        assert found, told.out + told.err
+        yield found.group().partition("#")[0]
+    finally:
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+
+
+def wait_for_page(process: "subprocess.Popen[str]") -> None:
+    """Until its log says that there is a page."""
+    log = []
+    assert process.stderr is not None
+    for line in process.stderr:
+        log.append(line)
+        if "opens the page" in line:
+            threading.Thread(target=process.stderr.read, daemon=True).start()
+            return
+    pytest.fail("the daemon ended:\n" + "".join(log))
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """A window of its own, with no cookie."""
+    with browser.new_context(viewport={"width": 1100, "height": 800}) as context:
+        yield context.new_page()
+
+
+def test_the_live_view_shows_cameras_body_rate_and_listeners(
+    page: Page, url: str, pictures: Path
+) -> None:
+    heard = problems_of(page)
+    page.goto(f"{url}#live")
+    expect(page.locator("#tracking")).to_have_text("Tracking", timeout=WAIT_MS)
+    expect(page.locator("#live camera-picture")).to_have_count(2)
+    expect(page.locator("#live-cameras")).to_contain_text("live")
+    expect(page.locator("#live-outputs")).to_contain_text("zenoh")
+    page.wait_for_timeout(3000)
+    page.screenshot(path=pictures / "live.jpg", full_page=True, quality=80)
+    assert heard == []
+    assert "token" not in page.url, "a token in the address bar ends up in screenshots"
+
+
+@pytest.mark.parametrize("view", ["live", "setup"])
+def test_at_phone_width_nothing_is_cut_off(page: Page, url: str, view: str) -> None:
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.goto(f"{url}#{view}")
+    page.locator(f"#{view} h1").wait_for(timeout=WAIT_MS)
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    assert wide <= 360
+
+
+def test_the_figure_is_turned_by_the_keyboard(page: Page, url: str) -> None:
+    page.goto(f"{url}#live")
+    expect(page.locator("#tracking")).to_have_text("Tracking", timeout=WAIT_MS)
+    figure = page.locator(".figure-3d canvas")
+    figure.focus()
+    before = figure.screenshot()
+    for _ in range(6):
+        page.keyboard.press("ArrowLeft")
+    page.wait_for_timeout(500)
+    assert figure.screenshot() != before
+
+
+@pytest.mark.parametrize("token", ["?token=wrong", ""])
+def test_a_wrong_token_is_refused(page: Page, url: str, token: str) -> None:
+    answer = page.goto(url.partition("?")[0] + token)
+    assert answer is not None
+    assert answer.status in (401, 403)
+    assert "mocapd calibrate" in page.inner_text("body"), "it says where the right one is"
+    assert page.locator("camera-picture").count() == 0
+
+
+def test_a_foreign_page_gets_nothing_even_with_the_cookie(
+    page: Page, url: str, tmp_path: Path
+) -> None:
+    page.goto(url)
+    page.locator("h1").first.wait_for(timeout=WAIT_MS)
+    (tmp_path / "index.html").write_text("<!doctype html><title>foreign</title>", encoding="utf-8")
+    handler = partial(SimpleHTTPRequestHandler, directory=str(tmp_path))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as foreign:
+        threading.Thread(target=foreign.serve_forever, daemon=True).start()
+        page.goto(f"http://127.0.0.1:{foreign.server_port}/")
+        host = urlsplit(url).netloc
+        for path in ("/ws", "/pictures", "/live"):
+            opened = page.evaluate(
+                """([host, path]) => new Promise((told) => {
+                    const socket = new WebSocket(`ws://${host}${path}`);
+                    socket.onopen = () => told(true);
+                    socket.onerror = () => told(false);
+                })""",
+                [host, path],
+            )
+            assert opened is False, path
+        read = page.evaluate(
+            """(host) => fetch(`http://${host}/status`, { credentials: "include" })
+                .then(() => true, () => false)""",
+            host,
+        )
+        assert read is False
+        foreign.shutdown()
+
+
+def test_a_second_browser_looks_on_until_it_takes_over(
+    page: Page, browser: Browser, url: str
+) -> None:
+    page.goto(f"{url}#setup")
+    page.click("#begin", timeout=WAIT_MS)
+    page.locator("#step-title").wait_for(timeout=WAIT_MS)
+    with browser.new_context() as context:
+        second = context.new_page()
+        second.goto(f"{url}#setup")
+        expect(second.locator("#notice")).to_contain_text("Another window", timeout=WAIT_MS)
+        expect(second.locator("#again")).to_be_disabled()
+        second.click("#take-over")
+        expect(second.locator("#again")).to_be_enabled(timeout=WAIT_MS)
+        expect(page.locator("#notice")).to_contain_text("Another window", timeout=WAIT_MS)
+        assert re.fullmatch(r"\S+", second.locator("#step-title").inner_text())
