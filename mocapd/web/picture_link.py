@@ -1,14 +1,15 @@
 """The WebSocket `/pictures`: the page asks for each picture, so a slow page is never flooded.
 
-Request, JSON: {camera, width, after}: width in px of the screen; after: `seq` of the last picture it
-got, null at first. Answer, one binary message: uint32 (little-endian) length of the header, the
-header {camera, seq, t_ns, size_px, shapes} as JSON, the JPEG. No new frame within a second: `seq` is
-null, `why` says the reason, and there is no JPEG.
+Request, JSON: {camera, width, after, over}: width in px of the screen; after: `seq` of the last picture
+it got, null at first; over: what is drawn over it, `setup` (when one is on) or `body`. Answer, one
+binary message: uint32 (little-endian) length of the header, the header {camera, seq, t_ns, size_px,
+shapes} as JSON, the JPEG. No new frame within a second: `seq` is null, `why` says the reason, and
+there is no JPEG.
 """
 
 import asyncio
 from collections.abc import Iterable
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
@@ -33,6 +34,7 @@ class Request(msgspec.Struct, frozen=True):
     camera: str
     width: Annotated[int, Meta(ge=1, le=8192)] = DEFAULT_WIDTH_PX
     after: int | None = None
+    over: Literal["setup", "body"] = "setup"
 
 
 async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -> None:
@@ -68,15 +70,15 @@ async def _answer(socket: WebSocket, host: Host, encoder: PictureEncoder, reques
         "seq": picture.seq,
         "t_ns": picture.t_ns,
         "size_px": picture.size_px,
-        "shapes": shapes_json(await shapes_over(host, picture)),
+        "shapes": shapes_json(await shapes_over(host, picture, request.over)),
     }
     await send_bytes(socket, message(header, picture.jpeg))
 
 
-async def shapes_over(host: Host, picture: Picture) -> tuple[Shape, ...]:
-    """The setup's overlays while one is on; else, and in its step Check, the body at the moment of the
-    picture."""
-    wizard = host.wizard
+async def shapes_over(host: Host, picture: Picture, over: str) -> tuple[Shape, ...]:
+    """The setup's overlays where they are asked for and one is on; else, and in its step Check, the body
+    at the moment of the picture."""
+    wizard = host.wizard if over == "setup" else None
     if wizard is not None:
         shown = wizard.view()
         if shown.step is not StepName.CHECK:

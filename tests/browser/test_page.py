@@ -133,7 +133,6 @@ def test_a_second_browser_looks_on_until_it_takes_over(
     page: Page, browser: Browser, url: str
 ) -> None:
     page.goto(f"{url}#setup")
-    page.click("#begin", timeout=WAIT_MS)
     page.locator("#step-title").wait_for(timeout=WAIT_MS)
     with browser.new_context() as context:
         second = context.new_page()

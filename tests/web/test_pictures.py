@@ -171,6 +171,10 @@ def test_during_a_setup_the_steps_own_shapes_are_drawn(host: TinyHost, pictures:
     assert pictures.picture("cam0")[0]["shapes"] == [
         {"kind": "text", "at_px": [[10.0, 40.0]], "style": OVERLAY.style, "text": OVERLAY.text}
     ]
+    drawn = pictures.picture("cam0", over="body")[0]["shapes"]
+    assert len(drawn) == len(host.skeleton.names) - 1, (
+        "the live view asks for the body all the same"
+    )
 
 
 @pytest.mark.parametrize("text", ["", "{}", '{"camera": "cam0", "width": 0}', '{"camera": 3}'])

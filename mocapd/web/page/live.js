@@ -69,7 +69,9 @@ export class Live {
     this.pictures.replaceChildren();
     for (const name of scene.names) {
       const figure = make(this.pictures, "figure", "camera");
-      make(figure, "camera-picture").setAttribute("camera", name);
+      const picture = make(figure, "camera-picture");
+      picture.setAttribute("over", "body"); // also while a setup draws over its own pictures
+      picture.setAttribute("camera", name);
       make(figure, "figcaption", "", name);
     }
   }

@@ -37,6 +37,7 @@ class PictureLink {
       return;
     }
     const request = { camera: element.camera, width: element.askedWidth(), after: element.seq };
+    if (element.hasAttribute("over")) request.over = element.getAttribute("over");
     if (this.socket.send(request)) this.asked.set(element.camera, new Set([element]));
   }
 
