@@ -26,7 +26,8 @@ from mocapd.calibrate.reprojection import (
 )
 from mocapd.types import Floats, Ints
 
-_RIDGE = 1e-9  # of the normal matrix's diagonal: that it has a root although it is nearly singular
+# of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
+_RIDGES = (1e-9, 1e-6, 1e-3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,9 +172,7 @@ def _solved(problem: _Problem, robust: bool) -> Scene:
     along the valleys of focal length and depth.
     """
     start = problem.slope(np.zeros(problem.columns))
-    normal: Floats = (start.T @ start).toarray()
-    normal[np.diag_indices(len(normal))] *= 1.0 + _RIDGE
-    L: Floats = scipy.linalg.cholesky(normal, lower=True)
+    L = _lower((start.T @ start).toarray())
 
     def step(y: Floats) -> Floats:
         x: Floats = scipy.linalg.solve_triangular(L, y, lower=True, trans="T")
@@ -201,6 +200,24 @@ def _solved(problem: _Problem, robust: bool) -> Scene:
         max_nfev=problem.params.evaluations,
     )
     return moved(problem.scene, *problem.steps(step(solution.x)))
+
+
+def _lower(normal: Floats) -> Floats:
+    """L (n,n) of the normal matrix, or of one a little stiffer where that is singular to rounding.
+
+    A position that lost all its corners as outliers has no rows: it stays where it is.
+    """
+    diagonal = np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0)
+    for ridge in _RIDGES:
+        stiff = normal.copy()
+        stiff[np.diag_indices(len(normal))] = (1.0 + ridge) * diagonal
+        # info: 0, or the minor that is not positive
+        L, info = scipy.linalg.lapack.dpotrf(stiff, lower=True, clean=True)
+        if info == 0:
+            lower: Floats = L
+            return lower
+    scales: Floats = np.diag(np.sqrt(diagonal))
+    return scales
 
 
 def _focal_deviation(problem: _Problem) -> Floats:
