@@ -51,14 +51,20 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
         return 0
     if options.demo and not options.own_place:
         config = replace(config, state_dir=config.state_dir / "demo")
-    return _alone(options, config, step, announce_at)
+    from mocapd.cli.first_start import database_beside
+    from mocapd.cli.running import end_despite_work
+
+    with database_beside(config):
+        code = _alone(options, config, step, announce_at)
+    end_despite_work(code)
+    return code
 
 
 def _alone(
     options: PageOptions, config: "Config", step: "StepName | None", announce_at: Path | None
 ) -> int:
     from mocapd.cli.calibrate_hosts import demo_host, webcam_host
-    from mocapd.cli.running import INTERNAL_ERROR, Signals, end_despite_work
+    from mocapd.cli.running import INTERNAL_ERROR, Signals
     from mocapd.daemon import ThreadDiedError
     from mocapd.web.server import WebServer
 
@@ -85,7 +91,6 @@ def _alone(
         server.let_go()
         host.stop()
         server.stop(HANG_UP_S)
-    end_despite_work(signals.exit_code)
     return signals.exit_code
 
 

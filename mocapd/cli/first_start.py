@@ -6,7 +6,8 @@ import multiprocessing
 import os
 import platform
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,6 +44,24 @@ def prepare_apart(config: "Config") -> None:
     if _all_end_well(config, first) and _all_end_well(config, (_open,)):
         with whole_file(marker) as partial:
             partial.write_text("\n".join([*done[1 - REMEMBERED :], want]) + "\n")
+
+
+@contextmanager
+def database_beside(config: "Config") -> Iterator[None]:
+    """Makes the pose database, if there is none, in a process beside this one; it ends with the block.
+
+    A setup's first steps take longer than that, its later ones need it: they wait for what is under
+    way. Called while the process has one thread. A failure is told by whoever needs it.
+    """
+    child = multiprocessing.get_context("fork").Process(
+        target=_work, args=(_make_database_quietly, config)
+    )
+    child.start()
+    try:
+        yield
+    finally:
+        child.kill()
+        child.join()
 
 
 def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:
@@ -87,6 +106,13 @@ def _make_database(config: "Config") -> None:
     with ProgressBars() as progress:
         progress("pose database", 0, 100)  # something to see while its maker is compiled
         make_caches(config.tracker.name, config.cache_dir, progress)
+
+
+def _make_database_quietly(config: "Config") -> None:
+    from mocapd.tracker_setup import make_caches
+
+    os.nice(5)  # the board is looked for meanwhile
+    make_caches(config.tracker.name, config.cache_dir, lambda *_: None)
 
 
 def _open(config: "Config") -> None:

@@ -99,25 +99,6 @@ def test_several_cameras_without_a_rig(clean_env: dict[str, str], capture: Path)
     assert_one_line(outcome, 78, "rig", "--rig")
 
 
-def test_a_pose_database_that_is_half_written(
-    clean_env: dict[str, str], capture: Path, tmp_path: Path
-) -> None:
-    cache = tmp_path / "cache"
-    cache.mkdir()
-    database = cache / "pose_database.bin"
-    database.write_bytes(b"mocapd pose database\n" + bytes(40))
-    words = ("track", capture, "--out", tmp_path / "t.npz", "--set", f"cache_dir={cache}")
-    first = mocapd(clean_env, *words)
-    assert first.code == 0, first.err
-    told = [line for line in first.err.splitlines() if str(database) in line]
-    assert len(told) == 1, first.err
-    assert "damaged" in told[0]
-    assert "made anew" in told[0]
-    second = mocapd(clean_env, *words)
-    assert second.code == 0
-    assert str(database) not in second.err
-
-
 def test_an_unwritable_cache(track: Track, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     outcome = track("--set", f"cache_dir={tmp_path / 'file' / 'cache'}")

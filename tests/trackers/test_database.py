@@ -1,5 +1,8 @@
 """The pose database: its poses, its neighbours, its file."""
 
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +21,12 @@ from mocapd.trackers.colour.database import (
     camera_from_view,
     content_hash,
 )
-from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build, write_database
+from mocapd.trackers.colour.database_file import (
+    FILE_NAME,
+    LOCK_NAME,
+    load_or_build,
+    write_database,
+)
 from mocapd.trackers.colour.idmap_crop_kernels import crop_id_map
 from mocapd.trackers.colour.pose_sampling import SamplingParams, poses_from_cube, random_cube
 from mocapd.types import Camera
@@ -159,6 +167,23 @@ def test_an_unusable_file_is_rebuilt_and_the_reason_told(
     assert FILE_NAME in loaded.reason
     assert len(loaded.database) == 60
     assert not load_or_build(tmp_path, tiny).built
+
+
+def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
+    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    second_waits = threading.Event()
+    with ThreadPoolExecutor(2) as pool:
+
+        def slowly(function, parts):  # type: ignore[no-untyped-def]
+            second_waits.wait(30.0)
+            return map(function, parts)
+
+        first = pool.submit(load_or_build, tmp_path, tiny, map_chunks=slowly)
+        while not (tmp_path / LOCK_NAME).exists():
+            time.sleep(0.01)
+        second = pool.submit(load_or_build, tmp_path, tiny)
+        second_waits.set()
+        assert sorted([first.result().built, second.result().built]) == [False, True]
 
 
 def test_a_cache_that_cannot_be_written(tmp_path: Path) -> None:

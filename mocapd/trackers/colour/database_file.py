@@ -5,9 +5,12 @@ checksum, and per array name, type, shape and offset), then the arrays, each fro
 on. Written beside its place, flushed to the disk and renamed, so that it is whole or absent.
 """
 
+import fcntl
 import json
 import tempfile
 import zlib
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +32,7 @@ from mocapd.trackers.colour.idmap_index import IdMapIndex, Projection
 from mocapd.whole_file import whole_file
 
 FILE_NAME = "pose_database.bin"
+LOCK_NAME = "pose_database.lock"
 _MAGIC = b"mocapd pose database\n"
 _ALIGNMENT = 64
 _BLOCK = 1 << 20
@@ -69,19 +73,34 @@ def load_or_build(
     wanted = content_hash(params)
     try:
         return Loaded(_read(path, wanted), built=False)
-    except _UnusableError as error:
-        reason = str(error)
-    if must_cache:
-        _check_writable(cache_dir)
-    database = build_database(params, progress, map_chunks)
-    try:
-        write_database(path, database, wanted)
-    except CannotCreateError as error:
+    except _UnusableError:
         if must_cache:
-            raise
-        return Loaded(database, built=True, reason=reason, warning=str(error))
-    # mapped pages can be given back to the system, the built arrays cannot
-    return Loaded(_read(path, wanted), built=True, reason=reason)
+            _check_writable(cache_dir)
+    with _alone(cache_dir):
+        try:
+            return Loaded(_read(path, wanted), built=False)  # by whom we waited for
+        except _UnusableError as error:
+            reason = str(error)
+        database = build_database(params, progress, map_chunks)
+        try:
+            write_database(path, database, wanted)
+        except CannotCreateError as error:
+            if must_cache:
+                raise
+            return Loaded(database, built=True, reason=reason, warning=str(error))
+        # mapped pages can be given back to the system, the built arrays cannot
+        return Loaded(_read(path, wanted), built=True, reason=reason)
+
+
+@contextmanager
+def _alone(cache_dir: Path) -> Iterator[None]:
+    """One process makes it, others wait; where no lock can be had each makes its own."""
+    with ExitStack() as held:
+        with suppress(OSError):
+            cache_dir.mkdir(parents=True, exist_ok=True)
+            lock = held.enter_context((cache_dir / LOCK_NAME).open("wb"))
+            fcntl.flock(lock, fcntl.LOCK_EX)  # let go when it is closed, or the process is gone
+        yield
 
 
 def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
