@@ -132,21 +132,24 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
     out = Setup(served.state_dir / "calibration.toml", heard=problems_of(page))
     began = time.monotonic()
 
+    def shoot(name: str) -> None:
+        page.screenshot(path=pictures / f"setup_{name}.jpg", full_page=True, quality=80)
+
     def finished(step: str) -> None:
         nonlocal began
         now = time.monotonic()
         out.seconds[step], began = now - began, now
-        page.screenshot(path=pictures / f"setup_{step}.jpg", full_page=True, quality=80)
 
     page.goto(served.url)
     shown(page, "cameras")
     done(page)
     finished("cameras")
+    shoot("cameras")
     page.click("#next")
 
     shown(page, "lens")
     page.wait_for_timeout(6000)
-    page.screenshot(path=pictures / "setup_lens_live.jpg", full_page=True, quality=80)
+    shoot("lens")
     done(page)
     finished("lens")
     page.locator("#next").focus()
@@ -155,6 +158,7 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
     shown(page, "room")
     done(page)
     finished("room")
+    shoot("room")
     page.keyboard.press("Tab")  # from the heading, where the focus went
     page.click("#next")
 
@@ -167,9 +171,10 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
     expect(page.locator("#sentence")).not_to_contain_text("cam1", timeout=STEP_MS)
     done(page)
     finished("colour")
+    shoot("colour")
     page.check("#as-seen")
     page.wait_for_timeout(700)
-    page.screenshot(path=pictures / "setup_colour_seen.jpg", full_page=True, quality=80)
+    shoot("colour_seen")
     page.click("#next")
 
     shown(page, "body")
@@ -178,11 +183,12 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
     page.click("#measure")
     done(page)
     finished("body")
+    shoot("body")
     page.click("#next")
 
     shown(page, "check")
     done(page)
-    page.screenshot(path=pictures / "setup_check.jpg", full_page=True, quality=80)
+    shoot("check")
     page.click("#save")
     page.locator("#saved-to").get_by_text("calibration.toml").wait_for(timeout=STEP_MS)
     finished("check")
