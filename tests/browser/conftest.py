@@ -18,7 +18,7 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome")
 PAGE_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # its event loop must be gone before other tests run theirs
 def browser() -> Iterator[Browser]:
     """Debian's Chromium; skips where there is none, unless MOCAPD_REQUIRE_BROWSER is set (.ci/run)."""
     path = next((found for name in _NAMES if (found := shutil.which(name))), None)

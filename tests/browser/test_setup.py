@@ -239,7 +239,7 @@ def test_a_recording_is_tracked_with_the_saved_file(
     scenario = load_scenario(SCENARIO)
     late = msgspec.structs.replace(scenario, scribble_s=0.0)
     capture = tmp_path / "capture"
-    export_capture(late, capture, 3.0)
+    export_capture(late, capture, 2.0)
     errors = {}
     for name, options in (("true", []), ("saved", ["--calibration", str(setup.saved)])):
         track = tmp_path / f"{name}.npz"

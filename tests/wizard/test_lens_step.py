@@ -151,11 +151,11 @@ def test_a_mirrored_camera_is_told_while_the_other_sees_the_board(tmp_path: Path
 
 def test_that_one_camera_does_not_see_the_board_is_no_trouble_yet(tmp_path: Path) -> None:
     shown = Shown(tmp_path)
-    wall = np.random.default_rng(0).integers(0, 255, (24, 32, 3)).astype(np.uint8)
-    wall = np.kron(wall, np.ones((20, 20, 1), np.uint8))
-    shown.show([{"cam0": close_pictures(0)[0], "cam1": wall}], 4.0)
+    wall = np.random.default_rng(0).integers(0, 255, (12, 16, 3)).astype(np.uint8)
+    wall = np.kron(wall, np.ones((40, 40, 1), np.uint8))
+    shown.show([{"cam0": close_pictures(0)[0], "cam1": wall}], 3.0)
     assert shown.told() == ""
-    shown.show([{"cam0": wall, "cam1": wall}], 6.0)
+    shown.show([{"cam0": wall, "cam1": wall}], 4.0)
     assert "no board in the picture" in shown.told()
 
 
