@@ -8,9 +8,9 @@ from pathlib import Path
 
 import msgspec
 
-from mocapd.errors import CannotCreateError
 from mocapd.sim.board_path import Place, between, floor_place, lens_places, room_places
 from mocapd.sim.board_shots import BoardShots
+from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.clips import Clip
 from mocapd.sim.film import Progress, encode_jpeg, film_key
 from mocapd.sim.renderer import camera_renderers, furnished_set
@@ -18,7 +18,6 @@ from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup_scenes import SETUP_BOARD, SetupScene
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Camera
-from mocapd.whole_file import whole_file
 
 HOLD_S, MOVE_S = 0.7, 0.3  # the board is held still, then moved on
 _MOVE_PICTURES = 3
@@ -55,10 +54,10 @@ def load_board_clips(
     cannot be written."""
     key = film_key(scenario)
     path = cache_dir / f"setup-{scenario.name}-{key[:16]}.film"
-    stored = _read(path, key)
+    stored = read_cached(path, key, _BoardFile)
     if stored is None:
         stored = _render(scenario, key, progress)
-        _write(path, stored)
+        write_cached(path, stored)
     scenes = board_scenes(rig_of(scenario).cameras)
     return {
         scene: Clip(_order(len(places), scenario.fps_hz), stored.scenes[scene])
@@ -111,26 +110,3 @@ def _render(scenario: Scenario, key: str, progress: Progress | None) -> _BoardFi
 
 def _shoot(place: Place | None, noise_keys: range, quality: int, shots: BoardShots) -> list[bytes]:
     return [encode_jpeg(pixels, quality) for pixels in shots.pictures(place, noise_keys)]
-
-
-def _read(path: Path, key: str) -> _BoardFile | None:
-    """The stored pictures, or None when there are none that fit."""
-    try:
-        stored = msgspec.msgpack.decode(path.read_bytes(), type=_BoardFile)
-    except (OSError, msgspec.DecodeError):
-        return None
-    return stored if stored.key == key else None
-
-
-def _write(path: Path, file: _BoardFile) -> None:
-    """Write the file whole or not at all. Raises CannotCreateError."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as partial_path:
-            partial_path.write_bytes(msgspec.msgpack.encode(file))
-    except OSError as error:
-        raise CannotCreateError(
-            f"the simulator's cache cannot be written ({error})",
-            str(path),
-            "free space there or choose another cache directory",
-        ) from None

@@ -14,14 +14,13 @@ import numpy as np
 import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
-from mocapd.errors import CannotCreateError
+from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.strokes import LabelledImage
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Bytes
-from mocapd.whole_file import whole_file
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
@@ -54,10 +53,10 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     """
     key = film_key(scenario)
     path = cache_dir / f"sim-{scenario.name}-{key[:16]}.film"
-    stored = _read(path, key)
+    stored = read_cached(path, key, _FilmFile)
     if stored is None:
         stored = _render(scenario, key, progress)
-        _write(path, stored)
+        write_cached(path, stored)
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
@@ -129,26 +128,3 @@ def _labelled(pair: tuple[bytes, bytes]) -> LabelledImage:
         for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
     )
     return LabelledImage(pixels, strokes)
-
-
-def _read(path: Path, key: str) -> _FilmFile | None:
-    """The stored film, or None when there is none that fits."""
-    try:
-        stored = msgspec.msgpack.decode(path.read_bytes(), type=_FilmFile)
-    except (OSError, msgspec.DecodeError):
-        return None
-    return stored if stored.key == key else None
-
-
-def _write(path: Path, film: _FilmFile) -> None:
-    """Write the file whole or not at all. Raises CannotCreateError."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as partial:
-            partial.write_bytes(msgspec.msgpack.encode(film))
-    except OSError as error:
-        raise CannotCreateError(
-            f"the simulator's cache cannot be written ({error})",
-            str(path),
-            "free space there or choose another cache directory",
-        ) from None
