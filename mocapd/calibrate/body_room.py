@@ -19,6 +19,8 @@ from mocapd.calibrate.first_placing import first_placing
 from mocapd.calibrate.free_surface import FreeBody, free_body
 from mocapd.calibrate.keyframes import Keyframe, choose, starts, views
 from mocapd.calibrate.patch_tracks import Moment
+from mocapd.calibrate.ring_bundle import placed_by_rings
+from mocapd.calibrate.ring_pairs import ring_pairs
 from mocapd.calibrate.standing import upright
 from mocapd.errors import ConfigError
 from mocapd.geometry.cameras import centre
@@ -51,6 +53,8 @@ class RoomParams:
     independent_frames: float = 8.0
     # how far a surface may be off from what the shape's factors make of it
     off_sd_m: float = 0.02
+    # how much less is believed of body and cameras than their covariance says, beside sleeve rings
+    surface_doubt: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,8 +104,33 @@ def room_from_body(
         old = {camera.name: camera for camera in near.cameras}
         before = [replace(c, R=old[c.name].R, t_m=old[c.name].t_m) for c in lenses]
         solvers.append(RoomSolver(model, before, keyframes, p))
-    rig, report = min(solvers, key=lambda solver: solver.cost).solve()
+    rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
+    rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_doubt)
     return upright(rig, moments, stature_m, report.factors), report
+
+
+def _with_rings(
+    rig: Rig,
+    report: "RoomReport",
+    covariances: Mapping[str, Floats],
+    moments: Sequence[Moment],
+    stature_m: float,
+    surface_doubt: float,
+) -> tuple[Rig, "RoomReport"]:
+    """The same once every camera but the first has been weighed against the rings of the sleeves."""
+    first = rig.cameras[0]
+    work = work_factors(rig.cameras, Params().work_width_px)
+    cameras, doubts = [first], {}
+    for other, factor in zip(rig.cameras[1:], work[1:], strict=True):
+        pairs = ring_pairs(moments, (first, other), (work[0], factor))
+        known = surface_doubt**2 * covariances[other.name]
+        camera, covariance = other, known
+        if len(pairs.seen):
+            camera, covariance = placed_by_rings(pairs, first, other, known, stature_m)
+        cameras.append(camera)
+        doubts[camera.name] = doubt(camera, centre(first), covariance)
+    distance_m = {c.name: float(np.linalg.norm(centre(c) - centre(first))) for c in cameras[1:]}
+    return Rig(tuple(cameras)), replace(report, doubts=doubts, distance_m=distance_m)
 
 
 @dataclass(slots=True, eq=False)
@@ -148,8 +177,11 @@ class RoomSolver:
         """Of the middle keyframe as things are now, for each drawn pixel."""
         return float(np.median([_cost(frame) for frame in self._gather()]))
 
-    def solve(self) -> tuple[Rig, RoomReport]:
-        """The room at rest, and how good it is. Raises ConfigError when too little agrees."""
+    def solve(self) -> tuple[Rig, RoomReport, dict[str, Floats]]:
+        """The room at rest, how good it is, and by camera but the first the covariance (6,6) of its motion.
+
+        Raises ConfigError when too little agrees.
+        """
         p, scene = self._p, self._scene
         kept: list[tuple[tuple[Camera, ...], Floats]] = []
         for i in range(p.rounds):
@@ -167,7 +199,13 @@ class RoomSolver:
         covariance: Floats = np.asarray(
             np.linalg.inv(self._informed(self._evidence(rows)).H), dtype=np.float64
         )
-        return Rig(tuple(scene.cameras)), self._report(scene, rows, covariance)
+        covariances = {
+            camera.name: covariance[k : k + N_CAMERA, k : k + N_CAMERA]
+            for camera, k in zip(
+                scene.cameras[1:], range(self._n_shape, self._n, N_CAMERA), strict=True
+            )
+        }
+        return Rig(tuple(scene.cameras)), self._report(scene, rows, covariances), covariances
 
     def _gather(self) -> list[list[BodyRows]]:
         """The rows of every keyframe's views."""
@@ -268,15 +306,18 @@ class RoomSolver:
         return self._work[camera] * float(np.sqrt(squared / max(visible, 1.0)))
 
     def _report(
-        self, scene: _Scene, rows: Sequence[Sequence[BodyRows]], covariance: Floats
+        self,
+        scene: _Scene,
+        rows: Sequence[Sequence[BodyRows]],
+        covariances: Mapping[str, Floats],
     ) -> RoomReport:
         good = [frame for frame in rows if _match(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
-        first, n = centre(scene.cameras[0]), self._n_shape
+        first = centre(scene.cameras[0])
         doubts = {
-            camera.name: doubt(camera, first, covariance[k : k + N_CAMERA, k : k + N_CAMERA])
-            for camera, k in zip(scene.cameras[1:], range(n, self._n, N_CAMERA), strict=True)
+            camera.name: doubt(camera, first, covariances[camera.name])
+            for camera in scene.cameras[1:]
         }
         return RoomReport(
             residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(scene.cameras)},
