@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.calibrate.reprojection import Observations, Scene
 from mocapd.errors import ConfigError
-from mocapd.geometry.cameras import centre, normalised
+from mocapd.geometry.cameras import normalised
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats, Rig
 
@@ -40,7 +40,7 @@ def world_on_floor(scene: Scene, position: int, middle_m: Floats, where: str) ->
     """
     R, t_m = scene.board_turn[position], scene.board_t_m[position]
     world = _world(scene, up=-R[:, 2], origin_m=R @ middle_m + t_m)
-    heights_m = (_centres(scene) @ world.R.T + world.t_m)[:, 1]
+    heights_m = (camera_centres(scene) @ world.R.T + world.t_m)[:, 1]
     if heights_m.min() < 0.0:
         raise ConfigError(
             f"with this floor a camera is {-100 * heights_m.min():.0f} cm under it",
@@ -67,7 +67,7 @@ def world_guessed(scene: Scene, board_m: Floats) -> World:
 
 def _world(scene: Scene, up: Floats, origin_m: Floats) -> World:
     y = up / np.linalg.norm(up)
-    away = _centres(scene) - origin_m
+    away = camera_centres(scene) - origin_m
     level = away - np.outer(away @ y, y)
     level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
     front = level.mean(axis=0)
@@ -78,7 +78,8 @@ def _world(scene: Scene, up: Floats, origin_m: Floats) -> World:
     return World(R, -R @ origin_m)
 
 
-def _centres(scene: Scene) -> Floats:
+def camera_centres(scene: Scene) -> Floats:
+    """(C,3) where the cameras are [m, scene]."""
     centres: Floats = -np.einsum("cji,cj->ci", scene.camera_turn, scene.camera_t_m)
     return centres
 
@@ -139,8 +140,3 @@ def _from_rigid(board_m: Floats, points_m: Floats) -> Floats:
     flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])
     distances: Floats = np.linalg.norm(a @ U @ flip @ Vt - b, axis=1)
     return distances
-
-
-def cameras_m(rig: Rig) -> Floats:
-    """(C,3) where the cameras are."""
-    return np.stack([centre(camera) for camera in rig.cameras])

@@ -8,6 +8,7 @@ import numpy as np
 from mocapd.calibrate.board import centre_m
 from mocapd.calibrate.board_room import SolvedRoom, with_board
 from mocapd.calibrate.detection import BoardView
+from mocapd.calibrate.room import camera_centres
 from mocapd.types import Floats
 from mocapd.wizard.board_watch import Look, Seen
 
@@ -88,8 +89,7 @@ def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
     level = float(up @ upright) / float(np.linalg.norm(upright)) > np.cos(_LEVEL_RAD)
     rolls = np.abs(np.arcsin(np.clip(scene.camera_turn[:, 0] @ up, -1.0, 1.0)))
     height_m = float((R @ centre_m(room.spec) + t_m) @ up)
-    cameras_m = -np.einsum("cji,cj->ci", scene.camera_turn, scene.camera_t_m) @ up
-    above = float(cameras_m.min()) - height_m > _ABOVE_M
+    above = float((camera_centres(scene) @ up).min()) - height_m > _ABOVE_M
     return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
 
 

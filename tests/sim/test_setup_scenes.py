@@ -14,9 +14,9 @@ from mocapd.calibrate.bundle import adjust
 from mocapd.calibrate.chain import first_scene, observations
 from mocapd.calibrate.detection import BoardDetector, BoardView
 from mocapd.calibrate.lens import Lens, solve_lens
-from mocapd.calibrate.room import cameras_m, play_area_error, rig_in, world_on_floor
+from mocapd.calibrate.room import play_area_error, rig_in, world_on_floor
 from mocapd.calibrate.views import covered
-from mocapd.geometry.cameras import project
+from mocapd.geometry.cameras import centre, project
 from mocapd.sim.board_clips import board_scenes, hold_frames, load_board_clips
 from mocapd.sim.clips import Clip
 from mocapd.sim.scenario import Scenario, load_scenario
@@ -134,7 +134,7 @@ def test_the_room_places_and_the_floor_give_the_room(
     world = world_on_floor(bundle.scene, indices.index(n), centre_m(SPEC), "the floor")
     found = rig_in(world, bundle.scene, rig().names, [(640, 480)] * 2)
     # +Z of the world that is found points to the middle of the directions to the cameras
-    true_m, found_m = cameras_m(rig()), cameras_m(found)
+    true_m, found_m = (np.stack([centre(c) for c in one.cameras]) for one in (rig(), found))
     level = true_m[:, [0, 2]] / np.linalg.norm(true_m[:, [0, 2]], axis=1, keepdims=True)
     heading = np.arctan2(*level.mean(axis=0))
     c, s = np.cos(heading), np.sin(heading)
