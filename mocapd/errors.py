@@ -17,6 +17,11 @@ class InputError(MocapdError):
     exit_code = 66
 
 
+class MalformedError(InputError):
+    """Bytes or text from outside are not what they should be; raised by `boundary`, which does not know
+    where they came from: whoever reads them says so in an error of its own."""
+
+
 class ConfigError(MocapdError):
     """A configuration or calibration value is wrong (78 EX_CONFIG)."""
 

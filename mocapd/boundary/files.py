@@ -1,0 +1,73 @@
+"""Files that somebody else named: regular ones, of bounded size, under a path the system can take."""
+
+import os
+import stat
+from pathlib import Path
+
+from mocapd.errors import ConfigError, InputError
+
+_FIX = "check the path and its rights"
+
+
+class MissingError(InputError):
+    """There is no such file."""
+
+
+def read_file(path: Path, most_bytes: int) -> bytes:
+    """The bytes of a regular file. Raises MissingError, or InputError naming the file.
+
+    A device, a pipe or a socket is refused before it is read: /dev/zero has no end, and a pipe that
+    nobody writes to would be waited for.
+    """
+    try:
+        # not blocking: opening a pipe would wait for its writer
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
+            told = os.fstat(file.fileno())
+            if not stat.S_ISREG(told.st_mode):
+                raise InputError("is no regular file", str(path), _FIX)
+            data = file.read(most_bytes + 1)
+    except FileNotFoundError:
+        raise MissingError("no such file", str(path), "check the path") from None
+    except ValueError:  # a NUL in the path
+        raise InputError("is no path", repr(str(path)), _FIX) from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", str(path), _FIX) from None
+    if len(data) > most_bytes:
+        raise InputError(
+            f"is larger than {most_bytes / 1e6:g} MB", str(path), "is it the file that was meant?"
+        )
+    return data
+
+
+def read_text(path: Path, most_bytes: int) -> str:
+    """A file of UTF-8 text. Raises MissingError, or InputError naming the file."""
+    try:
+        return read_file(path, most_bytes).decode()
+    except UnicodeDecodeError as error:
+        raise InputError(f"is no UTF-8 text ({error})", str(path), _FIX) from None
+
+
+def user_path(text: str | Path) -> Path:
+    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`."""
+    try:
+        return Path(text).expanduser()
+    except RuntimeError:
+        raise ConfigError(
+            f"{str(text)!r}: there is no such user", fix="write the whole path"
+        ) from None
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file; no for what can be no path, where pathlib raises."""
+    try:
+        return path.is_file()
+    except OSError:  # such as a name longer than the file system takes
+        return False
+
+
+def is_folder(path: Path) -> bool:
+    """Whether there is a folder; no for what can be no path."""
+    try:
+        return path.is_dir()
+    except OSError:
+        return False

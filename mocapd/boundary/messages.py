@@ -1,0 +1,77 @@
+"""JSON, msgpack and TOML from outside: every way of being damaged has one name, MalformedError.
+
+The libraries raise a dozen kinds: msgspec beside its own DecodeError a UnicodeDecodeError and a
+RecursionError, `int` a ValueError for more than 4,300 digits, and a tree of 600 levels that could be
+read breaks whoever walks it. Here all of them end.
+"""
+
+import json
+import tomllib
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+import msgspec
+
+from mocapd.errors import MalformedError
+
+T = TypeVar("T")
+
+MOST_NESTED = 32  # levels of objects and lists; nothing of ours has more than 8
+_LONGEST_REASON = 300  # characters of a parser's own words
+
+
+def decode_json(data: bytes | str, kind: type[T]) -> T:
+    """A JSON message as `kind`. Raises MalformedError."""
+    return _read(lambda: msgspec.json.decode(data, type=kind))
+
+
+def decode_msgpack(data: bytes, kind: type[T]) -> T:
+    """A msgpack message as `kind`. Raises MalformedError."""
+    return _read(lambda: msgspec.msgpack.decode(data, type=kind))
+
+
+def parse_json(text: str) -> Any:
+    """A JSON file's text; the reason of a failure names line and column. Raises MalformedError."""
+    return _read(lambda: json.loads(text))
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """A TOML file's text; the reason of a failure names line and column. Raises MalformedError."""
+    return _read(lambda: tomllib.loads(text))
+
+
+def convert(tree: object, kind: Any, dec_hook: Callable[[type, Any], Any] | None = None) -> Any:
+    """A parsed tree as `kind`, checked key by key. Raises MalformedError."""
+    return _read(lambda: msgspec.convert(tree, kind, dec_hook=dec_hook))
+
+
+def _read(parse: Callable[[], T]) -> T:
+    try:
+        found = parse()
+    # ValueError: among them UnicodeDecodeError, JSONDecodeError, TOMLDecodeError, too many digits
+    except (msgspec.MsgspecError, ValueError, OverflowError) as error:
+        raise MalformedError(str(error)[:_LONGEST_REASON]) from None
+    except RecursionError:
+        raise MalformedError("nested too deeply") from None
+    _check_nesting(found)
+    return found
+
+
+def _check_nesting(tree: object) -> None:
+    """Level by level, without recursion. Raises MalformedError."""
+    level = [tree]
+    for _ in range(MOST_NESTED):
+        level = [item for one in level for item in _items(one) if isinstance(item, dict | list)]
+        if not level:
+            return
+    raise MalformedError(f"nested more than {MOST_NESTED} levels deep")
+
+
+def _items(one: object) -> Iterable[object]:
+    if isinstance(one, dict):
+        return one.values()
+    if isinstance(one, list):
+        return one
+    if isinstance(one, msgspec.Struct):  # a free part of a message, such as a command's arguments
+        return (getattr(one, name) for name in one.__struct_fields__)
+    return ()

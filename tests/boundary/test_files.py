@@ -1,0 +1,56 @@
+"""Files that somebody else named are regular and of bounded size, or refused at once."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from mocapd.boundary import files
+from mocapd.errors import ConfigError, InputError
+
+
+def test_a_regular_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(b"\x00\xff")
+    assert files.read_file(path, 2) == b"\x00\xff"
+
+
+def test_a_pipe_without_a_writer_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="no regular file"):
+        files.read_file(tmp_path / "pipe", 10)
+
+
+@pytest.mark.parametrize("path", ["/dev/zero", "/dev/null", "/", "a\0b", "x" * 5000])
+def test_what_is_no_regular_file_is_refused(path: str) -> None:
+    with pytest.raises(InputError):
+        files.read_file(Path(path), 10)
+
+
+def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
+    with (tmp_path / "large").open("wb") as file:
+        file.truncate(1 << 40)  # takes no room on the disk
+    with pytest.raises(InputError, match="larger than"):
+        files.read_file(tmp_path / "large", 1000)
+
+
+def test_a_missing_file_has_its_own_name(tmp_path: Path) -> None:
+    with pytest.raises(files.MissingError, match="no such file"):
+        files.read_file(tmp_path / "none", 10)
+
+
+def test_text_that_is_no_utf8_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"\xff")
+    with pytest.raises(InputError, match="UTF-8"):
+        files.read_text(tmp_path / "a", 10)
+
+
+def test_the_home_of_nobody_is_refused() -> None:
+    with pytest.raises(ConfigError, match="no such user"):
+        files.user_path("~nosuchuser/x")
+
+
+@pytest.mark.parametrize("path", ["x" * 5000, "a\0b"])
+def test_what_can_be_no_path_is_not_there(path: str) -> None:
+    assert not files.is_file(Path(path))
+    assert not files.is_folder(Path(path))
