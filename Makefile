@@ -2,40 +2,65 @@
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
-# The first Python that runs and is 3.11 or later; say PYTHON=... to choose another.
-PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python3.14; do \
-	"$$p" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo "$$p" && break; done)
+# The first Python that runs and that the locks are for, else one later; say PYTHON=... to choose another.
+PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
+	"$$p" -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, $$below))" 2>/dev/null \
+	&& echo "$$p" && exit; done; done)
+# What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
+LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 14) and sys.platform == "linux" \
+	and platform.machine() in ("x86_64", "aarch64")))
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
-.PHONY: help env demo test check bench clean
+.NOTPARALLEL: # one environment, made by one
+.PHONY: help env dev demo test check bench fuzz attack lock clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
 
-# .venv/ready holds what the environment was made from: this folder and pyproject.toml. When either
-# differs, or the environment's Python is gone, it is made anew.
+# .venv/ready holds what the environment was made from: this folder, pyproject.toml and the locks.
+# When any differs, or the environment's Python is gone, it is made anew. .venv/ready-dev says the same
+# of the developers' tools, which are added to it. Whatever is installed by a lock is a wheel with one of
+# its hashes, hatchling for the checkout itself included: nothing else is downloaded.
+env: STAMP := $(READY)
+env: STAMPS := $(READY)
+env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt
+env: PROJECT := .
 env: ## make or renew the environment in .venv
+dev: STAMP := $(READY)-dev
+dev: STAMPS := $(READY) $(READY)-dev
+dev: LOCKS := --requirement locks/dev.txt
+dev: PROJECT := .[dev]
+dev: ## the same with the developers' tools
+env dev:
 	@if [ -z "$(PYTHON)" ]; then \
 		echo "make: no Python 3.11 or later was found -- install one (apt install python3 python3-venv)," \
 			"or name it: make demo PYTHON=/path/to/python3" >&2; exit 1; fi
-	@want="$$(pwd) $$(cksum < pyproject.toml)"; \
-	if [ "$$(cat $(READY) 2>/dev/null)" = "$$want" ] && $(BIN)/python -c '' 2>/dev/null; then exit 0; fi; \
+	@want="$$(pwd) $$(cat pyproject.toml locks/*.txt | cksum)"; \
+	if [ "$$(cat $(STAMP) 2>/dev/null)" = "$$want" ] && $(BIN)/python -c '' 2>/dev/null; then exit 0; fi; \
 	echo "make: preparing $(VENV) with $(PYTHON) (once, a minute or two)" >&2; \
-	rm -f $(READY); \
+	rm -f $(READY) $(READY)-dev; \
 	case "$$(cat $(VENV)/made-in 2>/dev/null)" in "$$(pwd)") ;; *) rm -rf $(VENV);; esac; \
 	$(BIN)/python -c '' 2>/dev/null || { rm -rf $(VENV); "$(PYTHON)" -m venv $(VENV); } || { \
 		echo "make: $(PYTHON) cannot make an environment -- apt install python3-venv" >&2; exit 1; }; \
 	pwd > $(VENV)/made-in && \
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]' && \
-	echo "$$want" > $(READY)
+	if $(BIN)/python -c '$(LOCKED)'; then \
+		$(PIP_INSTALL) --require-hashes --only-binary :all: $(LOCKS) && \
+		$(PIP_INSTALL) --no-deps --no-build-isolation --editable .; \
+	else \
+		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.13 on Linux," \
+			"x86_64 or aarch64): pip chooses the versions" >&2; \
+		$(PIP_INSTALL) --editable '$(PROJECT)'; \
+	fi && \
+	for stamp in $(STAMPS); do echo "$$want" > $$stamp || exit 1; done
 
 demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one live line
 	@$(BIN)/mocapd demo
 
-test: env ## run all tests
+test: dev ## run all tests
 	$(BIN)/python -m pytest
 
-check: env ## lint, format, types, import contract
+check: dev ## lint, format, types, import contract
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -43,6 +68,17 @@ check: env ## lint, format, types, import contract
 
 bench: env ## time every tracker, stage by stage
 	@$(BIN)/mocapd bench
+
+fuzz: dev ## feed every parser changed input and count what comes out
+	$(BIN)/python -m tests.fuzz
+
+attack: dev ## attack a daemon of its own as another process of this machine could
+	$(BIN)/python -m tests.attacks
+
+lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
+	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)
+	@$(MAKE) --no-print-directory dev
+	$(BIN)/python -m tests.supply.third_party_notices
 
 clean: ## remove the environment and every cache of the tools
 	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
