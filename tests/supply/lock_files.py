@@ -61,7 +61,9 @@ def pins(lock: Path) -> dict[str, Pin]:
         name = canonicalize_name(requirement.name)
         exact = re.fullmatch(r"==([^=*,]+)", str(requirement.specifier))
         if requirement.url or requirement.extras or exact is None or name in found:
-            raise ValueError(f"{lock.name}: not one exact version, once: {line.split(' --hash')[0]}")
+            raise ValueError(
+                f"{lock.name}: not one exact version, once: {line.split(' --hash')[0]}"
+            )
         hashes = frozenset(re.findall(r"--hash=(\S+)", line))
         found[name] = Pin(name, exact[1], requirement.marker, hashes)
     return found

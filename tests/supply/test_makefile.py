@@ -1,0 +1,130 @@
+"""`make env` and its like install the locks and nothing else, once; seen by a Python that writes down calls."""
+
+import itertools
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.supply.lock_files import ROOT
+
+# Stands for the Python that makes the environment and for the one in it: answers what it is asked by
+# `-c` truly, except for its version, and writes down what pip is told.
+_PYTHON = """#!/bin/sh
+case "$1 $2" in
+"-m venv") mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
+"-m pip") shift 2; echo "$*" >> pip-calls ;;
+"-c "*) exec "{python}" -c "import sys; sys.version_info = {version}; exec(sys.argv[1])" "$2" ;;
+-V*) echo "Python {version}" ;;
+esac
+"""
+
+
+class Checkout:
+    """A folder with the Makefile and what it reads."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        shutil.copytree(ROOT / "locks", folder / "locks")
+        for name in ("Makefile", "pyproject.toml"):
+            shutil.copy(ROOT / name, folder / name)
+        self.python = folder / "a-python"
+        self.set_version((3, 11, 9))
+
+    def set_version(self, version: tuple[int, int, int]) -> None:
+        self.python.write_text(_PYTHON.format(python=sys.executable, version=version))
+        self.python.chmod(0o755)
+
+    def make(self, target: str) -> tuple[list[str], str]:
+        """What pip was told, one entry a call, and what make said."""
+        calls = self.folder / "pip-calls"
+        calls.unlink(missing_ok=True)
+        command = ["make", target, f"PYTHON={self.python}"]
+        # not as a part of the make that may be running the tests
+        environment = {name: value for name, value in os.environ.items() if name[:4] != "MAKE"}
+        done = subprocess.run(
+            command, cwd=self.folder, env=environment, capture_output=True, text=True, check=True
+        )
+        return calls.read_text().splitlines() if calls.exists() else [], done.stderr
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Checkout:
+    return Checkout(tmp_path)
+
+
+def _locks_of(call: str) -> set[str]:
+    words = call.split()
+    return {after for word, after in itertools.pairwise(words) if word == "--requirement"}
+
+
+def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_downloads(
+    checkout: Checkout,
+) -> None:
+    (packages, project), _ = checkout.make("env")
+    assert "--require-hashes" in packages
+    assert "--only-binary :all:" in packages
+    assert _locks_of(packages) == {"locks/run.txt", "locks/build.txt"}
+    assert "--no-deps" in project
+    assert "--no-build-isolation" in project
+    assert project.endswith("--editable .")
+
+
+def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
+    checkout: Checkout,
+) -> None:
+    (packages, project), _ = checkout.make("dev")
+    assert "--require-hashes" in packages
+    assert _locks_of(packages) == {"locks/dev.txt"}
+    assert "--no-deps" in project
+    assert checkout.make("dev") == ([], "")
+    assert checkout.make("env") == ([], "")
+
+
+def test_dev_adds_to_env(checkout: Checkout) -> None:
+    checkout.make("env")
+    assert _locks_of(checkout.make("dev")[0][0]) == {"locks/dev.txt"}
+
+
+@pytest.mark.parametrize("changed", ["pyproject.toml", "locks/run.txt", "locks/build.txt"])
+def test_a_changed_lock_or_project_makes_the_environment_anew(
+    checkout: Checkout, changed: str
+) -> None:
+    checkout.make("dev")
+    path = checkout.folder / changed
+    before = path.read_text()
+    path.write_text(before + "# changed\n")
+    assert checkout.make("env")[0]
+    # and what was added by the lock of before is not taken for ready when that lock comes back
+    path.write_text(before)
+    assert checkout.make("dev")[0]
+
+
+def test_a_python_the_lock_is_not_for_gets_what_pip_chooses_and_is_told(checkout: Checkout) -> None:
+    checkout.set_version((3, 14, 0))
+    calls, said = checkout.make("env")
+    assert [call.split("--")[-1] for call in calls] == ["editable ."]
+    assert "locks/" not in calls[0]
+    told = [line for line in said.splitlines() if "pip chooses" in line]
+    assert len(told) == 1
+    assert "3.11 to 3.13" in told[0]
+    assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[dev]"]
+
+
+def test_what_ci_runs_installs_packages_by_make_alone() -> None:
+    ci = (ROOT / ".ci" / "run").read_text()
+    assert "pip install" not in ci
+    assert "make check" in ci
+    assert "make test" in ci
+
+
+@pytest.mark.parametrize(
+    ("target", "environment"),
+    [("demo", "env"), ("bench", "env"), ("test", "dev"), ("check", "dev"), ("lock", "dev")],
+)
+def test_each_target_makes_the_environment_it_needs(target: str, environment: str) -> None:
+    rules = (ROOT / "Makefile").read_text().splitlines()
+    assert any(rule.startswith(f"{target}: {environment} ## ") for rule in rules)
