@@ -1,10 +1,12 @@
 """A file is written whole or not at all."""
 
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from mocapd.whole_file import whole_file
+from mocapd.whole_file import tidy_beside, whole_file
 
 
 def test_the_new_takes_the_place_of_the_old_and_nothing_else_is_left(tmp_path: Path) -> None:
@@ -51,3 +53,37 @@ def test_others_may_read_it_as_any_new_file(tmp_path: Path) -> None:
     with whole_file(tmp_path / "kept") as partial:
         partial.touch()
     assert (tmp_path / "kept").stat().st_mode == (tmp_path / "usual").stat().st_mode
+
+
+def test_a_private_file_is_never_readable_by_others(tmp_path: Path) -> None:
+    path = tmp_path / "kept"
+    path.write_text("of an earlier version")
+    path.chmod(0o644)
+    with whole_file(path, private=True) as partial:
+        assert partial.stat().st_mode & 0o777 == 0o600
+        partial.write_text("new")
+    assert path.stat().st_mode & 0o777 == 0o600
+    assert path.read_text() == "new"
+
+
+def dead_pid() -> int:
+    done = subprocess.Popen(["true"])
+    done.wait()
+    return done.pid
+
+
+def test_what_a_killed_process_left_half_written_goes(tmp_path: Path) -> None:
+    """4 of 20 kills during a save left up to 0.9 MB, with the wearer's picture, for ever."""
+    path = tmp_path / "cam0-0123456789ab.png"
+    left = tmp_path / f".cam0-0123456789ab.{dead_pid()}.a1b2c3.png"
+    other = tmp_path / f".cam1-0123456789ab.{dead_pid()}.a1b2c3.png"
+    under_way = tmp_path / f".cam0-0123456789ab.{os.getppid()}.a1b2c3.png"
+    forgotten = tmp_path / f".cam0-0123456789ab.{os.getppid()}.d4e5f6.png"
+    for one in (left, other, under_way, forgotten, tmp_path / ".hidden.png"):
+        one.write_bytes(b"half")
+    os.utime(forgotten, (1e9, 1e9))
+    with whole_file(path) as partial:
+        partial.write_bytes(b"whole")
+    assert set(tmp_path.iterdir()) == {path, other, under_way, tmp_path / ".hidden.png"}
+    tidy_beside(path)
+    assert set(tmp_path.iterdir()) == {path, under_way, tmp_path / ".hidden.png"}

@@ -48,7 +48,9 @@ def read_text(path: Path, most_bytes: int) -> str:
 
 
 def user_path(text: str | Path) -> Path:
-    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`."""
+    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`, and a NUL."""
+    if "\0" in str(text):  # which pathlib takes, and each use of it raises
+        raise ConfigError(f"{str(text)!r} is no path", fix="write it without the NUL")
     try:
         return Path(text).expanduser()
     except RuntimeError:
@@ -62,6 +64,14 @@ def is_file(path: Path) -> bool:
     try:
         return path.is_file()
     except OSError:  # such as a name longer than the file system takes
+        return False
+
+
+def exists(path: Path) -> bool:
+    """Whether there is anything; no for what can be no path."""
+    try:
+        return path.exists()
+    except OSError:
         return False
 
 

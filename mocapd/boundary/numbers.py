@@ -1,7 +1,11 @@
 """Numbers from outside, as a page or a file says them: finite, in range, and no `true`."""
 
+import math
+from collections.abc import Iterator
+
 from mocapd.errors import MalformedError
 
+MOST = 2**31 - 1  # of any number in a file of ours, whole or not
 _MOST_DIGITS = 18  # of a whole number in text; int() itself takes quadratic time over them
 
 
@@ -28,6 +32,27 @@ def whole_number_of_text(text: str, low: int, high: int) -> int:
     if not (digits.isascii() and digits.isdecimal()) or len(digits) > _MOST_DIGITS:
         raise MalformedError(f"{brief(text)} is no whole number")
     return whole_number(int(digits), low, high)
+
+
+def check_numbers(tree: object) -> None:
+    """That every number of a parsed file is finite and between -MOST and MOST, so that nothing that is
+    made of a few of them overflows. Raises MalformedError naming its key."""
+    for key, value in _numbers(tree, ""):
+        if not -MOST <= value <= MOST:
+            finite = isinstance(value, int) or math.isfinite(value)
+            raise MalformedError(f"{key!r} is {'far too large' if finite else 'not finite'}")
+
+
+def _numbers(tree: object, key: str) -> Iterator[tuple[str, float]]:
+    """Every number with its key. Parsed trees are nested a few levels deep, see messages."""
+    if isinstance(tree, dict):
+        for name, item in tree.items():
+            yield from _numbers(item, f"{key}.{name}" if key else str(name))
+    elif isinstance(tree, list):
+        for i, item in enumerate(tree):
+            yield from _numbers(item, f"{key}[{i}]")
+    elif isinstance(tree, int | float):
+        yield key, tree
 
 
 def brief(value: object) -> str:

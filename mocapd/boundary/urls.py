@@ -41,6 +41,11 @@ def without_password(text: str) -> str:
     return _SECRET_QUERY.sub(rf"\g<1>{HIDDEN}", text) if "://" in text else text
 
 
+def is_masked(text: str) -> bool:
+    """Whether its password is hidden, so that nothing can be reached by it."""
+    return "://" in text and (f":{HIDDEN}@" in text or f"={HIDDEN}" in text)
+
+
 def has_password(text: str) -> bool:
     """Whether showing it would show a secret."""
     return without_password(text) != text

@@ -38,3 +38,22 @@ def test_text_that_is_no_number_in_range_is_refused(text: str) -> None:
 
 def test_digits_are_a_number() -> None:
     assert numbers.whole_number_of_text(" 10 ", 0, 10) == 10
+
+
+@pytest.mark.parametrize(
+    ("tree", "message"),
+    [
+        ({"a": [{"b": float("nan")}]}, r"'a\[0\]\.b' is not finite"),
+        ([1.0, float("-inf")], r"'\[1\]' is not finite"),
+        ({"a": 10**12}, "'a' is far too large"),
+        ({"a": -1e300}, "'a' is far too large"),
+        ({"a": 1 << 100_000}, "'a' is far too large"),  # hexadecimal: more digits than print
+    ],
+)
+def test_a_number_that_would_overflow_is_named_by_its_key(tree: object, message: str) -> None:
+    with pytest.raises(MalformedError, match=message):
+        numbers.check_numbers(tree)
+
+
+def test_numbers_of_a_usual_size_are_let_through() -> None:
+    numbers.check_numbers({"a": [1, 2.5, True, None, "1e400"], "b": {"c": -(2**31) + 1}})

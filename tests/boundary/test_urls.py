@@ -2,7 +2,7 @@
 
 import pytest
 
-from mocapd.boundary.urls import has_password, split_url, without_password
+from mocapd.boundary.urls import has_password, is_masked, split_url, without_password
 from mocapd.errors import ConfigError
 
 
@@ -41,3 +41,10 @@ def test_a_bad_address_is_told_without_its_password() -> None:
     with pytest.raises(ConfigError) as told:
         split_url("rtsp://admin:hunter2@[bad")
     assert "hunter2" not in str(told.value)
+
+
+def test_a_masked_address_is_known_as_such() -> None:
+    for url in ("rtsp://a:secret@host/x", "http://host/x?user=a&pwd=secret"):
+        assert not is_masked(url)
+        assert is_masked(without_password(url))
+    assert not is_masked("usb:1-3:046d:0825:***")
