@@ -1,15 +1,19 @@
 """Rig files: JSON in the capture format, checked value by value before anything uses them."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mocapd.errors import ConfigError, InputError
+from mocapd.boundary.files import read_text
+from mocapd.boundary.messages import parse_json
+from mocapd.errors import ConfigError, MalformedError
 from mocapd.types import Camera, Floats, Rig
 
 _RECALIBRATE = "calibrate again, or restore the file"
+_MOST_BYTES = 16 << 20
+_LARGEST_PX = 16_384  # of a picture's side
+_LARGEST = 1e6  # of any other number, in its unit: pixels or metres
 
 
 def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) -> Floats:
@@ -23,6 +27,8 @@ def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) 
         raise ConfigError(f"{key!r} has shape {value.shape}, wanted {shape}", where, _RECALIBRATE)
     if not np.isfinite(value).all():
         raise ConfigError(f"{key!r} contains NaN or infinity", where, _RECALIBRATE)
+    if np.abs(value).max() > _LARGEST:
+        raise ConfigError(f"{key!r} contains a number above 1e6", where, _RECALIBRATE)
     return value
 
 
@@ -39,7 +45,7 @@ def camera_from_dict(entry: Any, where: str) -> Camera:
         raise ConfigError(
             "'size' and the focal lengths in 'K' must be positive", where, _RECALIBRATE
         )
-    if size.max() > 1e5 or (size != np.round(size)).any():
+    if size.max() > _LARGEST_PX or (size != np.round(size)).any():
         raise ConfigError("'size' is not width and height in whole pixels", where, _RECALIBRATE)
     if K[0, 1] != 0 or K[1, 0] != 0 or not np.array_equal(K[2], (0, 0, 1)):
         raise ConfigError("'K' is not [fx 0 cx, 0 fy cy, 0 0 1]", where, _RECALIBRATE)
@@ -57,16 +63,11 @@ def camera_from_dict(entry: Any, where: str) -> Camera:
 
 def read_json(path: Path) -> Any:
     """A JSON file. Raises InputError naming the file, and the line where it is damaged."""
+    text = read_text(path, _MOST_BYTES)
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError("no such file", str(path), "check the path") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"cannot be read ({error})", str(path), "check the path and its rights"
-        ) from None
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise ConfigError(f"not valid JSON ({error})", str(path), _RECALIBRATE) from None
+        return parse_json(text)
+    except MalformedError as error:
+        raise ConfigError(f"not valid JSON ({error.what})", str(path), _RECALIBRATE) from None
 
 
 def load_rig(path: Path) -> Rig:

@@ -1,7 +1,6 @@
 """The scenario file: one TOML from which everything the simulated webcams show follows."""
 
 import difflib
-import tomllib
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -9,21 +8,29 @@ from typing import Annotated, Literal
 import msgspec
 
 from mocapd.body.skeleton import INDEX
-from mocapd.errors import ConfigError, InputError
+from mocapd.boundary.files import read_text
+from mocapd.boundary.messages import convert, parse_toml
+from mocapd.boundary.numbers import check_numbers
+from mocapd.errors import ConfigError, MalformedError
 from mocapd.sim.poses import POSES
 
-Vec2 = tuple[float, float]
-Vec3 = tuple[float, float, float]
+_MOST_BYTES = 1 << 20
+
+# in metres, degrees, seconds or signal: what is beyond these limits is no room that a camera shows
+Number = Annotated[float, msgspec.Meta(ge=-1e4, le=1e4)]
+Vec2 = tuple[Number, Number]
+Vec3 = tuple[Number, Number, Number]
 Srgb = tuple[
     Annotated[int, msgspec.Meta(ge=0, le=255)],
     Annotated[int, msgspec.Meta(ge=0, le=255)],
     Annotated[int, msgspec.Meta(ge=0, le=255)],
 ]
-Positive = Annotated[float, msgspec.Meta(gt=0.0)]
-NotNegative = Annotated[float, msgspec.Meta(ge=0.0)]
+Positive = Annotated[float, msgspec.Meta(ge=1e-6, le=1e4)]
+NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e4)]
 Fraction = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 Ratio = Annotated[float, msgspec.Meta(ge=0.7, le=1.4)]
-Name = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_-]+$")]
+Name = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+Pixels = Annotated[int, msgspec.Meta(ge=16, le=8192)]
 
 
 class _Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -36,15 +43,18 @@ class CameraSpec(_Table, frozen=True, kw_only=True):
     name: Name
     position_m: Vec3
     look_at_m: Vec3
-    roll_deg: float = 0.0
-    size_px: tuple[Annotated[int, msgspec.Meta(ge=16)], Annotated[int, msgspec.Meta(ge=16)]] = (
-        640,
-        480,
-    )
+    roll_deg: Number = 0.0
+    size_px: tuple[Pixels, Pixels] = (640, 480)
     fov_deg: Annotated[float, msgspec.Meta(gt=5.0, lt=150.0)] = 54.0  # horizontal
-    focal_px: Vec2 | None = None  # fx, fy; in place of fov_deg
+    focal_px: tuple[Positive, Positive] | None = None  # fx, fy; in place of fov_deg
     centre_px: Vec2 | None = None  # cx, cy; the middle of the picture when absent
-    dist: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)  # k1 k2 p1 p2 k3
+    dist: tuple[Number, Number, Number, Number, Number] = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )  # k1 k2 p1 p2 k3
     gamma: Positive = 2.2
     gain: Positive = 1.0
     white_balance: Vec3 = (1.0, 1.0, 1.0)  # gains of R G B, fixed as with automatic balance off
@@ -53,7 +63,7 @@ class CameraSpec(_Table, frozen=True, kw_only=True):
     shot_noise: NotNegative = 0.012  # standard deviation at full signal, linear units
     read_noise: NotNegative = 0.003
     vignetting: Fraction = 0.12  # light lost in the corner
-    clock_offset_s: float = 0.0  # how much later than the first camera this one exposes
+    clock_offset_s: Number = 0.0  # how much later than the first camera this one exposes
     dropped: Fraction = 0.0  # fraction of frames that never arrive
 
 
@@ -76,9 +86,9 @@ class Keyframe(_Table, frozen=True, kw_only=True):
     t_s: NotNegative
     pose: str = "relaxed"
     at_m: Vec2 | None = None  # x, z of the hips on the floor; as in the keyframe before when absent
-    yaw_deg: float | None = None  # about +Y, 0 faces +Z; as in the keyframe before when absent
+    yaw_deg: Number | None = None  # about +Y, 0 faces +Z; as in the keyframe before when absent
     lean_deg: Vec2 = (0.0, 0.0)  # forwards, to the person's left
-    twist_deg: float = 0.0  # of the chest against the hips, to the person's left
+    twist_deg: Number = 0.0  # of the chest against the hips, to the person's left
     left_arm: tuple[Vec3, Vec3] | None = None  # directions of upper arm and forearm
     right_arm: tuple[Vec3, Vec3] | None = None
 
@@ -153,7 +163,7 @@ class Thing(_Table, frozen=True, kw_only=True):
     kind: Literal["box", "ball", "bookshelf", "table", "poster", "sofa", "tree"] = "box"
     base_m: Vec3
     size_m: tuple[Positive, Positive, Positive]
-    yaw_deg: float = 0.0
+    yaw_deg: Number = 0.0
     srgb: Srgb = (150, 140, 130)
     pattern: Literal["plain", "plaster", "planks", "checks", "grass", "bricks"] = "plain"
     glow: NotNegative = 0.0  # brightness of a lampshade, in the colour and at the level of `lamp`
@@ -177,13 +187,13 @@ class Scenario(_Table, frozen=True, kw_only=True):
     """A whole scenario file."""
 
     name: Name
-    seed: int = 0
-    fps_hz: Positive = 30.0
+    seed: Annotated[int, msgspec.Meta(ge=0, le=2**31 - 1)] = 0
+    fps_hz: Annotated[float, msgspec.Meta(ge=1.0, le=1000.0)] = 30.0
     loop_s: Annotated[float, msgspec.Meta(gt=0.2, le=120.0)] = 12.0
     person_appears_s: NotNegative = 0.0  # recordings show an empty room until then
     scribble_s: NotNegative = 0.0  # instant of the picture that the user labels with strokes
     jpeg_quality: Annotated[int, msgspec.Meta(ge=40, le=100)] = 88
-    cameras: Annotated[list[CameraSpec], msgspec.Meta(min_length=1)]
+    cameras: Annotated[list[CameraSpec], msgspec.Meta(min_length=1, max_length=32)]
     body: Body = Body()
     motion: Motion
     clothes: Clothes = Clothes()
@@ -194,23 +204,21 @@ class Scenario(_Table, frozen=True, kw_only=True):
 
 def load_scenario(path: Path) -> Scenario:
     """Read a scenario file. Raises InputError or ConfigError naming the file, the key and the fix."""
+    text = read_text(path, _MOST_BYTES)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read ({error})", str(path), "check the path") from None
-    try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"not valid TOML ({error})", str(path), "mend that line") from None
+        table = parse_toml(text)
+    except MalformedError as error:
+        raise ConfigError(f"not valid TOML ({error.what})", str(path), "mend that line") from None
     return scenario_from_dict(table, str(path))
 
 
 def scenario_from_dict(table: dict[str, object], where: str = "scenario") -> Scenario:
     """A scenario from the values of a TOML file. Raises ConfigError naming the key and the fix."""
     try:
-        scenario = msgspec.convert(table, Scenario, strict=True)
-    except msgspec.ValidationError as error:
-        raise _config_error(str(error), where) from None
+        check_numbers(table)
+        scenario: Scenario = convert(table, Scenario)
+    except MalformedError as error:
+        raise _config_error(error.what, where) from None
     _check(scenario, where)
     return scenario
 

@@ -80,6 +80,9 @@ NAN = float("nan")
         ("K", [[600, 9, 320], [0, 600, 240], [0, 0, 1]], "fx 0 cx"),  # skew
         ("size", [640, 0], "must be positive"),
         ("size", [640.5, 480], "whole"),
+        ("size", [20_000, 480], "whole pixels"),
+        ("t", [0, 0, 1e300], "above 1e6"),
+        ("K", [[1e200, 0, 320], [0, 600, 240], [0, 0, 1]], "above 1e6"),
         ("name", 7, "'name'"),
         ("name", "cam0", "two cameras have one name"),
         ("name", "", "'name'"),
@@ -101,8 +104,9 @@ def test_a_file_without_cameras_is_named(tmp_path: Path, data: Any) -> None:
     [
         (b'{"cameras": [', ConfigError, "line 1"),
         (b"", ConfigError, "not valid JSON"),
-        (b"\xff\xfe\x00", InputError, "cannot be read"),
+        (b"\xff\xfe\x00", InputError, "no UTF-8 text"),
         (b"[" * 100_000, ConfigError, "not valid JSON"),
+        (b'{"cameras": ' + b"9" * 5000 + b"}", ConfigError, "not valid JSON"),
     ],
 )
 def test_a_damaged_file_is_named(

@@ -73,3 +73,31 @@ def test_unreadable_files(tmp_path: Path) -> None:
     (tmp_path / "torn.toml").write_text("name = \nseed = 1\n")
     with pytest.raises(ConfigError, match="line 1"):
         load_scenario(tmp_path / "torn.toml")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "named"),
+    [
+        ("cameras.0.position_m", [0.0, float("nan"), 0.0], "cameras[0].position_m[1]"),
+        ("cameras.0.clock_offset_s", 1e300, "cameras[0].clock_offset_s"),
+        ("cameras.0.size_px", [100_000, 100_000], "cameras[0].size_px"),
+        ("seed", 10**30, "seed"),
+        ("seed", -1, "seed"),
+        ("fps_hz", 1e-300, "fps_hz"),
+        ("name", "x" * 300, "name"),
+    ],
+)
+def test_a_value_that_no_room_has_is_named_with_its_key(path: str, value: Any, named: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        scenario_from_dict(_with(path, value), "x.toml")
+    assert named in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["seed = " + "9" * 5000, "a = " + "[" * 2000, "a" + ".a" * 600 + " = 1"]
+)
+def test_no_text_ends_in_a_traceback(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "x.toml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match="not valid TOML"):
+        load_scenario(path)
