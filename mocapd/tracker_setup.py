@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from mocapd.body.shirt import N_COLOURS, standard_shirt
+from mocapd.boundary.files import is_file, is_folder
 from mocapd.capture.folder import CaptureFolder, StrokedImage
 from mocapd.config_sections import CameraSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
@@ -18,7 +18,8 @@ from mocapd.trackers import registry
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import StrokedPicture, TrackerInputs, build
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Bytes, Rig
+from mocapd.types import Rig
+from mocapd.vision.strokes import read_labelled, stroked_pictures, strokes_beside
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
 
@@ -98,16 +99,16 @@ def inputs_of_config(
 
 def stroked_image(image: Path) -> StrokedImage:
     """An image with its `_strokes.png` beside it. Raises InputError when one is missing."""
-    strokes = image.with_name(f"{image.stem}_strokes.png")
+    strokes = strokes_beside(image)
     for path in (image, strokes):
-        if not path.is_file():
+        if not is_file(path):
             raise InputError("no such file", str(path), _PAINT)
     return StrokedImage(image, strokes)
 
 
 def stroked_folder(folder: Path) -> tuple[StrokedImage, ...]:
     """Every image of a folder with its strokes. Raises InputError when there is none."""
-    images = sorted(path for path in folder.glob("*.png") if not path.stem.endswith("_strokes"))
+    images = stroked_pictures(folder) if is_folder(folder) else []
     if not images:
         raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
     return tuple(stroked_image(image) for image in images)
@@ -130,28 +131,5 @@ def read_model(images: tuple[StrokedImage, ...]) -> tuple[StrokedPicture, ...]:
 
 
 def read_stroked(image: StrokedImage) -> StrokedPicture:
-    """Read both pictures. Raises InputError or ConfigError naming the file."""
-    pixels = _picture(image.image, cv2.IMREAD_COLOR)
-    strokes = _picture(image.strokes, cv2.IMREAD_UNCHANGED)
-    if strokes.shape != pixels.shape[:2]:
-        raise ConfigError(
-            f"has shape {strokes.shape}, its image {pixels.shape[:2]}", str(image.strokes), _PAINT
-        )
-    if strokes.max() > N_COLOURS:
-        raise ConfigError(
-            f"holds the colour id {strokes.max()}, ids go to {N_COLOURS}",
-            str(image.strokes),
-            _PAINT,
-        )
-    return StrokedPicture(pixels, strokes)
-
-
-def _picture(path: Path, flags: int) -> Bytes:
-    try:
-        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", str(path), _PAINT) from None
-    picture = cv2.imdecode(data, flags) if data.size else None
-    if picture is None:
-        raise InputError("is damaged or no picture", str(path), _PAINT)
-    return np.asarray(picture, dtype=np.uint8)
+    """Read both pictures. Raises InputError naming the file."""
+    return StrokedPicture(*read_labelled(image.image, image.strokes))

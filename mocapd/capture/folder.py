@@ -14,6 +14,7 @@ from mocapd.capture.pace import Pace
 from mocapd.errors import ConfigError, EndOfStream, InputError
 from mocapd.geometry.rig_file import load_rig, read_json
 from mocapd.types import Frame, FrameSet, Rig
+from mocapd.vision.strokes import stroked_pictures, strokes_beside
 
 _LOG = logging.getLogger(__name__)
 
@@ -133,15 +134,14 @@ def _stroked(image: Path) -> StrokedImage | None:
     """The image and its `_strokes.png`; None without an image. Raises InputError for one alone."""
     if not image.exists():
         return None
-    strokes = image.with_name(f"{image.stem}_strokes.png")
+    strokes = strokes_beside(image)
     if not strokes.exists():
         raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
     return StrokedImage(image, strokes)
 
 
 def _model(folder: Path) -> tuple[StrokedImage, ...]:
-    images = sorted(one for one in folder.glob("*.png") if "_" not in one.stem)
-    pairs = (_stroked(image) for image in images)
+    pairs = (_stroked(image) for image in stroked_pictures(folder))
     return tuple(pair for pair in pairs if pair is not None)
 
 

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import mocapd
+from mocapd.boundary.files import is_file
 from mocapd.calibrate.calibration_file import write_calibration
 from mocapd.calibrate.colour_solution import white_balances
 from mocapd.calibrate.folder import Calibration, CameraReport
@@ -24,7 +25,7 @@ from mocapd.errors import InputError
 from mocapd.trackers.colour.build import colour_model
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Camera, Floats, Rig
-from mocapd.vision.strokes import read_labelled
+from mocapd.vision.strokes import read_labelled, strokes_beside
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
 
@@ -35,9 +36,9 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, StrokedPicture]:
     pictures = {}
     for camera in rig.cameras:
         image = strokes / f"{camera.name}.png"
-        if not image.is_file():
+        if not is_file(image):
             continue
-        drawn = image.with_name(f"{image.stem}_strokes.png")
+        drawn = strokes_beside(image)
         pixels, labels = read_labelled(image, drawn)
         require_good_strokes(pixels, labels, model, str(drawn))
         pictures[camera.name] = StrokedPicture(pixels, labels)

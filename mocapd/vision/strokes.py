@@ -1,12 +1,13 @@
 """Stroke images: a person's coarse scribbles, one colour id per shirt colour, and their pixels."""
 
 from pathlib import Path
-from typing import cast
 
 import cv2
 import numpy as np
 
-from mocapd.errors import InputError
+from mocapd.boundary.files import read_file
+from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
+from mocapd.errors import InputError, MalformedError
 from mocapd.types import Bytes, Floats
 
 COLOURS = 10
@@ -22,6 +23,18 @@ _CONCENTRATION_STEPS = 5
 _PIXEL_NOISE_VARIANCE = 0.015**2
 
 
+def stroked_pictures(folder: Path) -> list[Path]:
+    """The pictures of a folder in which strokes lie beside them, by name: every PNG but NAME_strokes.png,
+    and NAME_labels.png, which is ground truth and none of a tracker's business."""
+    beside = ("_strokes", "_labels")
+    return sorted(path for path in folder.glob("*.png") if not path.stem.endswith(beside))
+
+
+def strokes_beside(picture: Path) -> Path:
+    """Where the strokes on a picture lie."""
+    return picture.with_name(f"{picture.stem}_strokes.png")
+
+
 def read_image(path: Path) -> Bytes:
     """A colour image file as (h,w,3) uint8 BGR. Raises InputError."""
     return _read(path, cv2.IMREAD_COLOR)
@@ -33,8 +46,6 @@ def read_strokes(path: Path, size_px: tuple[int, int] | None = None) -> Bytes:
     Gray files, and colour files whose channels agree, hold the ids themselves. Raises InputError.
     """
     image = _read(path, cv2.IMREAD_UNCHANGED)
-    if image.dtype != np.uint8:
-        raise InputError(f"has {image.dtype} pixels, wanted 8 bits", str(path), _SCRIBBLE_AGAIN)
     if image.ndim == 3:
         if (image[..., :3] != image[..., :1]).any():
             raise InputError("is painted in colours, not ids", str(path), _SCRIBBLE_AGAIN)
@@ -102,14 +113,6 @@ def _trim(values: Floats) -> Floats:
 
 def _read(path: Path, flags: int) -> Bytes:
     try:
-        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    except FileNotFoundError:
-        raise InputError("no such file", str(path), "check the path") from None
-    except OSError as error:
-        raise InputError(
-            f"cannot be read ({error.strerror})", str(path), "check its rights"
-        ) from None
-    image = cv2.imdecode(data, flags) if data.size else None
-    if image is None:
-        raise InputError("is not an image, or is cut short", str(path), "save it again as PNG")
-    return cast(Bytes, image)  # read_strokes looks at the depth before it trusts this
+        return decode_picture(read_file(path, MOST_FILE_BYTES), flags)
+    except MalformedError as error:
+        raise InputError(error.what, str(path), "save it again as PNG, with 8 bits") from None

@@ -110,6 +110,16 @@ def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
         inputs_of_config(TrackerSection(), (camera,), None)
 
 
+def test_a_folder_of_pictures_is_read_by_one_rule_wherever_it_is_named(capture: Path) -> None:
+    """Ground truth beside the pictures stopped `tracker.colour_model`, but not a capture's model/."""
+    folder = capture / "model"
+    (folder / "0_labels.png").write_bytes((folder / "0.png").read_bytes())
+    write_stroked(folder / "by_the_window.png", range(1, 5))
+    named = stroked_folder(folder)
+    assert named == load_folder(capture).model
+    assert [one.image.name for one in named] == ["0.png", "by_the_window.png"]
+
+
 def test_a_model_is_checked(tmp_path: Path) -> None:
     folder = tmp_path / "model"
     folder.mkdir()
@@ -119,5 +129,5 @@ def test_a_model_is_checked(tmp_path: Path) -> None:
     write_stroked(folder / "1.png", range(6, 11))
     assert len(read_model(stroked_folder(folder))) == 2
     (folder / "0_strokes.png").write_bytes(b"no picture")
-    with pytest.raises(InputError, match=r"0_strokes\.png: is damaged"):
+    with pytest.raises(InputError, match=r"0_strokes\.png: is neither PNG nor JPEG"):
         read_model(stroked_folder(folder))
