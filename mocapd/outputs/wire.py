@@ -10,7 +10,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from mocapd.errors import InputError
+from mocapd.boundary.messages import decode_json, decode_msgpack
+from mocapd.errors import InputError, MalformedError
 
 SCHEMA = "mocapd.Skeleton.v1"
 MSGPACK_MIME = "application/msgpack"
@@ -57,10 +58,6 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     ]
 
 
-_msgpack_decoder = msgspec.msgpack.Decoder(SkeletonFrame)
-_json_decoder = msgspec.json.Decoder(SkeletonFrame)
-
-
 def encode_msgpack(frame: SkeletonFrame) -> bytes:
     """The frame as a msgpack map; its encoding string is `MSGPACK`."""
     return msgspec.msgpack.encode(frame)
@@ -82,19 +79,19 @@ def decode(payload: bytes, encoding: str = MSGPACK) -> SkeletonFrame:
         raise _other_schema(schema)
     try:
         if mime == MSGPACK_MIME:
-            frame = _msgpack_decoder.decode(payload)
+            frame = decode_msgpack(payload, SkeletonFrame)
         elif mime == JSON_MIME:
-            frame = _json_decoder.decode(payload)
+            frame = decode_json(payload, SkeletonFrame)
         else:
             raise InputError(
-                f"encoding {encoding!r} is not known", "wire", f"send {MSGPACK!r} or {JSON!r}"
+                f"encoding {encoding[:80]!r} is not known", "wire", f"send {MSGPACK!r} or {JSON!r}"
             )
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except MalformedError as error:
         raise InputError(
-            f"a payload of {len(payload)} bytes is no {SCHEMA}: {error}",
+            f"a payload of {len(payload)} bytes is no {SCHEMA}: {error.what}",
             "wire",
             "look for another program that publishes on this key",
-        ) from error
+        ) from None
     if frame.schema != SCHEMA:
         raise _other_schema(frame.schema)
     return frame

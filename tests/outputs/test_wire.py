@@ -74,6 +74,18 @@ def test_any_cut_is_a_named_error() -> None:
 
 
 @pytest.mark.parametrize(
+    ("payload", "encoding"),
+    [
+        (b"\x81\xa1x" + b"\x91" * 100_000 + b"\xc0", wire.MSGPACK),
+        (b'{"x":' + b"[" * 100_000, wire.JSON),
+    ],
+)
+def test_a_payload_nested_too_deeply_is_a_named_error(payload: bytes, encoding: str) -> None:
+    with pytest.raises(InputError, match="nested too deeply"):
+        wire.decode(payload, encoding)
+
+
+@pytest.mark.parametrize(
     "payload", [b"\xc1", b"\x00", b'{"schema": "\xff\xfe"}', b'{"schema": 1}', b"[]", b"\x80"]
 )
 @pytest.mark.parametrize("encoding", [wire.MSGPACK, wire.JSON])
