@@ -5,13 +5,16 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from mocapd.boundary.files import is_file, is_folder
+from mocapd.boundary.urls import without_password
 from mocapd.calibrate.calibrated_inputs import (
     Calibrated,
     inputs_of_calibration,
     read_calibrated,
 )
 from mocapd.calibrate.calibration_file import FILE_NAME, calibration_path, read_calibration
-from mocapd.calibrate.saved_calibration import SavedCalibration
+from mocapd.calibrate.saved_calibration import SavedCalibration, SavedCamera
+from mocapd.calibrate.saved_sources import require_password
 from mocapd.capture.file import size_error
 from mocapd.capture.folder import CaptureFolder
 from mocapd.capture.identity import PREFIX, parse_identity
@@ -40,13 +43,13 @@ def calibration_of(config: Config) -> Saved | None:
     if config.rig is not None:
         return load_saved(config.rig) if is_calibration(config.rig) else None
     place = config.state_dir / FILE_NAME
-    if not place.is_file() or any("#" in camera.source for camera in config.camera):
+    if not is_file(place) or any("#" in camera.source for camera in config.camera):
         return None
     saved = load_saved(place)
     if config.camera and not fits(config.camera, saved.tables):
         _log.warning(
             "%s is of other cameras than those configured (%s), and not used",
-            *(place, ", ".join(f"{one.id} = {one.source}" for one in saved.tables.camera)),
+            *(place, ", ".join(map(_named, saved.tables.camera))),
         )
         return None
     return saved
@@ -54,7 +57,7 @@ def calibration_of(config: Config) -> Saved | None:
 
 def is_calibration(path: Path) -> bool:
     """Whether it is a saved calibration, or a folder for one, and not a rig in the capture format."""
-    return path.is_dir() or path.suffix == ".toml"
+    return is_folder(path) or path.suffix == ".toml"
 
 
 def load_saved(place: Path) -> Saved:
@@ -72,16 +75,26 @@ def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
 
 
 def _model(source: str) -> object:
-    return parse_identity(source).model if source.startswith(PREFIX) else source
+    """A password may be written in one place and hidden in the other."""
+    return parse_identity(source).model if source.startswith(PREFIX) else without_password(source)
 
 
-def cameras_of_calibration(tables: SavedCalibration) -> tuple[CameraSection, ...]:
-    """The calibrated cameras as a configuration has them."""
+def _named(camera: SavedCamera) -> str:
+    return f"{camera.id} = {without_password(camera.source)}"
+
+
+def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
+    """The calibrated cameras as a configuration has them. Raises ConfigError where a password is
+    missing."""
+    place = str(saved.path.parent)
     return tuple(
         CameraSection(
-            one.id, one.source, one.fps_hz, controls=ControlsSection(**asdict(one.controls))
+            one.id,
+            require_password(one.id, one.source, place),
+            one.fps_hz,
+            controls=ControlsSection(**asdict(one.controls)),
         )
-        for one in tables.camera
+        for one in saved.tables.camera
     )
 
 

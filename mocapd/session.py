@@ -59,7 +59,7 @@ def open_session(config: Config, progress: Progress) -> Session:
     """Check and prepare everything; `progress` is told while something long is made for the first
     time. Raises ConfigError, InputError or CannotCreateError."""
     saved = calibration_of(config)
-    cameras = config.camera or (cameras_of_calibration(saved.tables) if saved else ())
+    cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
     if not cameras:
         raise ConfigError(
             "no camera is configured, and no calibration is saved",

@@ -30,24 +30,23 @@ def whole_file(path: Path, private: bool = False) -> Iterator[Path]:
         with partial.open("rb") as file:
             os.fsync(file.fileno())
         partial.replace(path)
-        tidy_beside(path, path.stem)
+        tidy(path.parent, path.stat().st_mtime, path.stem)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def tidy_beside(path: Path, stem: str | None = None) -> None:
-    """Remove what killed processes left half written in the folder of `path`, which has just been
-    written: of all files, or of those of this stem.
+def tidy(folder: Path, now_s: float, stem: str | None = None) -> None:
+    """Remove what killed processes left half written in a folder: of all files, or of those of `stem`.
 
-    A process may have been given the number of a dead one: what is a day older than `path` goes too.
+    now_s: when something was written there. A process may have been given the number of a dead one:
+    what is a day older goes too.
     """
-    with suppress(OSError):  # not ours to tidy
-        old_s = path.stat().st_mtime - _OLD_S
-        for one in path.parent.iterdir():
+    with suppress(OSError):  # it is not there, or not ours to tidy
+        for one in folder.iterdir():
             found = _PARTIAL.fullmatch(one.name)
             if found is None or stem not in (None, found[1]):
                 continue
-            if not _alive(int(found[2])) or one.stat().st_mtime < old_s:
+            if not _alive(int(found[2])) or one.stat().st_mtime < now_s - _OLD_S:
                 one.unlink(missing_ok=True)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.whole_file import tidy_beside, whole_file
+from mocapd.whole_file import tidy, whole_file
 
 
 def test_the_new_takes_the_place_of_the_old_and_nothing_else_is_left(tmp_path: Path) -> None:
@@ -85,5 +85,5 @@ def test_what_a_killed_process_left_half_written_goes(tmp_path: Path) -> None:
     with whole_file(path) as partial:
         partial.write_bytes(b"whole")
     assert set(tmp_path.iterdir()) == {path, other, under_way, tmp_path / ".hidden.png"}
-    tidy_beside(path)
+    tidy(tmp_path, path.stat().st_mtime)
     assert set(tmp_path.iterdir()) == {path, under_way, tmp_path / ".hidden.png"}

@@ -1,10 +1,9 @@
 """`calibration.toml`, read and checked value by value, and written whole or not at all."""
 
 import hashlib
-import math
 import re
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -14,15 +13,35 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import msgspec
 
+from mocapd.boundary.files import MissingError, is_file, is_folder, read_file, read_text
+from mocapd.boundary.folders import private_folder
+from mocapd.boundary.messages import convert, parse_toml
+from mocapd.boundary.numbers import brief, check_numbers
+from mocapd.boundary.urls import is_masked
 from mocapd.calibrate.saved_calibration import SCHEMA, ColourFit, SavedCalibration
+from mocapd.calibrate.saved_sources import (
+    SECRETS,
+    complete_sources,
+    keep_sources,
+    known_sources,
+    passwords_of,
+    shown_sources,
+)
 from mocapd.calibrate.toml_text import toml_text
-from mocapd.errors import CannotCreateError, ConfigError, InputError
+from mocapd.errors import (
+    CannotCreateError,
+    ConfigError,
+    InputError,
+    MalformedError,
+    MocapdError,
+)
 from mocapd.types import Bytes
-from mocapd.whole_file import whole_file
+from mocapd.whole_file import tidy, whole_file
 
 FILE_NAME = "calibration.toml"
 COLOURS = "colours"
 
+_MOST_BYTES = 16 << 20
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
@@ -36,32 +55,38 @@ _PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
 
 def calibration_path(place: Path) -> Path:
     """The file of a state directory, or the file itself."""
-    return place / FILE_NAME if place.is_dir() else place
+    return place / FILE_NAME if is_folder(place) else place
 
 
 def read_calibration(place: Path) -> SavedCalibration:
-    """The calibration in a file, or in a folder by its usual name.
+    """The calibration in a file, or in a folder by its usual name; its sources with their passwords,
+    as far as those are kept beside it.
 
     Raises InputError when there is none, ConfigError naming file and key when it is damaged.
     """
     path = calibration_path(place)
+    saved = _read(path)
+    if not any(is_masked(one.source) for one in saved.camera):
+        return saved
+    return complete_sources(saved, known_sources(path.parent))
+
+
+def _read(path: Path) -> SavedCalibration:
     where = str(path)
     data = _toml(path)
     schema = data.get("schema")
     if schema != SCHEMA:
-        told = "has no 'schema'" if schema is None else f"has schema {schema!r}"
+        told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
         raise ConfigError(
             f"{told}, this mocapd reads schema {SCHEMA}",
             where,
             "use the mocapd that wrote it, or calibrate again (`mocapd calibrate`)",
         )
-    for key, value in _floats(data, ""):
-        if not math.isfinite(value):
-            raise ConfigError(f"{key!r} is not finite", where, _RECALIBRATE)
     try:
-        saved = msgspec.convert(data, SavedCalibration)
-    except msgspec.ValidationError as error:
-        what, _, key = str(error).partition(" - at ")
+        check_numbers(data)
+        saved: SavedCalibration = convert(data, SavedCalibration)
+    except MalformedError as error:
+        what, _, key = error.what.partition(" - at ")
         named = key.strip("`").removeprefix("$").removeprefix(".")
         what = what[0].lower() + what[1:]
         raise ConfigError(f"{named}: {what}" if named else what, where, _RECALIBRATE) from None
@@ -75,17 +100,24 @@ def read_calibration(place: Path) -> SavedCalibration:
 
 
 def write_calibration(
-    path: Path, saved: SavedCalibration, pictures: Mapping[str, tuple[Bytes, Bytes]]
+    path: Path,
+    saved: SavedCalibration,
+    pictures: Mapping[str, tuple[Bytes, Bytes]],
+    own_folder: bool = True,
 ) -> None:
     """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml.
 
     pictures: by camera id the picture (h,w,3) BGR and the strokes (h,w) that its `colour` is from.
+    Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
     The file comes last, so what was there stays in force until all is written.
-    Raises CannotCreateError.
+    Raises CannotCreateError, or ConfigError where passwords are kept and cannot be read.
     """
     folder = path.parent
+    known = {**known_sources(folder), **passwords_of(saved)}
     try:
-        (folder / COLOURS).mkdir(parents=True, exist_ok=True)
+        if own_folder:
+            private_folder(folder)
+        private_folder(folder / COLOURS)
         cameras = []
         for camera in saved.camera:
             colour = camera.colour
@@ -94,11 +126,12 @@ def write_calibration(
             cameras.append(msgspec.structs.replace(camera, colour=colour))
         text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
         if path.exists():
-            with whole_file(path.with_name(f"{path.stem}.previous{path.suffix}")) as partial:
-                partial.write_bytes(path.read_bytes())
-        with whole_file(path) as partial:
-            partial.write_text(text, encoding="utf-8")
-        _tidy(folder)
+            before, kept = _without_passwords(path)
+            known = {**kept, **known}
+            with whole_file(_previous(path), private=True) as partial:
+                partial.write_bytes(before)
+        _write(path, text, known)
+        _tidy(path)
     except OSError as error:
         raise _cannot_write(error, path) from None
 
@@ -112,11 +145,33 @@ def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
     cameras = tuple(
         msgspec.structs.replace(one, source=sources.get(one.id, one.source)) for one in saved.camera
     )
+    saved = msgspec.structs.replace(saved, camera=cameras)
+    known = {**known_sources(path.parent), **passwords_of(saved)}
     try:
-        with whole_file(path) as partial:
-            partial.write_text(_text(msgspec.structs.replace(saved, camera=cameras)), "utf-8")
+        _write(path, _text(saved), known)
     except OSError as error:
         raise _cannot_write(error, path) from None
+
+
+def _write(path: Path, text: str, known: Mapping[tuple[str, str], str]) -> None:
+    """The passwords first: without them the file would say too little."""
+    keep_sources(path.parent, known, text + _named(path.parent))
+    with whole_file(path, private=True) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def _without_passwords(path: Path) -> tuple[bytes, dict[tuple[str, str], str]]:
+    """The bytes of the calibration that is there, and what earlier versions kept within it."""
+    try:
+        saved = _read(path)
+    except MocapdError:  # damaged: kept as it is, for whoever mends it
+        return path.read_bytes(), {}
+    kept = dict(passwords_of(saved))
+    return _text(saved).encode() if kept else path.read_bytes(), kept
+
+
+def _previous(path: Path) -> Path:
+    return path.with_name(f"{path.stem}.previous{path.suffix}")
 
 
 def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
@@ -128,7 +183,7 @@ def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
 
 
 def _text(saved: SavedCalibration) -> str:
-    tables: dict[str, Any] = msgspec.to_builtins(saved, builtin_types=(datetime,))
+    tables: dict[str, Any] = msgspec.to_builtins(shown_sources(saved), builtin_types=(datetime,))
     return _HEADER + toml_text(tables)
 
 
@@ -142,9 +197,11 @@ def _with_files(
     names = f"{stem}-{mark}.png", f"{stem}-{mark}_strokes.png"
     for name, data in zip(names, (picture, drawn), strict=True):
         path = folder / COLOURS / name
-        if not path.is_file() or path.read_bytes() != data:
-            with whole_file(path) as partial:
-                partial.write_bytes(data)
+        if is_file(path) and path.read_bytes() == data:
+            path.chmod(0o600)  # an earlier version let everybody read it
+            continue
+        with whole_file(path, private=True) as partial:
+            partial.write_bytes(data)
     return msgspec.structs.replace(
         colour, picture=f"{COLOURS}/{names[0]}", strokes=f"{COLOURS}/{names[1]}"
     )
@@ -154,34 +211,31 @@ def _png(pixels: Bytes) -> bytes:
     return bytes(cv2.imencode(".png", pixels)[1])
 
 
-def _tidy(folder: Path) -> None:
-    """Remove pictures of ours that no calibration here names any more."""
-    named = "".join(path.read_text("utf-8", "replace") for path in folder.glob("*.toml"))
-    for path in (folder / COLOURS).iterdir():
-        if _PICTURE.fullmatch(path.name) and path.name not in named:
-            path.unlink()
+def _named(folder: Path) -> str:
+    """What the calibrations of a folder say."""
+    said = b""
+    for path in folder.glob("*.toml"):
+        if path.name != SECRETS:
+            with suppress(InputError):  # none of ours
+                said += read_file(path, _MOST_BYTES)
+    return said.decode("utf-8", "replace")
+
+
+def _tidy(path: Path) -> None:
+    """Remove what was half written, and pictures of ours that no calibration here names any more."""
+    folder, now_s = path.parent, path.stat().st_mtime
+    tidy(folder, now_s)
+    tidy(folder / COLOURS, now_s)
+    named = _named(folder)
+    for picture in (folder / COLOURS).iterdir():
+        if _PICTURE.fullmatch(picture.name) and picture.name not in named:
+            picture.unlink()
 
 
 def _toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+        return parse_toml(read_text(path, _MOST_BYTES))
+    except MissingError:
         raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"the calibration cannot be read ({error})", str(path), "check the path and its rights"
-        ) from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise ConfigError(f"not valid TOML ({error})", str(path), _RECALIBRATE) from None
-
-
-def _floats(value: Any, key: str) -> Iterator[tuple[str, float]]:
-    """Every float of the file with its key."""
-    if isinstance(value, dict):
-        for name, item in value.items():
-            yield from _floats(item, f"{key}.{name}" if key else name)
-    elif isinstance(value, list):
-        for i, item in enumerate(value):
-            yield from _floats(item, f"{key}[{i}]")
-    elif isinstance(value, float):
-        yield key, value
+    except MalformedError as error:
+        raise ConfigError(f"not valid TOML ({error.what})", str(path), _RECALIBRATE) from None

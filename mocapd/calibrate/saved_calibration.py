@@ -13,13 +13,14 @@ from mocapd.types import Rig
 
 SCHEMA = 1
 
-Pixels = Annotated[int, msgspec.Meta(ge=16, le=100_000)]
-NotNegative = Annotated[float, msgspec.Meta(ge=0.0)]
-Text = Annotated[str, msgspec.Meta(min_length=1)]
+Pixels = Annotated[int, msgspec.Meta(ge=16, le=16_384)]
+NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e6)]
+Number = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
+Text = Annotated[str, msgspec.Meta(min_length=1, max_length=4096)]
 Factor = Annotated[float, msgspec.Meta(gt=0.3, lt=3.0)]
-Row3 = tuple[float, float, float]
+Row3 = tuple[Number, Number, Number]
 Matrix3 = tuple[Row3, Row3, Row3]
-Row5 = tuple[float, float, float, float, float]
+Row5 = tuple[Number, Number, Number, Number, Number]
 
 
 class _Table(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -58,7 +59,7 @@ class LensFit(_Table, frozen=True, kw_only=True):
 
     rms_px: NotNegative | None = None
     held_out_px: NotNegative | None = None
-    views: Annotated[int, msgspec.Meta(ge=0)]
+    views: Annotated[int, msgspec.Meta(ge=0, le=100_000)]
     focal_deviation: NotNegative | None = None
     free: tuple[bool, bool, bool, bool, bool] = (True,) * 5
     from_earlier: bool = False
@@ -74,14 +75,15 @@ class ColourFit(_Table, frozen=True, kw_only=True):
 
 
 class SavedCamera(_Table, frozen=True, kw_only=True):
-    """One camera. label: what the person calls it; source: what a configuration calls it; K, dist (k1 k2 p1 p2 k3) [px];
-    camera_from_world R, t_m [m]; rms_px: of its part of the room; controls: what it is locked to."""
+    """One camera. label: what the person calls it; source: what a configuration calls it, its password
+    hidden; K, dist (k1 k2 p1 p2 k3) [px]; camera_from_world R, t_m [m]; rms_px: of its part of the room;
+    controls: what it is locked to."""
 
     id: Text
     label: str = ""
     source: Text
     size_px: tuple[Pixels, Pixels]
-    fps_hz: Annotated[float, msgspec.Meta(gt=0.0, le=1000.0)] = 30.0
+    fps_hz: Annotated[float, msgspec.Meta(ge=0.1, le=1000.0)] = 30.0
     K: Matrix3
     dist: Row5
     R: Matrix3
@@ -100,7 +102,7 @@ class SavedCalibration(_Table, frozen=True, kw_only=True):
     room: RoomFit
     wearer: Wearer | None = None
     board: BoardSpec | None = None
-    camera: Annotated[tuple[SavedCamera, ...], msgspec.Meta(min_length=1)]
+    camera: Annotated[tuple[SavedCamera, ...], msgspec.Meta(min_length=1, max_length=100)]
 
     def rig(self, where: str) -> Rig:
         """The calibrated cameras. Raises ConfigError naming the camera and the field; `where`: the file."""

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mocapd.calibrate.calibration_file import FILE_NAME
+from mocapd.calibrate.saved_sources import require_password, sources_by_shown
 from mocapd.errors import ConfigError
 from mocapd.wizard.check_tracking import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -26,8 +27,10 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
     )
     from mocapd.wizard.same_port import moved_cameras
 
-    before, infos = saved_draft(config, step), list_cameras()
+    before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
     if step is not None:
+        for one in before.cameras:
+            require_password(one.id, one.source, str(config.state_dir))
         draft = replace(before, cameras=where_now(before.cameras, infos))
     else:
         cameras = (
@@ -46,6 +49,15 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         nodes=list_cameras,
         moved=moved_cameras(before.cameras, identities(infos)),
     )
+
+
+def _with_passwords(draft: Draft, config: "Config") -> Draft:
+    """With those of the configuration, where they are not kept with the calibration."""
+    known = sources_by_shown((one.id, one.source) for one in config.camera)
+    cameras = (
+        replace(one, source=known.get((one.id, one.source), one.source)) for one in draft.cameras
+    )
+    return replace(draft, cameras=tuple(cameras))
 
 
 def saved_draft(config: "Config", step: "StepName | None") -> Draft:

@@ -82,7 +82,10 @@ def save_from_folder(
         ),
     )
     write_calibration(
-        out, saved, {name: (one.pixels, one.strokes) for name, one in pictures.items()}
+        out,
+        saved,
+        {name: (one.pixels, one.strokes) for name, one in pictures.items()},
+        own_folder=False,
     )
 
 

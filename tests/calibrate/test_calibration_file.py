@@ -2,12 +2,16 @@
 cannot be written."""
 
 import math
+import os
+import random
+import subprocess
 import tomllib
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import tomli_w
@@ -29,6 +33,7 @@ from mocapd.calibrate.saved_calibration import (
     SavedCamera,
     Wearer,
 )
+from mocapd.calibrate.saved_sources import SECRETS
 from mocapd.capture.controls import Controls
 from mocapd.errors import CannotCreateError, ConfigError, InputError
 from mocapd.types import Bytes
@@ -142,6 +147,101 @@ def test_a_camera_gets_another_port_and_all_else_stays(path: Path) -> None:
     assert after.camera[0].colour == before.camera[0].colour
 
 
+def mode(path: Path) -> int:
+    return path.stat().st_mode & 0o777
+
+
+def test_nobody_else_can_see_the_wearer(path: Path) -> None:
+    write_calibration(path, saved_calibration(), pictures(1))
+    for one in (path.parent, *path.parent.rglob("*")):
+        assert mode(one) == (0o700 if one.is_dir() else 0o600), one
+
+
+def test_what_an_earlier_version_left_open_is_closed_at_the_next_save(path: Path) -> None:
+    folders = (path.parent, path.parent / "colours")
+    for one in (*folders, *path.parent.rglob("*")):
+        one.chmod(0o755 if one.is_dir() else 0o644)
+    write_calibration(path, saved_calibration(), pictures())
+    assert {mode(one) for one in folders} == {0o700}
+    assert {mode(one) for one in path.parent.rglob("*") if one.is_file()} == {0o600}
+
+
+def test_a_folder_that_somebody_named_for_a_file_keeps_its_rights(tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir(mode=0o755)
+    path = tmp_path / "shared" / "out.toml"
+    write_calibration(path, saved_calibration(), pictures(), own_folder=False)
+    assert (mode(path.parent), mode(path), mode(path.parent / "colours")) == (0o755, 0o600, 0o700)
+
+
+def test_what_was_half_written_when_a_save_was_killed_goes(path: Path) -> None:
+    dead = subprocess.Popen(["true"])
+    dead.wait()
+    left = [
+        path.parent / f".calibration.{dead.pid}.a1b2c3.toml",
+        path.parent / "colours" / f".left-0123456789ab.{dead.pid}.a1b2c3.png",
+    ]
+    for one in left:
+        one.write_bytes(b"half")
+    write_calibration(path, saved_calibration(), pictures())
+    assert not any(one.exists() for one in left)
+
+
+URL = "rtsp://admin:hunter2@cam.lan/stream"
+SHOWN = "rtsp://admin:***@cam.lan/stream"
+
+
+def network_calibration(url: str = URL) -> SavedCalibration:
+    one = msgspec.structs.replace(camera("door"), source=url, lens=None)
+    return msgspec.structs.replace(saved_calibration(), camera=(one, camera("right")))
+
+
+def everything_but_the_secrets(folder: Path) -> str:
+    files = (one for one in folder.rglob("*") if one.is_file() and one.name != SECRETS)
+    return "".join(one.read_bytes().decode("utf-8", "replace") for one in files)
+
+
+def test_a_password_is_kept_apart_and_comes_back(path: Path) -> None:
+    for _ in range(2):  # the one before is of the same cameras
+        write_calibration(path, network_calibration(), {})
+    assert f'source = "{SHOWN}"' in path.read_text()
+    assert "hunter2" not in everything_but_the_secrets(path.parent)
+    assert mode(path.parent / SECRETS) == 0o600
+    for file in (path, path.with_name("calibration.previous.toml")):
+        assert read_calibration(file).camera[0].source == URL
+
+
+def test_a_new_password_takes_the_place_of_the_old_and_goes_with_its_camera(path: Path) -> None:
+    write_calibration(path, network_calibration(), {})
+    write_calibration(path, network_calibration(URL.replace("hunter2", "new")), {})
+    assert read_calibration(path).camera[0].source == "rtsp://admin:new@cam.lan/stream"
+    rewrite_sources(path, {"right": "usb:2-1:046d:0825:right"})
+    assert read_calibration(path).camera[0].source == "rtsp://admin:new@cam.lan/stream"
+    for _ in range(2):
+        write_calibration(path, saved_calibration(), pictures())
+    assert not (path.parent / SECRETS).exists()
+
+
+def test_a_calibration_of_an_earlier_version_loses_its_password_at_the_next_write(
+    path: Path,
+) -> None:
+    write_calibration(path, network_calibration(), {})
+    (path.parent / SECRETS).unlink()
+    path.write_text(path.read_text().replace(SHOWN, URL))
+    saved = read_calibration(path)
+    assert saved.camera[0].source == URL
+    write_calibration(path, saved, {})
+    assert "hunter2" not in everything_but_the_secrets(path.parent)
+    for file in (path, path.with_name("calibration.previous.toml")):
+        assert read_calibration(file).camera[0].source == URL
+
+
+def test_a_file_of_passwords_that_is_damaged_is_named(path: Path) -> None:
+    write_calibration(path, network_calibration(), {})
+    (path.parent / SECRETS).write_text("[[camera]]\nid = 3\n")
+    with pytest.raises(ConfigError, match=SECRETS):
+        read_calibration(path)
+
+
 def _set(*keys: Any) -> Callable[[Any], None]:
     *way, last, value = keys
 
@@ -177,6 +277,10 @@ DAMAGES = {
     "R": (_set("camera", 0, "R", 0, 0, -1.0), "not a rotation"),
     "t": (_set("camera", 1, "t_m", 2, math.nan), r"'camera\[1\]\.t_m\[2\]' is not finite"),
     "controls": (_set("camera", 0, "controls", "exposure", "long"), "exposure"),
+    "views": (_set("camera", 0, "lens", "views", 10**12), "views"),  # took a terabyte
+    "rate": (_set("camera", 0, "fps_hz", 1e-300), "fps_hz"),
+    "huge": (_set("camera", 0, "controls", "exposure", 10**15), "exposure.* far too large"),
+    "far": (_set("camera", 0, "t_m", 0, 1e300), r"t_m\[0\]' is far too large"),
     "W": (_set("camera", 0, "colour", "W", 0, 0, math.inf), "W.* is not finite"),
 }
 
@@ -208,3 +312,45 @@ def test_a_picture_that_is_gone_is_named(path: Path) -> None:
     (path.parent / saved.camera[0].colour.strokes).unlink()
     with pytest.raises(InputError, match=r"_strokes\.png"):
         read_calibrated(saved, path)
+
+
+@pytest.mark.parametrize(
+    "text", ["schema = " + "9" * 5000, "a = " + "[" * 2000, "a" + ".a" * 600 + " = 1.0"]
+)
+def test_no_text_ends_in_a_traceback(path: Path, text: str) -> None:
+    path.write_text(text)
+    with pytest.raises(ConfigError, match="not valid TOML"):
+        read_calibration(path)
+
+
+@pytest.mark.parametrize("place", ["/dev/zero", "pipe"])
+def test_a_picture_that_is_no_file_is_not_waited_for(path: Path, place: str) -> None:
+    """`picture = "/dev/zero"` in a calibration that somebody gave you ate the memory."""
+    os.mkfifo(path.parent / "pipe")
+    saved = read_calibration(path)
+    colour = saved.camera[0].colour
+    assert colour is not None
+    there = msgspec.structs.replace(
+        saved.camera[0], colour=msgspec.structs.replace(colour, picture=place)
+    )
+    with pytest.raises(InputError, match="no regular file"):
+        read_calibrated(msgspec.structs.replace(saved, camera=(there,)), path)
+
+
+def test_changed_bytes_end_in_a_value_or_a_named_error(path: Path) -> None:
+    rng = random.Random(8)
+    files = [path, *sorted((path.parent / "colours").iterdir())]
+    whole = {file: file.read_bytes() for file in files}
+    refused = 0
+    for _ in range(150):
+        file = rng.choice(files)
+        data = bytearray(whole[file])
+        for _ in range(rng.choice((1, 1, 4))):
+            data[rng.randrange(len(data))] = rng.randrange(256)
+        file.write_bytes(data)
+        try:
+            read_calibrated(read_calibration(path), path)
+        except (ConfigError, InputError):
+            refused += 1
+        file.write_bytes(whole[file])
+    assert refused > 30

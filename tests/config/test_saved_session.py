@@ -3,14 +3,17 @@
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
 from mocapd.body.skeleton import standard_skeleton
+from mocapd.calibrate.calibration_file import read_calibration, write_calibration
+from mocapd.calibrate.saved_sources import SECRETS
 from mocapd.capture.folder import load_folder
 from mocapd.config_sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError
-from mocapd.saved_session import calibration_of, inputs_of_saved, load_saved
+from mocapd.saved_session import calibration_of, cameras_of_calibration, inputs_of_saved, load_saved
 from mocapd.session import cameras_of, open_session
 from mocapd.wizard.saving import save_draft
 from tests.cli.small_capture import write_capture
@@ -63,6 +66,49 @@ def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureF
     other = CameraSection("cam0", "/dev/video7")
     assert calibration_of(replace(config, camera=(other,))) is None
     assert "other cameras" in caplog.text
+
+
+URL = "rtsp://admin:hunter2@127.0.0.1:9/stream"
+
+
+def network_config(config: Config) -> Config:
+    """The saved calibration is of one network camera."""
+    path = config.state_dir / "calibration.toml"
+    saved = read_calibration(path)
+    one = msgspec.structs.replace(saved.camera[0], source=URL, colour=None)
+    write_calibration(path, msgspec.structs.replace(saved, camera=(one,)), {})
+    return config
+
+
+def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
+    saved = calibration_of(network_config(config))
+    assert saved is not None
+    assert cameras_of_calibration(saved)[0].source == URL
+
+
+def test_a_password_may_come_from_the_configuration(config: Config) -> None:
+    config = network_config(config)
+    (config.state_dir / SECRETS).unlink()
+    saved = calibration_of(replace(config, camera=(CameraSection("cam0", URL),)))
+    assert saved is not None
+
+
+def test_a_password_that_is_nowhere_is_asked_for(config: Config) -> None:
+    config = network_config(config)
+    (config.state_dir / SECRETS).unlink()
+    with pytest.raises(ConfigError, match=r"password of camera 'cam0'.*\*\*\*@") as caught:
+        open_session(config, quiet)
+    assert SECRETS in caught.value.fix
+    assert "[[camera]]" in caught.value.fix
+
+
+def test_other_cameras_are_told_of_without_a_password(
+    config: Config, caplog: pytest.LogCaptureFixture
+) -> None:
+    other = CameraSection("cam0", "rtsp://other/")
+    assert calibration_of(replace(network_config(config), camera=(other,))) is None
+    assert "admin:***@" in caplog.text
+    assert "hunter2" not in caplog.text
 
 
 def test_a_capture_folder_brings_its_own_unless_one_is_named(
