@@ -12,6 +12,7 @@ from typing import Any
 
 import platformdirs
 
+from mocapd.boundary.files import exists, is_file, is_folder, user_path
 from mocapd.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
 from mocapd.config_sections import HIDDEN, TEXT_PATHS, CameraSection, Config
 from mocapd.config_sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
@@ -72,10 +73,10 @@ def load_config(
     """
     env = os.environ if env is None else env
     if file is None and env.get("MOCAPD_CONFIG"):
-        file = Path(env["MOCAPD_CONFIG"])
+        file = user_path(env["MOCAPD_CONFIG"])
     if file is None:
         given = config_candidates() if candidates is None else candidates
-        file = next((path for path in given if path.is_file()), None)
+        file = next((path for path in given if is_file(path)), None)
     known = known_keys()
     found: Found = _from_file(read_toml(file), known) if file else {}
     found |= _from_env(env, known)
@@ -106,7 +107,7 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
         if path not in known:
             raise unknown_key(path, path, known, file.where(path))
         value = converted(known[path].type, raw, path, file.where)
-        found[path] = (_beside(folder, path, value), file.where(path))
+        found[path] = (_beside(folder, path, value, file.where(path)), file.where(path))
     return found
 
 
@@ -132,31 +133,38 @@ def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
 
 
 def _from_text(key: Key, text: str, origin: str) -> tuple[Any, str]:
+    try:
+        text.encode()
+    except UnicodeEncodeError:  # bytes of a command line or a variable; no output could say it
+        raise ConfigError(f"{key.path} is no UTF-8 text", origin, "give it another name") from None
     value = converted(key.type, parsed(text, key.wants_text), key.path, lambda _: origin)
-    return _beside(Path.cwd(), key.path, value), origin
+    return _beside(Path.cwd(), key.path, value, origin), origin
 
 
-def _beside(folder: Path, path: str, value: Any) -> Any:
+def _beside(folder: Path, path: str, value: Any, where: str) -> Any:
     """Paths made absolute: a relative one is meant from the file that holds it."""
-    if isinstance(value, Path):
-        return folder / value.expanduser()
-    if path in TEXT_PATHS and value:
-        return str(folder / Path(value).expanduser())
-    if path == "camera":
-        return tuple(_camera_beside(folder, camera) for camera in value)
+    try:
+        if isinstance(value, Path):
+            return folder / user_path(value)
+        if path in TEXT_PATHS and value:
+            return str(folder / user_path(value))
+        if path == "camera":
+            return tuple(_camera_beside(folder, camera) for camera in value)
+    except ConfigError as error:
+        raise ConfigError(f"{path} = {error.what}", where, error.fix) from None
     return value
 
 
 def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
     strokes = camera.white_balance
     # a source need not be a path; it is one if there is such a file or folder
-    path = folder / Path(camera.source).expanduser()
+    path = folder / user_path(camera.source)
     capture, hash_mark, _ = str(path).rpartition("#")
-    is_path = path.exists() or (hash_mark and Path(capture).is_dir())
+    is_path = exists(path) or (hash_mark and is_folder(Path(capture)))
     return replace(
         camera,
         source=str(path) if is_path else camera.source,
-        white_balance=folder / strokes.expanduser() if strokes else None,
+        white_balance=folder / user_path(strokes) if strokes else None,
     )
 
 

@@ -14,10 +14,14 @@ from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-import msgspec
 from msgspec import Meta
 
-from mocapd.errors import ConfigError
+from mocapd.boundary.messages import convert
+from mocapd.boundary.numbers import brief, check_numbers
+from mocapd.boundary.urls import without_password
+from mocapd.errors import ConfigError, MalformedError
+
+_LONGEST_SHOWN = 200  # characters of a value in an error
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +90,11 @@ def converted(annotation: Any, value: Any, path: str, where: Callable[[str], str
     if item is not None:
         return _converted_list(item, value, path, where)
     try:
-        return msgspec.convert(value, annotation, dec_hook=_path)
-    except (msgspec.ValidationError, ValueError):
+        check_numbers(value)
+        return convert(value, annotation, dec_hook=_path)
+    except MalformedError:
         raise ConfigError(
-            f"{path} = {shown(value)} does not do",
+            f"{path} = {shown(value)[:_LONGEST_SHOWN]} does not do",
             where(path),
             f"give {path} {described(annotation)}",
         ) from None
@@ -134,25 +139,25 @@ def leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any
 
 def unknown_key(path: str, name: str, known: Mapping[str, Any], where: str) -> ConfigError:
     """The error of a key that does not exist, with the nearest one that does."""
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(name[:_LONGEST_SHOWN], known, n=1, cutoff=0.5)
     fix = f"did you mean {near[0]!r}?" if near else "`mocapd check-config` lists every key"
-    return ConfigError(f"unknown key {path!r}", where, fix)
+    return ConfigError(f"unknown key {path[:_LONGEST_SHOWN]!r}", where, fix)
 
 
 def shown(value: Any) -> str:
-    """A value as TOML writes it, as near as a message needs."""
+    """A value as TOML writes it, as near as a message needs, and without passwords of addresses."""
     if value is None or value is MISSING:
         return '""'
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str | Path):
-        return '"' + str(value) + '"'
+        return '"' + without_password(str(value)) + '"'
     if isinstance(value, list | tuple):
         return "[" + ", ".join(shown(v) for v in value) + "]"
     if is_dataclass(value):
         pairs = ((f.name, getattr(value, f.name), f.default) for f in fields(value))
         return "{" + ", ".join(f"{n} = {shown(v)}" for n, v, d in pairs if v != d) + "}"
-    return str(value)
+    return brief(value) if isinstance(value, int | float) else str(value)
 
 
 def described(annotation: Any) -> str:
@@ -181,6 +186,8 @@ def _limits(meta: Meta) -> str:
         return f", at most {high}"
     if meta.pattern is not None:
         return f" that matches {meta.pattern}"
+    if meta.max_length is not None:
+        return f" of at most {meta.max_length} characters"
     return ""
 
 

@@ -55,7 +55,7 @@ class CameraSection:
 
     id: Annotated[str, Meta(min_length=1)]
     source: Annotated[str, Meta(min_length=1)]
-    fps_hz: Annotated[float, Meta(gt=0, le=1000)] = 30.0
+    fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
     white_balance: Path | None = None
     controls: ControlsSection = field(default_factory=ControlsSection)
 
@@ -140,7 +140,7 @@ class Config:
     camera: the cameras, one [[camera]] section each
     """
 
-    instance: str = ""
+    instance: Annotated[str, Meta(max_length=64)] = ""
     rig: Path | None = None
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     cache_dir: Annotated[

@@ -1,14 +1,17 @@
 """Where values come from: a TOML file with line numbers, the environment, flags."""
 
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mocapd.errors import ConfigError, InputError
+from mocapd.boundary.files import MissingError, read_text
+from mocapd.boundary.messages import parse_toml
+from mocapd.errors import ConfigError, InputError, MalformedError
 
+_MOST_BYTES = 1 << 20
+_LONGEST_KEY = 200  # characters of a line in which a key and its `=` are looked for
 ENV_PREFIX = "MOCAPD_"
 # Read elsewhere, not keys: which file to read, and what .ci/run tells the tests.
 NOT_KEYS = ("MOCAPD_CONFIG", "MOCAPD_REQUIRE_SHARED")
@@ -31,19 +34,17 @@ class TomlFile:
 def read_toml(path: Path) -> TomlFile:
     """Raises InputError when it cannot be read, ConfigError with the line when it is not TOML."""
     try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
+        text = read_text(path, _MOST_BYTES)
+    except MissingError:
         raise InputError("no such config file", str(path), "check the path") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"the config file cannot be read ({error})", str(path), "check the path and its rights"
-        ) from None
+    except InputError as error:
+        raise InputError(f"the config file {error.what}", str(path), error.fix) from None
     try:
-        return TomlFile(path, tomllib.loads(text), text)
-    except tomllib.TOMLDecodeError as error:
-        found = re.search(r"at line (\d+)", str(error))
+        return TomlFile(path, parse_toml(text), text)
+    except MalformedError as error:
+        found = re.search(r"at line (\d+)", error.what)
         where = f"{path}:{found[1]}" if found else str(path)
-        raise ConfigError(f"not valid TOML ({error})", where, "mend that line") from None
+        raise ConfigError(f"not valid TOML ({error.what})", where, "mend that line") from None
 
 
 def env_name(path: str) -> str:
@@ -56,8 +57,8 @@ def parsed(text: str, wants_text: bool) -> Any:
     if wants_text and not text.startswith(("[", '"', "'")):
         return text
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        return parse_toml(f"value = {text}")["value"]
+    except MalformedError:
         return text
 
 
@@ -65,7 +66,8 @@ def _line_of(text: str, key: str) -> int | None:
     """The line where a key is set, or its section begins; None when the scan finds neither."""
     section, counts = "", dict[str, int]()
     best = None
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, whole in enumerate(text.splitlines(), start=1):
+        line = whole.strip()[:_LONGEST_KEY]  # the patterns take quadratic time over blanks
         header = re.match(r"\s*(\[\[?)\s*([\w.\-\"' ]+?)\s*\]", line)
         assigned = re.match(r"\s*([\w.\-\"' ]+?)\s*=", line)
         if header:

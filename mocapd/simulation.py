@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mocapd.assets import asset_path
+from mocapd.boundary.files import user_path
 from mocapd.camera_inputs import CameraInput, in_rig_order
 from mocapd.capture.sim import SimSource
 from mocapd.clock import monotonic_ns
@@ -29,15 +30,15 @@ def scenario_path(source: str) -> Path:
     """
     name = source.removeprefix(SIM).partition("#")[0]
     if name.endswith(".toml"):
-        return Path(name)
-    folder = asset_path("scenarios")
-    path = folder / f"{name}.toml"
-    if not path.is_file():
-        known = ", ".join(sorted(one.stem for one in folder.glob("*.toml")))
+        return user_path(name)
+    known = {one.stem: one for one in asset_path("scenarios").glob("*.toml")}
+    if name not in known:
         raise InputError(
-            f"there is no scenario {name!r}", source, f"one of {known}, or a .toml file"
+            f"there is no scenario {name!r}",
+            source,
+            f"one of {', '.join(sorted(known))}, or a .toml file",
         )
-    return path
+    return known[name]
 
 
 def camera_names(source: str) -> tuple[str, ...]:

@@ -4,8 +4,10 @@ import os
 import stat
 from pathlib import Path
 
+from mocapd.boundary.urls import without_password
 from mocapd.errors import ConfigError, InputError
 
+_LONGEST_SHOWN = 200
 _FIX = "check the path and its rights"
 
 
@@ -48,15 +50,18 @@ def read_text(path: Path, most_bytes: int) -> str:
 
 
 def user_path(text: str | Path) -> Path:
-    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`, and a NUL."""
-    if "\0" in str(text):  # which pathlib takes, and each use of it raises
-        raise ConfigError(f"{str(text)!r} is no path", fix="write it without the NUL")
+    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`, for a NUL, and for
+    bytes that are no UTF-8: neither messages nor a terminal could say where it leads."""
+    shown = ascii(without_password(str(text)))[:_LONGEST_SHOWN]
     try:
+        str(text).encode()
+        if "\0" in str(text):  # pathlib takes it, and each use of it raises
+            raise ConfigError(f"{shown} is no path", fix="write it without the NUL")
         return Path(text).expanduser()
+    except UnicodeEncodeError:
+        raise ConfigError(f"{shown} is no UTF-8 text", fix="give it another name") from None
     except RuntimeError:
-        raise ConfigError(
-            f"{str(text)!r}: there is no such user", fix="write the whole path"
-        ) from None
+        raise ConfigError(f"{shown}: there is no such user", fix="write the whole path") from None
 
 
 def is_file(path: Path) -> bool:

@@ -153,6 +153,60 @@ def test_paths_in_a_file_are_meant_from_that_file(file: Path) -> None:
     assert config.camera[1] == CameraSection("r", "rtsp://host/left.mp4")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "zenoh.port = " + "9" * 5000,
+        "zenoh.port = 0x" + "f" * 5000,
+        "a = " + "[" * 2000,
+        "a" + ".a" * 600 + " = 1",
+        "rig = '~nosuchuser/rig.json'",
+        'cache_dir = "a\\u0000b"',
+        "[[camera]]\nid = 'a'\nsource = '~nosuchuser/a.mp4'",
+        "[[camera]]\nid = 'a'\nsource = '0'\nfps_hz = 1e-300",
+        "[[camera]]\nid = 'a'\nsource = '0'\ncontrols.exposure = 10000000000",
+        "tracker.coast_s = nan",
+        "instance = '" + "x" * 1300 + "'",
+        "a" + " " * 3000 + "b\n" + "zenoh.port = 'high'",
+        "\0",
+    ],
+    ids=range(13),  # pytest would write the texts out
+)
+def test_no_text_of_a_file_ends_in_a_traceback(file: Path, text: str) -> None:
+    error = error_of(file, text)
+    assert str(file) in error.where
+    assert error.fix
+    assert len(str(error)) < 1000
+
+
+@pytest.mark.parametrize("text", ["9" * 5000, "0x" + "f" * 5000, "[" * 2000, "1e400", "\udcff"])
+def test_no_text_of_a_flag_or_variable_ends_in_a_traceback(text: str) -> None:
+    for flags, env in (({"zenoh.port": text}, {}), ({}, {"MOCAPD_ZENOH_PORT": text})):
+        with pytest.raises(ConfigError) as caught:
+            load_config(flags, env=env, candidates=())
+        assert len(str(caught.value)) < 500
+
+
+def test_a_path_that_is_too_long_is_no_traceback(file: Path) -> None:
+    long = "x/" * 3000
+    config = load(file, f"rig = '{long}'\n[[camera]]\nid = 'a'\nsource = '{long}'\n").config
+    assert config.camera[0].source == long
+    with pytest.raises(InputError, match="cannot be read"):
+        load_config(file=Path(long), env={})
+
+
+def test_what_is_no_regular_file_is_no_config_file() -> None:
+    with pytest.raises(InputError, match="no regular file"):
+        load_config(file=Path("/dev/zero"), env={})
+
+
+def test_an_error_does_not_show_a_password(file: Path) -> None:
+    error = error_of(file, "camera = [['rtsp://admin:hunter2@cam/x']]")
+    assert "hunter2" not in str(error)
+    error = error_of(file, "rig = ['rtsp://admin:hunter2@cam/x']")
+    assert "admin:***@cam" in error.what
+
+
 def test_every_key_is_documented() -> None:
     effective = load_config(env={}, candidates=())
     assert [s.key.path for s in effective.settings if not s.key.help] == []
