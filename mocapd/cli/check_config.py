@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
+from mocapd.cli.unsafe_settings import unsafe_settings
 
 if TYPE_CHECKING:
     from mocapd.config import Setting
@@ -29,7 +30,8 @@ def check_config(
         bool, typer.Option("--markdown", help="The table of all keys for the README.")
     ] = False,
 ) -> None:
-    """Print each setting and where it came from, and the calibration that `mocapd run` would use.
+    """Print each setting and where it came from, the calibration that `mocapd run` would use, and what
+    is permitted but unsafe. Passwords of cameras are not shown.
 
     Ends with 78 and one line when something is wrong.
 
@@ -46,10 +48,13 @@ def check_config(
     _print_table(rows)
     if not changed:
         _print_calibration(effective.config)
+    for line in unsafe_settings(effective):
+        print(f"# unsafe: {line}")
 
 
 def _print_calibration(config: "Config") -> None:
     """What it is, as comments below the settings."""
+    from mocapd.boundary.urls import without_password
     from mocapd.saved_session import calibration_of
 
     saved = calibration_of(config)
@@ -66,7 +71,8 @@ def _print_calibration(config: "Config") -> None:
     print(f"# calibration: {saved.path} ({', '.join(told)})")
     for camera in tables.camera:
         width, height = camera.size_px
-        print(f"#   {camera.id}: {camera.source}, {width}x{height} at {camera.fps_hz:g} Hz")
+        source = without_password(camera.source)
+        print(f"#   {camera.id}: {source}, {width}x{height} at {camera.fps_hz:g} Hz")
 
 
 def _print_table(rows: "list[Setting]") -> None:
@@ -103,11 +109,13 @@ def _default(key: "Key") -> str:
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON has it."""
+    """A value as JSON has it, without passwords."""
     from dataclasses import asdict, is_dataclass
 
-    if isinstance(value, Path):
-        return str(value)
+    from mocapd.boundary.urls import without_password
+
+    if isinstance(value, str | Path):
+        return without_password(str(value))
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     if is_dataclass(value) and not isinstance(value, type):

@@ -30,8 +30,9 @@ def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd demo
     """
-    effective = effective_config(config, settings, capture=SCENARIO).config
-    raise typer.Exit(run_with(effective, f"in a second terminal: {watch_command(effective)}"))
+    effective = effective_config(config, settings, capture=SCENARIO)
+    watch = watch_command(effective.config)
+    raise typer.Exit(run_with(effective, f"in a second terminal: {watch}"))
 
 
 def watch_command(config: "Config") -> str:

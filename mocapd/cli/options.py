@@ -47,7 +47,7 @@ def effective_config(
     for text in settings or ():
         key, equals, value = text.partition("=")
         if not equals:
-            raise ConfigError(f"--set {text}", "command line", "write --set KEY=VALUE")
+            raise ConfigError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
         given[key.strip()] = value.strip()
     if capture is not None:
         from mocapd.session import cameras_of
@@ -62,7 +62,7 @@ def effective_config(
 def _camera(text: str) -> tuple[str, str]:
     name, equals, source = text.partition("=")
     if not equals or not name or not source:
-        raise ConfigError(f"--camera {text}", "command line", "write --camera ID=SOURCE")
+        raise ConfigError(f"--camera {_brief(text)}", "command line", "write --camera ID=SOURCE")
     return name, source
 
 
@@ -73,4 +73,12 @@ def _camera_list(cameras: list[tuple[str, str]]) -> str:
 
 
 def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    import tomli_w
+
+    return tomli_w.dumps({"v": text}).removeprefix("v = ").strip()
+
+
+def _brief(text: str) -> str:
+    from mocapd.boundary.urls import without_password
+
+    return without_password(text)[:200]

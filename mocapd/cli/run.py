@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
+from mocapd.cli.unsafe_settings import unsafe_settings
 
 if TYPE_CHECKING:
-    from mocapd.config_sections import Config
+    from mocapd.config import Effective
 
 _log = logging.getLogger(__name__)
 
@@ -45,17 +46,20 @@ def run(
         rig=None if rig is None else str(rig),
         tracker__name=tracker,
         instance=instance,
-    ).config
+    )
     raise typer.Exit(run_with(effective))
 
 
-def run_with(config: "Config", hint: str = "") -> int:
+def run_with(effective: "Effective", hint: str = "") -> int:
     """Run with this configuration until it ends; the exit code. `hint` is logged once it runs."""
     from mocapd.cli.libraries import prepare_libraries
     from mocapd.cli.logs import set_up_logs
 
+    config = effective.config
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
+    for line in unsafe_settings(effective):
+        _log.warning("unsafe: %s", line)
 
     from mocapd.cli.daemon_page import DaemonPage
     from mocapd.cli.first_start import prepare_apart
