@@ -25,7 +25,7 @@ def decode_json(data: bytes | str, kind: type[T]) -> T:
     return _read(lambda: msgspec.json.decode(data, type=kind))
 
 
-def decode_msgpack(data: bytes, kind: type[T]) -> T:
+def decode_msgpack(data: bytes | memoryview, kind: type[T]) -> T:
     """A msgpack message as `kind`. Raises MalformedError."""
     return _read(lambda: msgspec.msgpack.decode(data, type=kind))
 

@@ -1,12 +1,18 @@
-"""What the simulator keeps in the cache: one msgpack file each, read only when its key fits."""
+"""What the simulator keeps in the cache: a digest, then msgpack; read only when both digest and key fit."""
 
+import hashlib
 from pathlib import Path
 from typing import Protocol, TypeVar
 
 import msgspec
 
-from mocapd.errors import CannotCreateError
+from mocapd.boundary.files import read_file
+from mocapd.boundary.messages import decode_msgpack
+from mocapd.errors import CannotCreateError, InputError
 from mocapd.whole_file import whole_file
+
+_DIGEST_BYTES = 32
+_MOST_BYTES = 4 << 30  # two minutes of the largest pictures
 
 
 class Keyed(Protocol):
@@ -20,23 +26,32 @@ F = TypeVar("F", bound=Keyed)
 
 
 def read_cached(path: Path, key: str, kind: type[F]) -> F | None:
-    """What is kept there, or None when there is nothing that fits."""
+    """What is kept there, or None when there is nothing that fits, or a byte of it has changed."""
     try:
-        stored = msgspec.msgpack.decode(path.read_bytes(), type=kind)
-    except (OSError, msgspec.DecodeError):
+        data = memoryview(read_file(path, _MOST_BYTES))
+        if _digest(data[_DIGEST_BYTES:]) != data[:_DIGEST_BYTES]:
+            return None
+        stored = decode_msgpack(data[_DIGEST_BYTES:], kind)
+    except InputError:
         return None
     return stored if stored.key == key else None
 
 
 def write_cached(path: Path, file: Keyed) -> None:
     """Write it whole or not at all. Raises CannotCreateError."""
+    data = msgspec.msgpack.encode(file)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as partial:
-            partial.write_bytes(msgspec.msgpack.encode(file))
+        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with whole_file(path) as partial, partial.open("wb") as out:
+            out.write(_digest(data))
+            out.write(data)
     except OSError as error:
         raise CannotCreateError(
             f"the simulator's cache cannot be written ({error})",
             str(path),
             "free space there or choose another cache directory",
         ) from None
+
+
+def _digest(data: bytes | memoryview) -> bytes:
+    return hashlib.blake2b(data, digest_size=_DIGEST_BYTES).digest()

@@ -14,6 +14,7 @@ import numpy as np
 import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
+from mocapd.boundary.pictures import decode_picture
 from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
@@ -124,7 +125,7 @@ def _png_pair(image: LabelledImage) -> tuple[bytes, bytes]:
 
 def _labelled(pair: tuple[bytes, bytes]) -> LabelledImage:
     pixels, strokes = (
-        np.asarray(cv2.imdecode(np.frombuffer(data, dtype=np.uint8), flags), dtype=np.uint8)
+        decode_picture(data, flags)
         for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
     )
     return LabelledImage(pixels, strokes)

@@ -1,24 +1,27 @@
 """The pose database on disk: made once, then mapped into memory.
 
-Layout: MAGIC, the length of the header (8 bytes, little-endian), a JSON header (version, content hash,
-checksum, and per array name, type, shape and offset), then the arrays, each from a multiple of 64 bytes
-on. Written beside its place, flushed to the disk and renamed, so that it is whole or absent.
+Layout: MAGIC, a checksum of all that follows (4 bytes), the length of the header (8 bytes, both
+little-endian), a JSON header (version, content hash, and per array name, type, shape and offset), then
+the arrays, each from a multiple of 64 bytes on. Written beside its place, flushed to the disk and
+renamed, so that it is whole or absent.
 """
 
 import fcntl
 import json
+import os
 import tempfile
 import zlib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.errors import CannotCreateError
+from mocapd.boundary.messages import parse_json
+from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.trackers.colour.database import (
     VERSION,
     DatabaseParams,
@@ -33,8 +36,9 @@ from mocapd.whole_file import whole_file
 
 FILE_NAME = "pose_database.bin"
 LOCK_NAME = "pose_database.lock"
-_MAGIC = b"mocapd pose database\n"
+_MAGIC = b"mocapd pose database 2\n"
 _ALIGNMENT = 64
+_CHECKSUM_BYTES = 4
 _BLOCK = 1 << 20
 
 
@@ -97,8 +101,11 @@ def _alone(cache_dir: Path) -> Iterator[None]:
     """One process makes it, others wait; where no lock can be had each makes its own."""
     with ExitStack() as held:
         with suppress(OSError):
-            cache_dir.mkdir(parents=True, exist_ok=True)
-            lock = held.enter_context((cache_dir / LOCK_NAME).open("wb"))
+            cache_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
+            # whatever is there stays as it is, and nothing beyond the folder is touched
+            flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+            lock = os.open(cache_dir / LOCK_NAME, flags, 0o600)
+            held.callback(os.close, lock)
             fcntl.flock(lock, fcntl.LOCK_EX)  # let go when it is closed, or the process is gone
         yield
 
@@ -107,36 +114,37 @@ def write_database(path: Path, database: PoseDatabase, digest: str) -> None:
     """Write the file as a whole or not at all. Raises CannotCreateError."""
     arrays = _arrays(database)
     entries: list[dict[str, Any]] = []
-    offset, checksum = 0, 0
+    offset = 0
     for name, array in arrays.items():
         offset += -offset % _ALIGNMENT
         entries.append(
             {"name": name, "dtype": array.dtype.str, "shape": array.shape, "offset": offset}
         )
         offset += array.nbytes
-        checksum = zlib.crc32(array.view(np.uint8).reshape(-1).data, checksum)
     header = json.dumps(
-        {
-            "version": VERSION, "content": digest, "crc32": checksum, "size": offset,
-            "arrays": entries,
-        }
-    ).encode()  # fmt: skip
-    head = _MAGIC + len(header).to_bytes(8, "little") + header
-    head += b"\0" * (-len(head) % _ALIGNMENT)
+        {"version": VERSION, "content": digest, "size": offset, "arrays": entries}
+    ).encode()
+    head = len(header).to_bytes(8, "little") + header
+    base = len(_MAGIC) + _CHECKSUM_BYTES + len(head)
     _check_writable(path.parent)
     try:
-        with whole_file(path) as partial, partial.open("wb") as file:
-            file.write(head)
+        with whole_file(path) as partial, partial.open("w+b") as file:
+            file.write(_MAGIC + b"\0" * _CHECKSUM_BYTES + head)
+            file.write(b"\0" * (-base % _ALIGNMENT))
+            start = file.tell()
             for entry, array in zip(entries, arrays.values(), strict=True):
-                file.write(b"\0" * (len(head) + entry["offset"] - file.tell()))
+                file.write(b"\0" * (start + entry["offset"] - file.tell()))
                 file.write(array.view(np.uint8).reshape(-1).data)
+            checksum = _checksum(file)
+            file.seek(len(_MAGIC))
+            file.write(checksum)
     except OSError as error:
         raise _cannot_create(path.parent, error) from None
 
 
 def _check_writable(folder: Path) -> None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
@@ -156,51 +164,50 @@ def _read(path: Path, wanted: str) -> PoseDatabase:
     """The database of a file, mapped into memory. Raises _UnusableError saying why not."""
     try:
         with path.open("rb") as file:
-            if file.read(len(_MAGIC)) != _MAGIC:
-                raise _UnusableError(f"{path} is not a pose database")
-            length = int.from_bytes(file.read(8), "little")
-            if length > _BLOCK:
-                raise _UnusableError(f"{path} is damaged (its header)")
-            try:
-                header = json.loads(file.read(length))
-                version, content = header["version"], header["content"]
-                entries, size = header["arrays"], header["size"]
-            except (ValueError, TypeError, KeyError):
-                raise _UnusableError(f"{path} is damaged (its header)") from None
-            if version != VERSION or content != wanted:
-                raise _UnusableError(f"{path} is of another version")
-            base = file.tell() + -file.tell() % _ALIGNMENT
-            if path.stat().st_size != base + size:
-                raise _UnusableError(f"{path} is cut short")
-            if _checksum(file, base, entries) != header["crc32"]:
-                raise _UnusableError(f"{path} is damaged (its checksum)")
-    except FileNotFoundError:
-        raise _UnusableError(f"no pose database at {path} yet") from None
-    except OSError as error:
-        raise _UnusableError(f"{path} cannot be read ({error.strerror or error})") from None
-    return _database(
-        {
-            entry["name"]: np.memmap(
+            base, entries = _header(file, path, wanted)
+        arrays = {
+            str(entry["name"]): np.memmap(
                 path, np.dtype(entry["dtype"]), "r", base + entry["offset"], tuple(entry["shape"])
             )
             for entry in entries
         }
-    )
+        return _database(arrays)
+    except FileNotFoundError:
+        raise _UnusableError(f"no pose database at {path} yet") from None
+    except OSError as error:
+        raise _UnusableError(f"{path} cannot be read ({error.strerror or error})") from None
+    except (MalformedError, KeyError, TypeError, ValueError, OverflowError):
+        raise _UnusableError(f"{path} is damaged (its header)") from None
 
 
-def _checksum(file: Any, base: int, entries: list[dict[str, Any]]) -> int:
-    """Of the arrays' bytes, read in blocks, so that the process' memory does not grow by the file."""
+def _header(file: IO[bytes], path: Path, wanted: str) -> tuple[int, list[dict[str, Any]]]:
+    """Where the arrays begin, and what they are; every byte of the file has been looked at."""
+    magic = file.read(len(_MAGIC))
+    if magic != _MAGIC:
+        raise _UnusableError(f"{path} is no pose database of this version")
+    told = file.read(_CHECKSUM_BYTES)
+    length = int.from_bytes(file.read(8), "little")
+    if length > _BLOCK:
+        raise _UnusableError(f"{path} is damaged (its header)")
+    header = parse_json(file.read(length).decode())
+    base = file.tell() + -file.tell() % _ALIGNMENT
+    if header["version"] != VERSION or header["content"] != wanted:
+        raise _UnusableError(f"{path} is of another version")
+    if os.fstat(file.fileno()).st_size != base + header["size"]:
+        raise _UnusableError(f"{path} is cut short")
+    if _checksum(file) != told:
+        raise _UnusableError(f"{path} is damaged (its checksum)")
+    entries: list[dict[str, Any]] = header["arrays"]
+    return base, entries
+
+
+def _checksum(file: IO[bytes]) -> bytes:
+    """Of all behind it, read in blocks, so that the process' memory does not grow by the file."""
     checksum = 0
-    for entry in entries:
-        file.seek(base + entry["offset"])
-        left = int(np.prod(entry["shape"])) * np.dtype(entry["dtype"]).itemsize
-        while left > 0:
-            block = file.read(min(left, _BLOCK))
-            if not block:
-                break
-            checksum = zlib.crc32(block, checksum)
-            left -= len(block)
-    return checksum
+    file.seek(len(_MAGIC) + _CHECKSUM_BYTES)
+    while block := file.read(_BLOCK):
+        checksum = zlib.crc32(block, checksum)
+    return checksum.to_bytes(_CHECKSUM_BYTES, "little")
 
 
 def _arrays(database: PoseDatabase) -> dict[str, NDArray[Any]]:
