@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
 from mocapd.capture.from_config import open_source
 from mocapd.capture.identity import PREFIX, parse_identity
@@ -18,14 +19,20 @@ from mocapd.types import Rig
 class CameraInput:
     """A camera of the daemon.
 
-    spec: what it is read from, as shown to people; size_px: of its pictures, (0, 0) if not known
-    before; expected_hz: warned about when the camera is slower.
+    address: what it is read from, which may hold a password: it is never shown, sent or logged, `spec`
+    is; size_px: of its pictures, (0, 0) if not known before; expected_hz: warned about when the
+    camera is slower.
     """
 
     source: Source
-    spec: str
+    address: str = field(repr=False)
     size_px: tuple[int, int] = (0, 0)
     expected_hz: float | None = None
+
+    @property
+    def spec(self) -> str:
+        """What it is read from, as shown to people."""
+        return without_password(self.address)
 
 
 def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraInput, ...]:

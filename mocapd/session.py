@@ -12,6 +12,7 @@ from pathlib import Path
 from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.capture.folder import load_folder
+from mocapd.capture.url import is_url
 from mocapd.config_sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
@@ -139,7 +140,8 @@ def _ready_tracker(config: Config, inputs: TrackerInputs, progress: Progress) ->
 
 def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
     """The one capture folder or scenario that all cameras are of; empty when there is none."""
-    origins = {camera.source.rpartition("#")[0] for camera in cameras}
+    # a URL is no folder, also where its password or fragment has a `#`
+    origins = {"" if is_url(one.source) else one.source.rpartition("#")[0] for one in cameras}
     simulated = any(camera.source.startswith(SIM) for camera in cameras)
     if simulated and (len(origins) > 1 or origins == {""}):
         raise ConfigError(

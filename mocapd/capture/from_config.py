@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from mocapd.boundary.files import is_file, is_folder, user_path
+from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
 from mocapd.capture.file import FileSource, probe_video, size_error
 from mocapd.capture.folder import RecordedCamera, folder_source, load_folder
 from mocapd.capture.identity import PREFIX, WebcamIdentity, parse_identity
 from mocapd.capture.pace import Pace
-from mocapd.capture.url import SCHEMES, UrlSource, without_password
+from mocapd.capture.url import UrlSource, is_url
 from mocapd.capture.v4l2 import V4l2Source, WebcamSettings
 from mocapd.errors import ConfigError, InputError
 
@@ -48,21 +50,22 @@ def open_source(
     if spec.isdigit() or spec.startswith("/dev/"):
         node = Path(f"/dev/video{spec}" if spec.isdigit() else spec)
         return _webcam(name or node.name, node, size_px, settings, others)
-    if spec.partition(":")[0].lower() in SCHEMES:
+    if is_url(spec):
         return UrlSource(name or without_password(spec), spec, size_px)
     if spec.startswith("sim:"):
         raise ConfigError(
             "a simulated camera among others", spec, "simulate all cameras, or none of them"
         )
-    path = Path(spec).expanduser()
-    if path.is_file():
+    path = user_path(spec)
+    if is_file(path):
         return _file(path, name or path.stem, size_px, pace)
     folder, mark, camera = str(path).rpartition("#")
-    if path.is_dir() or (mark and Path(folder).is_dir()):
-        recorded = _recorded(path, "") if path.is_dir() else _recorded(Path(folder), camera)
+    if is_folder(path) or (mark and is_folder(Path(folder))):
+        recorded = _recorded(path, "") if is_folder(path) else _recorded(Path(folder), camera)
         _check_size(recorded.video, name or recorded.name, recorded.size_px, size_px)
         return folder_source(recorded, pace, name)
-    raise InputError("no such camera or file", spec, _FORMS)
+    # also a URL with a typo in its scheme comes here
+    raise InputError("no such camera or file", without_password(spec), _FORMS)
 
 
 def _webcam(

@@ -1,34 +1,30 @@
 """A network camera: an RTSP or HTTP URL through OpenCV's FFmpeg."""
 
-from urllib.parse import urlsplit, urlunsplit
-
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
+from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.clock import monotonic_ns
-from mocapd.errors import CameraLost, UnavailableError
+from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.types import Frame
 
 SCHEMES = ("rtsp", "rtsps", "http", "https")
 
 
-def without_password(url: str) -> str:
-    """The URL as it may be shown and logged."""
-    parts = urlsplit(url)
-    if parts.password is None:
-        return url
-    host = parts.netloc.rpartition("@")[2]
-    return urlunsplit(parts._replace(netloc=f"{parts.username}:***@{host}"))
+def is_url(source: str) -> bool:
+    """Whether a camera string means a network camera."""
+    return source.partition(":")[0].lower() in SCHEMES
 
 
 class UrlSource:
     """Frames are stamped on arrival: the network's delay is not known, so give wired cameras the preference.
 
-    `size_px` (width, height), when given, must be what the camera sends.
+    `size_px` (width, height), when given, must be what the camera sends. Raises ConfigError for what
+    is no address. Whatever is told of it hides its password.
     """
 
     recorded = False
@@ -41,6 +37,10 @@ class UrlSource:
         open_timeout_s: float = 3.0,
         read_timeout_s: float = 1.0,
     ) -> None:
+        if split_url(url).hostname is None:
+            raise ConfigError(
+                "an address without a host", name, "write it as rtsp://user:password@host:port/path"
+            )
         self.name = name
         self._url = url
         self._shown = without_password(url)

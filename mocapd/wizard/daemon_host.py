@@ -168,7 +168,7 @@ def _cameras_of(session: Session, config: Config) -> tuple[DraftCamera, ...]:
     for one in session.cameras:
         name = one.source.name
         size_px = one.size_px if any(one.size_px) else _SIZE_PX
-        camera = DraftCamera(name, one.spec, size_px, one.expected_hz or 30.0)
+        camera = DraftCamera(name, one.address, size_px, one.expected_hz or 30.0)
         if name in asked:
             camera = replace(camera, controls=asked[name].controls)
         found.append(camera)

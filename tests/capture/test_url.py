@@ -7,7 +7,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import cv2
 import pytest
 
-from mocapd.capture.url import UrlSource, without_password
+from mocapd.capture.url import UrlSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from tests.capture.films import SIZE_PX, number_of, picture
@@ -86,7 +86,3 @@ def test_nobody_there_is_unavailable_and_the_password_is_not_told() -> None:
         source.open()
     assert "secret" not in str(caught.value)
     assert "rtsp://me:***@127.0.0.1:9/live" in str(caught.value)
-
-
-def test_a_url_without_a_password_is_shown_as_it_is() -> None:
-    assert without_password("http://127.0.0.1:8080/v?x=1") == "http://127.0.0.1:8080/v?x=1"
