@@ -55,11 +55,13 @@ def decode_picture(
     flags: int,
     size_px: tuple[int, int] | None = None,
     most_pixels: int = MOST_PIXELS,
+    most_bits: int = 8,
 ) -> Bytes:
     """A PNG or JPEG as cv2.imdecode with these flags has it: (h,w,3) BGR or (h,w), uint8.
 
-    `size_px` (width, height) is what it must have; without it, `most_pixels` is the limit. Raises
-    MalformedError: no such picture, cut short, another size, more than 8 bits.
+    `size_px` (width, height) is what it must have; without it, `most_pixels` is the limit. Of more than
+    8 bits a channel, where `most_bits` lets it in, the upper 8 are given. Raises MalformedError: no such
+    picture, cut short, another size, more bits.
     """
     array = np.frombuffer(data, dtype=np.uint8)
     header = read_header(array.data)
@@ -68,8 +70,8 @@ def decode_picture(
         raise MalformedError(f"has {width}x{height} pixels, wanted {size_px[0]}x{size_px[1]}")
     if width * height > most_pixels:
         raise MalformedError(f"has {width}x{height} pixels, at most {most_pixels} are read")
-    if header.bits > 8:
-        raise MalformedError(f"has {header.bits} bits a channel, wanted 8")
+    if header.bits > most_bits:
+        raise MalformedError(f"has {header.bits} bits a channel, wanted {most_bits}")
     try:
         picture = cv2.imdecode(array, flags)
     except cv2.error as error:

@@ -10,12 +10,16 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
+from mocapd.boundary.files import read_file
+from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
 from mocapd.capture.file import FileSource, probe_video
-from mocapd.errors import EndOfStream, InputError
+from mocapd.errors import EndOfStream, InputError, MalformedError
 from mocapd.types import Bytes
 
 _VIDEOS = {".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mjpeg", ".mjpg"}
 _PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
+# How those begin whose headers are OpenCV's to measure, against the limit that `environment` sets.
+_OTHERS = (b"BM", b"II*\0", b"MM\0*", b"RIFF")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +67,24 @@ class Recording:
 
 def read_picture(path: Path) -> Bytes:
     """(h,w,3) uint8 BGR. Raises InputError."""
-    read = cv2.imread(str(path), cv2.IMREAD_COLOR)
-    if read is None:
-        raise InputError("not a picture, or damaged", str(path), "take it out of the folder")
-    pixels: Bytes = read.astype(np.uint8, copy=False)
-    return pixels
+    data = read_file(path, MOST_FILE_BYTES)
+    try:
+        if data.startswith(_OTHERS):
+            return _decode_other(data)
+        return decode_picture(data, cv2.IMREAD_COLOR, most_bits=16)
+    except MalformedError as error:
+        raise InputError(error.what, str(path), "take it out of the folder") from None
+
+
+def _decode_other(data: bytes) -> Bytes:
+    """A BMP, TIFF or WebP as (h,w,3) uint8 BGR. Raises MalformedError."""
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_COLOR)
+    except cv2.error as error:
+        raise MalformedError(f"cannot be decoded ({error.err})") from None
+    if pixels is None:
+        raise MalformedError("is damaged or cut short")
+    return np.asarray(pixels, dtype=np.uint8)
 
 
 def numbered(folder: Path) -> list[tuple[int, Path]]:

@@ -1,5 +1,6 @@
 """A video file as a camera: at its own pace when played live, as fast as it decodes offline."""
 
+import math
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +9,8 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
+from mocapd.boundary.files import is_file
+from mocapd.boundary.pictures import MOST_PIXELS
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
@@ -19,6 +22,13 @@ _SKIPPING_NS = (
     100_000_000  # in one read; who decodes more slowly than the film plays sees some of it
 )
 _MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
+_LONGEST_GAP_S = (
+    60.0  # between two frames, as the file stamps them; a longer one is no gap but damage
+)
+_MOST_FRAMES = 10**8  # a month and more; a file that announces more does not know
+
+# What a file may say of its rate; at the lowest and for the longest film a time still fits its 64 bits.
+SLOWEST_HZ, FASTEST_HZ = 0.01, 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,20 +41,29 @@ class VideoInfo:
 
 
 def probe_video(path: Path) -> VideoInfo:
-    """Size, rate and length of a video. Raises InputError when it is missing, damaged or empty."""
+    """Size, rate and length of a video. Raises InputError when it is missing, damaged or empty, or its
+    pictures are larger than any camera's."""
     capture = _open(path)
     try:
+        info = _info(capture)
+        width, height = info.size_px
+        if width * height > MOST_PIXELS:  # asked before anything is decoded
+            raise InputError(
+                f"the pictures are {width}x{height}, at most {MOST_PIXELS} pixels are read",
+                str(path),
+                "convert the video to a smaller size",
+            )
         if not capture.grab():
             raise InputError(
                 "the video holds no frame that can be decoded", str(path), "record it again"
             )
-        return _info(capture)
+        return info
     finally:
         capture.release()
 
 
 def _open(path: Path) -> cv2.VideoCapture:
-    if not path.is_file():
+    if not is_file(path):
         raise InputError("no such video file", str(path), "check the path")
     # One decoding thread: the library's pool costs more than it gives at these sizes.
     capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
@@ -61,10 +80,11 @@ def _open(path: Path) -> cv2.VideoCapture:
 def _info(capture: cv2.VideoCapture) -> VideoInfo:
     size = (int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)), int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)))
     fps_hz = capture.get(cv2.CAP_PROP_FPS)
+    frames = capture.get(cv2.CAP_PROP_FRAME_COUNT)
     return VideoInfo(
         size,
-        fps_hz if 0 < fps_hz < 1000 else 30.0,
-        max(0, int(capture.get(cv2.CAP_PROP_FRAME_COUNT))),
+        fps_hz if SLOWEST_HZ <= fps_hz <= FASTEST_HZ else 30.0,
+        int(frames) if 0 < frames <= _MOST_FRAMES else 0,
     )
 
 
@@ -152,8 +172,9 @@ class FileSource:
         for _ in range(_MOST_MISSES):
             if capture.grab():
                 file_ms = capture.get(cv2.CAP_PROP_POS_MSEC)
-                gap = round((file_ms - self._file_ms) * 1e-3 * self._file_fps_hz)
-                step = max(1, gap) if self._index >= 0 else 1
+                gap_s = (file_ms - self._file_ms) * 1e-3
+                believed = self._index >= 0 and math.isfinite(gap_s) and gap_s < _LONGEST_GAP_S
+                step = max(1, round(gap_s * self._file_fps_hz)) if believed else 1
                 self.torn += step - 1
                 self._index += step
                 self._file_ms = file_ms

@@ -1,7 +1,6 @@
 """A folder in the capture format: rig.json, camN.mp4, subject.json, scribble/, model/."""
 
 import logging
-import math
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -9,14 +8,18 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from mocapd.capture.file import FileSource, probe_video, size_error
+from mocapd.boundary.files import is_folder
+from mocapd.boundary.numbers import brief, finite_number
+from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
 from mocapd.capture.pace import Pace
-from mocapd.errors import ConfigError, EndOfStream, InputError
+from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
 from mocapd.types import Frame, FrameSet, Rig
 from mocapd.vision.strokes import stroked_pictures, strokes_beside
 
 _LOG = logging.getLogger(__name__)
+_MOST_OFFSET_S = 86_400.0  # of a camera's clock from the others'
+_STATURES_M = (0.5, 2.6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,7 @@ def load_folder(path: Path) -> CaptureFolder:
     Raises InputError (something is missing or damaged) or ConfigError (a value is wrong, a video's
     size is not that of its calibration, or the cameras' rates differ).
     """
-    if not path.is_dir():
+    if not is_folder(path):
         raise InputError("no such capture folder", str(path), "check the path")
     rig_path = path / "rig.json"
     rig = load_rig(rig_path)
@@ -86,11 +89,11 @@ def load_folder(path: Path) -> CaptureFolder:
     )
 
 
-def _number(entry: dict[str, Any], key: str, default: float, where: str) -> float:
-    value = entry.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ConfigError(f"{key!r} must be a number, is {value!r}", where, "correct the file")
-    return float(value)
+def _number(value: object, key: str, low: float, high: float, where: str) -> float:
+    try:
+        return finite_number(value, low, high)
+    except MalformedError as error:
+        raise ConfigError(f"{key!r}: {error.what}", where, "correct the file") from None
 
 
 def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> RecordedCamera:
@@ -98,20 +101,20 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
     where = f"{folder / 'rig.json'}, camera {name!r}"
     file = entry.get("file", f"{name}.mp4")
     if not isinstance(file, str):
-        raise ConfigError(f"'file' must be a file name, is {file!r}", where, "correct the file")
+        raise ConfigError(
+            f"'file' must be a file name, is {brief(file)}", where, "correct the file"
+        )
     video = folder / file
     info = probe_video(video)
     if info.size_px != size_px:
         raise size_error(str(video), name, info.size_px, size_px)
-    fps_hz = _number(entry, "fps", info.fps_hz, where)
-    if fps_hz <= 0:
-        raise ConfigError(f"'fps' must be above 0, is {fps_hz:g}", where, "correct the file")
+    offset_s = entry.get("time_offset_s", 0.0)
     return RecordedCamera(
         name=name,
         video=video,
         size_px=size_px,
-        fps_hz=fps_hz,
-        time_offset_s=_number(entry, "time_offset_s", 0.0, where),
+        fps_hz=_number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where),
+        time_offset_s=_number(offset_s, "time_offset_s", -_MOST_OFFSET_S, _MOST_OFFSET_S, where),
         frames=info.frames,
         scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
     )
@@ -120,14 +123,14 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
 def _stature_m(path: Path) -> float | None:
     if not path.exists():
         return None
-    fix = 'write the person\'s height, as {"stature_m": 1.72}'
+    fix = 'write the person\'s height in metres, as {"stature_m": 1.72}'
     subject = read_json(path)
     if not isinstance(subject, dict) or "stature_m" not in subject:
         raise ConfigError("the field 'stature_m' is missing", str(path), fix)
-    stature_m = _number(subject, "stature_m", 0.0, str(path))
-    if not 0.5 < stature_m < 2.6:
-        raise ConfigError(f"'stature_m' is {stature_m:g}, not a height in metres", str(path), fix)
-    return stature_m
+    try:
+        return finite_number(subject["stature_m"], *_STATURES_M)
+    except MalformedError as error:
+        raise ConfigError(f"'stature_m': {error.what}", str(path), fix) from None
 
 
 def _stroked(image: Path) -> StrokedImage | None:

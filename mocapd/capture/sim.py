@@ -6,8 +6,10 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
+from mocapd.boundary.pictures import decode_picture
+from mocapd.capture.pixels import frozen_pixels
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
-from mocapd.errors import CameraLost, ConfigError, InputError
+from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError
 from mocapd.sim.film import Film
 from mocapd.sim.scenario import Scenario
 from mocapd.types import Frame
@@ -63,13 +65,13 @@ class SimCamera:
         wait_ns = self._ready_ns(n) - monotonic_ns()
         if self._closed.wait(seconds(max(wait_ns, 0))):
             raise CameraLost("the simulated camera was closed", self.name, "open it again")
-        jpeg = np.frombuffer(self._jpeg(n), dtype=np.uint8)
-        pixels = cv2.imdecode(jpeg, cv2.IMREAD_COLOR)
-        if pixels is None:
-            raise InputError("a frame of the film is damaged", self.name, "delete the cache")
-        picture = np.asarray(pixels, dtype=np.uint8)
-        picture.flags.writeable = False
-        return Frame(self.name, n - self._first, self.exposure_ns(n), picture)
+        try:
+            pixels = decode_picture(self._jpeg(n), cv2.IMREAD_COLOR)
+        except MalformedError as error:
+            raise InputError(
+                f"a frame of the film {error.what}", self.name, "delete the cache"
+            ) from None
+        return Frame(self.name, n - self._first, self.exposure_ns(n), frozen_pixels(pixels))
 
     def close(self) -> None:
         """Switch off and wake a blocked `read`."""

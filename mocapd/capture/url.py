@@ -4,6 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
+from mocapd.boundary.pictures import MOST_PIXELS
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import GuardedCapture
@@ -76,6 +77,13 @@ class UrlSource:
             int(capture.get(cv2.CAP_PROP_FRAME_WIDTH)),
             int(capture.get(cv2.CAP_PROP_FRAME_HEIGHT)),
         )
+        if not 0 < size_px[0] * size_px[1] <= MOST_PIXELS:
+            capture.release()
+            raise UnavailableError(
+                f"the network camera sends pictures of {size_px[0]}x{size_px[1]}",
+                self._shown,
+                "set it to a smaller size",
+            )
         if self._size_px is not None and size_px != self._size_px:
             capture.release()
             raise size_error(self._shown, self.name, size_px, self._size_px)

@@ -10,6 +10,7 @@ import mocapd.capture.environment as environment  # isort: skip  before cv2
 import cv2
 from cv2.typing import MatLike
 
+from mocapd.boundary.pictures import decode_picture
 from mocapd.capture.camera_controls import NodeControls
 from mocapd.capture.controls import (
     ControlResult,
@@ -25,7 +26,7 @@ from mocapd.capture.node_access import check_usable, opened_node
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.webcams import DEV, SYSFS, find_webcam
 from mocapd.clock import NS_PER_S, monotonic_ns
-from mocapd.errors import CameraLost, UnavailableError
+from mocapd.errors import CameraLost, MalformedError, UnavailableError
 from mocapd.types import Bytes, Frame
 
 _LOG = logging.getLogger(__name__)
@@ -248,19 +249,20 @@ def negotiate(
 def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
     """A buffer of the driver as BGR (height, width, 3), read-only; None when it is torn.
 
-    MJPG: a JPEG file, of which a cut one is refused here, not half decoded. YUYV: two bytes a pixel.
+    MJPG: a JPEG file, of which a cut one is refused here, not half decoded, and one of another size
+    before it takes memory. YUYV: two bytes a pixel.
     """
     width, height = size_px
     if fourcc == _YUYV:
         if raw.size != width * height * 2:
             return None
         return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
-    if raw.size == 0:
+    try:
+        decoded = decode_picture(raw, cv2.IMREAD_COLOR, size_px)
+    except MalformedError:
         return None
-    decoded = cv2.imdecode(raw.reshape(-1), cv2.IMREAD_COLOR)
-    if decoded is None or decoded.shape != (height, width, 3):
-        return None
-    return frozen_pixels(decoded)
+    # one that says it was taken upright is turned by the decoder
+    return frozen_pixels(decoded) if decoded.shape == (height, width, 3) else None
 
 
 def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int:

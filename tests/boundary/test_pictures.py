@@ -116,3 +116,10 @@ def test_any_change_is_a_picture_or_malformed(which: bytes, changes: list[tuple[
         data[at % len(data)] = value
     with suppress(MalformedError):
         assert decode_picture(bytes(data), cv2.IMREAD_COLOR, (9, 6)).shape == (6, 9, 3)
+
+
+def test_sixteen_bits_are_read_where_they_are_wanted() -> None:
+    data = bytes(cv2.imencode(".png", np.full((4, 6, 3), 77 * 257, np.uint16))[1])
+    with pytest.raises(MalformedError, match="16 bits"):
+        decode_picture(data, cv2.IMREAD_COLOR)
+    assert (decode_picture(data, cv2.IMREAD_COLOR, most_bits=16) == 77).all()

@@ -1,5 +1,6 @@
 """A video file as a camera: numbering, time, pacing, and files that are not whole."""
 
+import struct
 import threading
 from pathlib import Path
 
@@ -147,3 +148,31 @@ def test_another_size_than_the_calibration_names_both(tmp_path: Path) -> None:
     source = FileSource("left", write_film(tmp_path / "a.avi", 3), size_px=(640, 480))
     with pytest.raises(ConfigError, match=r"64x48.*'left'.*640x480"):
         source.open()
+
+
+@pytest.mark.parametrize(
+    ("scale", "rate", "frames"), [(2**31, 1, 5), (1, 2**31, 5), (1, 30, 2**32 - 1)]
+)
+def test_what_a_header_cannot_mean_is_not_believed(
+    tmp_path: Path, scale: int, rate: int, frames: int
+) -> None:
+    path = write_film(tmp_path / "a.avi", 5)
+    data = bytearray(path.read_bytes())
+    stream = data.index(b"strh") + 8
+    data[stream + 20 : stream + 28] = struct.pack("<II", scale, rate)
+    data[stream + 32 : stream + 36] = struct.pack("<I", frames)
+    path.write_bytes(data)
+    info = probe_video(path)
+    assert (info.fps_hz, info.frames) == (30.0, 5 if frames == 5 else 0)
+    source = FileSource("a", path, pace=Pace(live=True))
+    came, end = read_all(source)
+    assert [number_of(frame.pixels) for frame in came] == list(range(5))
+    assert "all of its 5 frames" in str(end)
+
+
+def test_pictures_larger_than_any_cameras_are_refused_before_they_are_decoded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mocapd.capture.file.MOST_PIXELS", 64 * 48 - 1)
+    with pytest.raises(InputError, match="64x48, at most 3071 pixels"):
+        probe_video(write_film(tmp_path / "a.avi", 3))

@@ -104,10 +104,13 @@ def test_another_size_than_the_calibration_names_both_and_the_file(tmp_path: Pat
     ("edit", "said"),
     [
         (lambda cameras: cameras[1].pop("K"), r"cam1.*'K' is missing"),
-        (lambda cameras: cameras[1].update(fps="fast"), r"cam1.*'fps' must be a number"),
-        (lambda cameras: cameras[1].update(fps=0), r"cam1.*'fps' must be above 0"),
+        (lambda cameras: cameras[1].update(fps="fast"), r"cam1.*'fps': 'fast' is no number"),
+        (lambda cameras: cameras[1].update(fps=0), r"cam1.*'fps': 0 is not from 0.01 to 1000"),
+        (lambda cameras: cameras[1].update(fps=1e-300), r"cam1.*'fps': 1e-300 is not from"),
+        (lambda cameras: cameras[1].update(fps=10**400), r"cam1.*'fps'.*too many digits"),
         (lambda cameras: cameras[1].update(fps=25.0), r"different rates.*25.*30"),
         (lambda cameras: cameras[0].update(time_offset_s=float("nan")), r"cam0.*'time_offset_s'"),
+        (lambda cameras: cameras[0].update(time_offset_s=1e308), r"cam0.*'time_offset_s': 1e\+308"),
         (lambda cameras: cameras[0].update(file=7), r"cam0.*'file'"),
     ],
 )
@@ -120,6 +123,14 @@ def test_a_wrong_rig_file_is_a_config_error_naming_the_field(
         load_folder(path)
 
 
+@pytest.mark.parametrize("name", ["x" * 5000 + ".avi", "a\0b.avi"])
+def test_a_video_whose_name_can_be_none_is_an_input_error(tmp_path: Path, name: str) -> None:
+    path = write_capture(tmp_path / "capture")
+    edit_rig(path, lambda cameras: cameras[0].update(file=name))
+    with pytest.raises(InputError, match="no such video file"):
+        load_folder(path)
+
+
 @pytest.mark.parametrize("gone", ["rig.json", "cam1.avi"])
 def test_a_missing_file_is_an_input_error_naming_it(tmp_path: Path, gone: str) -> None:
     path = write_capture(tmp_path / "capture")
@@ -128,7 +139,10 @@ def test_a_missing_file_is_an_input_error_naming_it(tmp_path: Path, gone: str) -
         load_folder(path)
 
 
-@pytest.mark.parametrize("subject", ["{}", "[]", '{"stature_m": 172}', '{"stature_m": "tall"}'])
+@pytest.mark.parametrize(
+    "subject",
+    ["{}", "[]", *(f'{{"stature_m": {value}}}' for value in (172, '"tall"', "true", "1" * 999))],
+)
 def test_a_wrong_subject_is_a_config_error(tmp_path: Path, subject: str) -> None:
     path = write_capture(tmp_path / "capture")
     (path / "subject.json").write_text(subject)

@@ -9,7 +9,7 @@ from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
 from mocapd.capture.url import UrlSource
 from mocapd.capture.v4l2 import V4l2Source
-from mocapd.errors import ConfigError, InputError, UnavailableError
+from mocapd.errors import ConfigError, InputError, MocapdError, UnavailableError
 from tests.capture.films import write_capture, write_film
 
 
@@ -73,6 +73,20 @@ def test_a_recording_that_is_not_there_or_damaged_is_told_at_the_start(tmp_path:
     (tmp_path / "bad.mp4").write_bytes(b"no video")
     with pytest.raises(InputError, match=r"bad\.mp4"):
         open_source(str(tmp_path / "bad.mp4"))
+
+
+@pytest.mark.parametrize(
+    ("spec", "error"),
+    [
+        ("x" * 5000, InputError),
+        ("y" * 5000 + "#cam0", InputError),
+        ("a\0b", InputError),
+        ("~nosuchuser/film.mp4", ConfigError),
+    ],
+)
+def test_what_can_be_no_path_is_a_named_error(spec: str, error: type[MocapdError]) -> None:
+    with pytest.raises(error, match=r"no such (camera or file|user)"):
+        open_source(spec)
 
 
 def test_a_file_of_another_size_than_its_calibration_is_told_at_the_start(tmp_path: Path) -> None:

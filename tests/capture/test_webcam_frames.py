@@ -1,5 +1,6 @@
 """What is asked of a webcam and read back, its buffers as pictures, its measured rate."""
 
+import resource
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -38,6 +39,23 @@ def test_a_cut_jpeg_is_torn(part: float) -> None:
 
 def test_a_picture_of_another_size_is_torn() -> None:
     assert decode(jpeg(5), "MJPG", (640, 480)) is None
+
+
+def test_a_header_of_a_huge_picture_is_torn_before_memory_is_taken() -> None:
+    huge = bytearray(jpeg(5).tobytes())
+    frame = huge.index(b"\xff\xc0") + 5  # height and width
+    huge[frame : frame + 4] = (32_000).to_bytes(2, "big") * 2
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert decode(np.frombuffer(huge, dtype=np.uint8), "MJPG", SIZE_PX) is None
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # [kB]
+
+
+def test_a_picture_that_is_turned_by_its_own_word_is_torn() -> None:
+    exif = (
+        b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0"
+    )
+    turned = jpeg(5).tobytes()[:2] + exif + jpeg(5).tobytes()[2:]
+    assert decode(np.frombuffer(turned, dtype=np.uint8), "MJPG", SIZE_PX) is None
 
 
 def test_yuyv_is_converted_and_a_short_buffer_is_torn() -> None:
