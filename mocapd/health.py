@@ -60,7 +60,7 @@ def camera_message(
         instance=instance,
         camera=status.camera,
         state=_STATES[status.state],
-        detail=status.reason,
+        detail=status.trouble,
         source=camera.spec,
         identity=camera.spec.removeprefix("usb:") if camera.spec.startswith("usb:") else "",
         size_px=camera.size_px,

@@ -5,12 +5,15 @@ from collections import deque
 from mocapd.clock import NS_PER_S
 
 
+_MOST = 4096  # frames remembered, whatever their stamps say
+
+
 class RateMeter:
     """Frames per second over the last `window_s` [s]. Not thread-safe."""
 
     def __init__(self, window_s: float = 2.0) -> None:
         self._window_ns = round(window_s * NS_PER_S)
-        self._times_ns: deque[int] = deque()
+        self._times_ns: deque[int] = deque(maxlen=_MOST)
 
     def clear(self) -> None:
         """Forget the past: after a reopening the gap is no low rate."""
@@ -27,10 +30,16 @@ class RateMeter:
         """Whether the window is filled far enough (three quarters) for the rate to be judged."""
         return self._span_ns() >= 0.75 * self._window_ns
 
-    def rate_hz(self) -> float:
-        """The mean rate in the window [Hz]; 0 before the second frame."""
-        span_ns = self._span_ns()
-        return (len(self._times_ns) - 1) * NS_PER_S / span_ns if span_ns > 0 else 0.0
+    def rate_hz(self, silent_ns: int = 0) -> float:
+        """The mean rate in the window [Hz]; 0 before the second frame.
+
+        silent_ns: since the last frame came, by the clock. What exceeds the usual interval lowers the
+        rate; after a whole window of silence it is 0.
+        """
+        span_ns, intervals = self._span_ns(), len(self._times_ns) - 1
+        if span_ns <= 0 or silent_ns > self._window_ns:
+            return 0.0
+        return intervals * NS_PER_S / (span_ns + max(0, silent_ns - span_ns // intervals))
 
     def _span_ns(self) -> int:
         return self._times_ns[-1] - self._times_ns[0] if self._times_ns else 0

@@ -9,8 +9,10 @@ from typing import Protocol, runtime_checkable
 
 from mocapd.capture.base import Source
 from mocapd.capture.rate import RateMeter
+from mocapd.clock import monotonic_ns, seconds
 from mocapd.errors import (
     CameraLost,
+    ConfigError,
     EndOfStream,
     InputError,
     MocapdError,
@@ -20,6 +22,8 @@ from mocapd.errors import (
 from mocapd.types import Frame
 
 _LOG = logging.getLogger(__name__)
+
+SILENT_S = 1.0  # from a live camera: so long without a frame is told [s]
 
 
 class Mailbox(Protocol):
@@ -48,10 +52,10 @@ class CaptureState(StrEnum):
 class CaptureStatus:
     """A snapshot of one capture thread.
 
-    `reason`: why it is lost or ended, and the mend; empty while live. `reopens`: how
-    often it came back after a loss. `fps_hz` is measured from the frames' own times over
-    the last 2 s. `last_frame_ns` (CLOCK_MONOTONIC for live sources, None before the first) tells a
-    watchdog how old the newest frame is while a read blocks.
+    `reason`: why it is lost or ended, and the mend; empty while live. `reopens`: how often it came
+    back after a loss. `fps_hz` is measured from the frames' own times over the last 2 s; it falls by
+    the clock while a read blocks. `last_frame_ns`: the newest frame's own time, None before the first.
+    `silent_s`: since the newest frame came [s]; 0 unless live.
     """
 
     camera: str
@@ -62,6 +66,17 @@ class CaptureStatus:
     reopens: int
     fps_hz: float
     last_frame_ns: int | None
+    silent_s: float = 0.0
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether it counts as live and yet sends nothing: its driver does not come back."""
+        return self.state is CaptureState.LIVE and self.silent_s >= SILENT_S
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong with it, for people; empty when nothing is."""
+        return f"silent for {self.silent_s:.0f} s" if self.is_silent else self.reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +94,10 @@ class BackOff:
 class CaptureThread:
     """Reads one source until `stop` or the end of a recording.
 
-    `on_death` is called, in the capture thread, with whatever unexpected ended it; a ConfigError
-    is among them, as waiting does not mend it. `expected_hz`:
-    warns, once per opening, when the measured rate is under nine tenths of it.
+    `on_death` is called, in the capture thread, with whatever unexpected ended it. A ConfigError of
+    the first opening is among them, as waiting does not mend it; a camera that was open before, and now
+    has another size, is lost: the other cameras go on. `expected_hz`: warns, once per opening, when the
+    measured rate is under nine tenths of it.
     """
 
     def __init__(
@@ -104,6 +120,7 @@ class CaptureThread:
         self._frames = 0
         self._openings = 0  # that delivered
         self._last_frame_ns: int | None = None
+        self._came_ns = 0  # the newest frame, by the clock
         self._rate = RateMeter()
         # A daemon thread: a driver that never returns must not keep the process from ending.
         self._thread = threading.Thread(
@@ -129,6 +146,8 @@ class CaptureThread:
     def status(self) -> CaptureStatus:
         """A snapshot, at any time from any thread; does not wait for a read that blocks."""
         with self._lock:
+            live = self._state is CaptureState.LIVE
+            silent_ns = monotonic_ns() - self._came_ns if live else 0
             return CaptureStatus(
                 camera=self._source.name,
                 state=self._state,
@@ -136,8 +155,9 @@ class CaptureThread:
                 frames=self._frames,
                 torn=self._source.torn if isinstance(self._source, CountsTorn) else 0,
                 reopens=max(0, self._openings - 1),
-                fps_hz=self._rate.rate_hz() if self._state is CaptureState.LIVE else 0.0,
+                fps_hz=self._rate.rate_hz(silent_ns) if live else 0.0,
                 last_frame_ns=self._last_frame_ns,
+                silent_s=seconds(silent_ns),
             )
 
     def _run(self) -> None:
@@ -156,11 +176,12 @@ class CaptureThread:
         self._on_death(error)
 
     def _capture(self) -> None:
-        failures = 0
+        failures, opened = 0, False
         while not self._stopping.is_set():
             frames_before = self._frames
             try:
                 self._source.open()
+                opened = True
                 self._read_until_it_fails()
             except EndOfStream as end:
                 if self._stopping.is_set():
@@ -169,7 +190,11 @@ class CaptureThread:
                 level = logging.WARNING if end.fix else logging.INFO  # fix: it was cut short
                 _LOG.log(level, "%s: %s", self._source.name, end)
                 return
-            except (CameraLost, UnavailableError, PermissionDeniedError, InputError) as error:
+            except (
+                CameraLost, UnavailableError, PermissionDeniedError, InputError, ConfigError
+            ) as error:  # fmt: skip
+                if isinstance(error, ConfigError) and not opened:
+                    raise
                 self._source.close()  # else the camera comes back under another number
                 if self._stopping.is_set():
                     break
@@ -182,6 +207,7 @@ class CaptureThread:
         first, judged = True, False
         while not self._stopping.is_set():
             frame = self._source.read()
+            came_ns = monotonic_ns()
             with self._lock:
                 if first:  # a camera that opens and sends nothing is still lost
                     first = False
@@ -189,7 +215,7 @@ class CaptureThread:
                     self._rate.clear()
                     self._state, self._reason = CaptureState.LIVE, ""
                 self._frames += 1
-                self._last_frame_ns = frame.t_ns
+                self._last_frame_ns, self._came_ns = frame.t_ns, came_ns
                 self._rate.add(frame.t_ns)
             self._mailbox.put(frame)
             if not judged and self._rate.full:
@@ -208,17 +234,20 @@ class CaptureThread:
             )
 
     def _lost(self, error: MocapdError) -> None:
-        # Told once for each loss: the attempts that follow fail for reasons of their own.
-        was = self._set(CaptureState.LOST, str(error))
+        # Told once for each loss: the attempts that follow fail for reasons of their own. But that it
+        # is back, and does not fit, is news.
+        was, reason = self._set(CaptureState.LOST, str(error))
+        news = isinstance(error, ConfigError) and str(error) != reason
         _LOG.log(
-            logging.DEBUG if was is CaptureState.LOST else logging.WARNING,
+            logging.WARNING if news or was is not CaptureState.LOST else logging.DEBUG,
             "%s: lost: %s",
             self._source.name,
             error,
         )
 
-    def _set(self, state: CaptureState, reason: str) -> CaptureState:
-        """Change the state; returns the one before."""
+    def _set(self, state: CaptureState, reason: str) -> tuple[CaptureState, str]:
+        """Change state and reason; returns those before."""
         with self._lock:
-            before, self._state, self._reason = self._state, state, reason
+            before = self._state, self._reason
+            self._state, self._reason = state, reason
             return before

@@ -32,7 +32,9 @@ def status_text(snapshot: Snapshot) -> str:
 
 
 def _camera(status: CaptureStatus) -> str:
-    """Its rate while it is live, else what is wrong."""
+    """Its rate while it is live and sends, else what is wrong."""
+    if status.is_silent:
+        return f"{status.camera} silent {status.silent_s:.0f} s"
     if status.state is CaptureState.LIVE:
         return f"{status.camera} {status.fps_hz:.1f}"
     return f"{status.camera} {status.state.value}"

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.file import FileSource
+from mocapd.capture.file import FileSource, size_error
 from mocapd.capture.pace import Pace
 from mocapd.capture.thread import BackOff, CaptureState, CaptureThread
-from mocapd.errors import ConfigError
+from mocapd.clock import monotonic_ns
+from mocapd.errors import CameraLost, ConfigError
 from mocapd.types import Frame
-from tests.capture.films import write_film
+from tests.capture.films import picture, write_film
 
 QUICK = BackOff(first_s=0.01, longest_s=0.05)
 
@@ -157,6 +158,90 @@ def test_what_waiting_does_not_mend_ends_the_thread(tmp_path: Path) -> None:
     assert capture.stop()
     assert capture.status().state is CaptureState.ENDED
     assert "640x480" in capture.status().reason
+
+
+class ChangingCamera:
+    """A network camera as others set it: lost after two frames, then back in another size, then mended."""
+
+    name = "net"
+    recorded = False
+
+    def __init__(self) -> None:
+        self.openings = 0
+        self.mended = threading.Event()
+        self._seq = 0
+
+    def open(self) -> None:
+        self.openings += 1
+        if self.openings > 1 and not self.mended.is_set():
+            raise size_error("rtsp://net/live", self.name, (160, 120), (320, 240))
+
+    def read(self) -> Frame:
+        self._seq += 1
+        if self._seq == 3:
+            raise CameraLost("stopped sending", self.name)
+        threading.Event().wait(0.01)
+        return Frame(self.name, self._seq, monotonic_ns(), picture(1))
+
+    def close(self) -> None: ...
+
+
+def test_a_camera_that_comes_back_in_another_size_is_lost_until_it_fits_again(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    shelf, source = Shelf(), ChangingCamera()
+    capture = CaptureThread(source, shelf, nobody_dies, back_off=QUICK)
+    capture.start()
+    assert wait_until(lambda: source.openings > 4)
+    status = capture.status()
+    assert status.state is CaptureState.LOST
+    assert "160x120, but camera 'net' was calibrated at 320x240" in status.reason
+    warnings = [one.getMessage() for one in caplog.records if "160x120" in one.getMessage()]
+    assert len(warnings) == 1
+    source.mended.set()
+    assert shelf.wait_for(5)
+    assert capture.status().state is CaptureState.LIVE
+    assert capture.status().reopens == 1
+    assert capture.stop()
+
+
+class StallingCamera:
+    """Sends ten frames at 100 Hz; then its read does not come back until it is closed."""
+
+    name = "stalling"
+    recorded = False
+
+    def __init__(self) -> None:
+        self.closed = threading.Event()
+        self._seq = 0
+
+    def open(self) -> None: ...
+
+    def read(self) -> Frame:
+        self._seq += 1
+        if self.closed.wait(60.0 if self._seq > 10 else 0.01):
+            raise CameraLost("closed", self.name)
+        return Frame(self.name, self._seq, monotonic_ns(), picture(1))
+
+    def close(self) -> None:
+        self.closed.set()
+
+
+def test_the_rate_falls_by_the_clock_while_a_read_blocks() -> None:
+    shelf = Shelf()
+    capture = CaptureThread(StallingCamera(), shelf, nobody_dies)
+    capture.start()
+    assert shelf.wait_for(10)
+    first_hz = capture.status().fps_hz
+    assert first_hz > 0.0
+    assert wait_until(lambda: capture.status().is_silent)
+    assert capture.status().state is CaptureState.LIVE
+    assert capture.status().fps_hz < first_hz
+    assert capture.status().trouble.startswith("silent for 1 s")
+    assert wait_until(lambda: capture.status().fps_hz == 0.0)
+    assert capture.status().silent_s >= 2.0
+    assert capture.stop()
+    assert not capture.status().is_silent
 
 
 def test_stopping_before_starting_is_allowed(tmp_path: Path) -> None:

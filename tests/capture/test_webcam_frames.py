@@ -1,6 +1,7 @@
 """What is asked of a webcam and read back, its buffers as pictures, its measured rate."""
 
 import resource
+import tracemalloc
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -179,6 +180,30 @@ def test_the_rate_is_that_of_the_last_seconds() -> None:
     for index in range(30):
         meter.add(4_000_000_000 + index * 100_000_000)
     assert meter.rate_hz() == pytest.approx(10.0)
+
+
+def test_silence_lowers_the_rate_down_to_nothing() -> None:
+    meter = RateMeter(window_s=2.0)
+    for index in range(60):
+        meter.add(index * 40_000_000)
+    rates = [meter.rate_hz(silent_ns=ms * 1_000_000) for ms in (0, 40, 500, 1500, 2001, 3000)]
+    assert rates[:2] == [pytest.approx(25.0)] * 2
+    assert rates[2:4] == sorted(rates[2:4], reverse=True)
+    assert rates[4:] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("step_ns", [0, -1_000_000])
+def test_stamps_that_do_not_advance_take_no_memory(step_ns: int) -> None:
+    meter = RateMeter()
+    for index in range(1_000):
+        meter.add(index * step_ns)
+    tracemalloc.start()
+    for index in range(1_000, 100_000):
+        meter.add(index * step_ns)
+    grown, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert grown < 300_000
+    assert meter.rate_hz() == 0.0
 
 
 def test_a_cleared_meter_knows_no_rate() -> None:

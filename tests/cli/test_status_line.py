@@ -42,6 +42,11 @@ def test_before_the_first_frame_nothing_is_made_up() -> None:
     assert text == " 0.0 Hz | no frame yet | left opening"
 
 
+def test_a_camera_that_counts_as_live_and_sends_nothing_is_told() -> None:
+    stalled = replace(CAMERA, fps_hz=0.0, silent_s=3.2)
+    assert "| left silent 3 s" in status_text(Snapshot(METRICS, {"left": stalled}, {}))
+
+
 def test_a_lost_camera_and_dropped_frame_sets_are_told() -> None:
     lost = replace(CAMERA, state=CaptureState.LOST, reason="unplugged")
     text = status_text(Snapshot(replace(METRICS, sets_dropped=7), {"left": lost}, {}))
