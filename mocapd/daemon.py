@@ -20,6 +20,7 @@ from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.osc_sink import OscSink
 from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import PipelineLoop
@@ -71,7 +72,12 @@ class Daemon:
         ]
         smoother = Smoother(config.smoothing.preset, session.tracker.skeleton)
         self._loop = PipelineLoop(
-            self._collector, session.tracker, smoother, self._publish, self.died
+            self._collector,
+            session.tracker,
+            smoother,
+            self._publish,
+            self.died,
+            _absence(config, session),
         )
         self._seq = itertools.count()
         self._ended = threading.Event()
@@ -186,3 +192,11 @@ class Daemon:
         )
         for sink in self._sinks:
             sink.send(frame)
+
+
+def _absence(config: Config, session: Session) -> Absence | None:
+    """Who tells that no frames come; nobody where recordings are played, which end."""
+    if all(camera.source.recorded for camera in session.cameras):
+        return None
+    tracker = session.tracker
+    return Absence(tracker.name, len(tracker.skeleton.names), config.tracker.coast_s)

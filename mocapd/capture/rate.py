@@ -4,7 +4,6 @@ from collections import deque
 
 from mocapd.clock import NS_PER_S
 
-
 _MOST = 4096  # frames remembered, whatever their stamps say
 
 

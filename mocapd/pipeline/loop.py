@@ -1,9 +1,10 @@
-"""The pipeline's thread: newest frame set -> tracker -> smoother -> outputs."""
+"""The pipeline's thread: newest frame set -> tracker -> smoother -> outputs; without frames, word of that."""
 
 import threading
 from collections.abc import Callable
 
-from mocapd.clock import monotonic_ns
+from mocapd.clock import monotonic_ns, seconds
+from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
@@ -21,7 +22,8 @@ class PipelineLoop:
     """Runs one tracker on whatever the collector holds, until stopped.
 
     `publish` is called in the pipeline's thread for each body, also while `lost`, and must not
-    block. `on_death` is called in that thread with whatever ends it unexpectedly, which is then
+    block; with an empty frame set for what `absence` tells while no frames come, which it says when given.
+    `on_death` is called in that thread with whatever ends it unexpectedly, which is then
     raised again; being stopped is no death.
     """
 
@@ -32,14 +34,15 @@ class PipelineLoop:
         smoother: Smoother,
         publish: Publish,
         on_death: OnDeath,
-        stopping: threading.Event | None = None,
+        absence: Absence | None = None,
     ) -> None:
         self._collector = collector
         self._tracker = tracker
         self._smoother = smoother
         self._publish = publish
         self._on_death = on_death
-        self._stopping = stopping if stopping is not None else threading.Event()
+        self._absence = absence
+        self._stopping = threading.Event()
         self._recorder = MetricsRecorder()
         # A daemon thread: a kernel that hangs must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
@@ -73,10 +76,14 @@ class PipelineLoop:
             raise
 
     def _loop(self, garbage: IdleCollection) -> None:
+        if self._absence is not None:
+            self._absence.begin(monotonic_ns())
         while not self._stopping.is_set() and not self._collector.closed:
-            frames = self._collector.get(LOOK_UP_S)
+            frames = self._collector.get(self._wait_s())
             if frames is not None:
                 self._one(frames)
+            elif self._absence is not None and not self._collector.closed:
+                self._none(self._absence)
             if self._collector.idle:
                 garbage.idle(monotonic_ns())
 
@@ -86,5 +93,21 @@ class PipelineLoop:
         step_ns = monotonic_ns() - start_ns
         self._smoother.skeleton = self._tracker.skeleton
         body = self._smoother.step(track.body)
+        if self._absence is not None:
+            body = self._absence.came(body, monotonic_ns())
         self._publish(body, self._tracker.skeleton, frames)
         self._recorder.published(frames, body, step_ns, monotonic_ns())
+
+    def _none(self, absence: Absence) -> None:
+        """No frames came for a while."""
+        body = absence.tell(monotonic_ns())
+        if body is not None:
+            self._publish(body, self._tracker.skeleton, FrameSet(body.t_ns, {}))
+            self._recorder.absent(body)
+
+    def _wait_s(self) -> float:
+        """How long to wait for frames before something else is due."""
+        due_ns = self._absence.due_ns if self._absence is not None else None
+        if due_ns is None:
+            return LOOK_UP_S
+        return min(LOOK_UP_S, max(0.0, seconds(due_ns - monotonic_ns())))

@@ -23,10 +23,10 @@ class CameraMetrics:
 class Metrics:
     """A snapshot. Percentiles are over the last 300 frame sets (10 s at 30 Hz).
 
-    rate_hz: bodies published per second over the last 2 s; latency_ms: capture (the set's `t_ns`)
-    to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
-    published: bodies since the start; sets_dropped: displaced by newer ones while the tracker was
-    busy.
+    rate_hz: bodies of frames published per second over the last 2 s; latency_ms: capture (the set's
+    `t_ns`) to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
+    published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
+    was busy; tracking: as told last, also by the clock while no frames come.
     """
 
     rate_hz: float
@@ -64,6 +64,11 @@ class MetricsRecorder:
             self._spread_ms.add(frames.spread_ns / per_ms)
             self._published += 1
             self._tracking, self._tracker = body.tracking, body.tracker
+
+    def absent(self, body: BodyState) -> None:
+        """A body went out that is of no frames."""
+        with self._lock:
+            self._tracking = body.tracking
 
     def snapshot(self, collected: CollectorCounts, now_ns: int) -> Metrics:
         """The figures now, with the collector's counts."""

@@ -6,6 +6,8 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.types import Tracking
 
+FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
+
 
 @dataclass(frozen=True, slots=True)
 class TrackingStateParams:

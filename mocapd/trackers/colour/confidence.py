@@ -5,10 +5,10 @@ import numpy as np
 from mocapd.body.shirt import N_PATCHES
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.trackers.colour.fitting import Fit
+from mocapd.trackers.tracking_state import FADE_S
 from mocapd.types import Floats
 
 _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
-_FADE_S = 0.15  # confidence falls to 1/e in this time without evidence
 _ONE_CAMERA = 0.7  # one view knows directions, not depth
 _BELOW = 0.5  # what the shirt tells of head and legs
 
@@ -51,4 +51,4 @@ def joint_confidence(fit: Fit | None, n_cameras: int, away_s: float) -> Floats:
         out[INDEX[name]] = _BELOW * out[INDEX[source]]
     if n_cameras < 2:
         out *= _ONE_CAMERA
-    return np.asarray(out * np.exp(-away_s / _FADE_S))
+    return np.asarray(out * np.exp(-away_s / FADE_S))

@@ -1,0 +1,92 @@
+"""What is told while no camera delivers at all: the pose fades for a moment, then nobody is known. Pure."""
+
+import math
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.clock import NS_PER_S, nanoseconds, seconds
+from mocapd.trackers.tracking_state import FADE_S
+from mocapd.types import BodyState, Tracking
+
+COASTING_EVERY_NS = NS_PER_S // 10
+LOST_EVERY_NS = NS_PER_S
+FIRST_NS = 3 * NS_PER_S  # the cameras may take this long to open before anything is told
+
+_PERIODS = 4  # of the cameras without a frame: then none is on its way
+_SOONEST_NS = 150_000_000
+_LATEST_NS = NS_PER_S  # also assumed until two bodies told how often they come
+_REMEMBERED = 8  # intervals; the longest counts, so that a rate that falls is no absence
+
+
+class Absence:
+    """Decides by time alone. Trackers see frames only, so without any their own coasting stands still.
+
+    `begin` once, `came` with every body of frames; whenever `due_ns` has passed, `tell` gives the body
+    to be sent instead. It is never timed before what was told already.
+    """
+
+    def __init__(self, tracker: str, n_joints: int, coast_s: float) -> None:
+        """coast_s: how long after the last evidence a pose is still told [s]."""
+        self.due_ns: int | None = None  # by the clock; None before `begin`
+        self._nobody = BodyState(0, Tracking.LOST, tracker, None, None, np.zeros(n_joints))
+        self._coast_ns = nanoseconds(coast_s)
+        self._last: BodyState | None = None  # of frames
+        self._came_ns = 0  # by the clock
+        self._evidence_ns = 0  # the time of the last body with evidence
+        self._told_ns = 0  # the time of the last body, of frames or not
+        self._intervals_ns: deque[int] = deque(maxlen=_REMEMBERED)
+
+    def begin(self, now_ns: int) -> None:
+        """From now on frames are expected."""
+        self.due_ns = now_ns + FIRST_NS
+
+    def came(self, body: BodyState, now_ns: int) -> BodyState:
+        """A body of frames is about to be sent: here it is, timed just after what was told before it
+        where its frames are older than that."""
+        if self._last is not None:
+            interval_ns = now_ns - self._came_ns
+            if interval_ns <= _LATEST_NS:  # a longer one is an outage, not a rate
+                self._intervals_ns.append(interval_ns)
+        self._last, self._came_ns = body, now_ns
+        if body.tracking is Tracking.LIVE:
+            self._evidence_ns = body.t_ns
+        self.due_ns = now_ns + self._patience_ns()
+        if body.t_ns <= self._told_ns:
+            body = replace(body, t_ns=self._told_ns + 1)
+        self._told_ns = body.t_ns
+        return body
+
+    def tell(self, now_ns: int) -> BodyState | None:
+        """What to send at `now_ns`, when something is due; None when not."""
+        if self.due_ns is None or now_ns < self.due_ns:
+            return None
+        last = self._last
+        if last is None:
+            body = replace(self._nobody, t_ns=now_ns)
+        else:
+            # the cameras' delay is left as it was
+            t_ns = max(last.t_ns + now_ns - self._came_ns, self._told_ns + 1)
+            body = self._coasting(last, t_ns) or replace(self._nobody, t_ns=t_ns)
+        lost = body.tracking is Tracking.LOST
+        self.due_ns = now_ns + (LOST_EVERY_NS if lost else COASTING_EVERY_NS)
+        self._told_ns = body.t_ns
+        return body
+
+    def _coasting(self, last: BodyState, t_ns: int) -> BodyState | None:
+        """The last pose, believed less and less; None when it is too old, or there was none."""
+        if last.tracking is Tracking.LOST or t_ns - self._evidence_ns > self._coast_ns:
+            return None
+        fading = math.exp(-seconds(t_ns - last.t_ns) / FADE_S)
+        return replace(
+            last,
+            t_ns=t_ns,
+            tracking=Tracking.COASTING,
+            confidence=last.confidence * fading,
+            cameras=(),
+        )
+
+    def _patience_ns(self) -> int:
+        longest_ns = max(self._intervals_ns, default=_LATEST_NS)
+        return min(max(_PERIODS * longest_ns, _SOONEST_NS), _LATEST_NS)

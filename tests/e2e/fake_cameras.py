@@ -1,0 +1,63 @@
+"""Cameras under a test's thumb, for a daemon in the test's own process."""
+
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mocapd.body.skeleton import standard_skeleton
+from mocapd.camera_inputs import CameraInput
+from mocapd.capture.file import size_error
+from mocapd.clock import monotonic_ns
+from mocapd.config_sections import Config, OscSection, ZenohSection
+from mocapd.daemon import Daemon
+from mocapd.errors import CameraLost
+from mocapd.session import Session
+from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.types import Frame
+from tests.capture.films import SIZE_PX, picture
+
+PERIOD_S = 1.0 / 60.0
+
+
+@dataclass(eq=False)
+class FakeCamera:
+    """Sends pictures at 60 Hz. `frozen`: its reads block; `unplugged`: they fail, and so does opening it
+    anew; `other_size`: after that it is there again, but does not fit its calibration."""
+
+    name: str
+    recorded: bool = False
+    frozen: threading.Event = field(default_factory=threading.Event)
+    unplugged: threading.Event = field(default_factory=threading.Event)
+    other_size: threading.Event = field(default_factory=threading.Event)
+    _closed: threading.Event = field(default_factory=threading.Event)
+    _seq: int = 0
+
+    def open(self) -> None:
+        self._closed.clear()
+        if self.other_size.is_set():
+            raise size_error("test", self.name, (320, 240), SIZE_PX)
+        if self.unplugged.is_set():
+            raise CameraLost("is not there", self.name)
+
+    def read(self) -> Frame:
+        self._closed.wait(PERIOD_S)
+        while self.frozen.is_set() and not self._closed.wait(0.01):
+            pass
+        if self._closed.is_set() or self.unplugged.is_set():
+            raise CameraLost("was unplugged", self.name)
+        self._seq += 1
+        return Frame(self.name, self._seq, monotonic_ns(), picture(self._seq % 256))
+
+    def close(self) -> None:
+        self._closed.set()
+
+
+def daemon_on(*cameras: FakeCamera, osc_port: int) -> Daemon:
+    """With the canned tracker, sending OSC to this port of 127.0.0.1; the caller enters it."""
+    config = Config(
+        zenoh=ZenohSection(enabled=False),
+        osc=OscSection(destinations=(f"127.0.0.1:{osc_port}",)),
+        state_dir=Path("/nonexistent"),
+    )
+    inputs = tuple(CameraInput(camera, "test") for camera in cameras)
+    return Daemon(config, Session(inputs, None, "", CannedTracker(standard_skeleton(1.75))))
