@@ -1,5 +1,6 @@
 """The calibration board: what is printed on it, and where its inner corners are."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -9,12 +10,14 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
-from mocapd.errors import ConfigError
+from mocapd.boundary.numbers import brief, whole_number_of_text
+from mocapd.errors import ConfigError, MalformedError
 from mocapd.types import Floats
 
 _WHERE = "the board"
-_FEWEST_SQUARES = 3  # in each direction: fewer have not the corners that fix a pose
-_LARGEST_SQUARE_M = 1.0
+MOST_SQUARES = 100  # in each direction: no print and no camera shows more
+LARGEST_SQUARE_M = 1.0
+SMALLEST_SQUARE_M = 0.001
 
 
 class BoardKind(StrEnum):
@@ -22,6 +25,11 @@ class BoardKind(StrEnum):
 
     CHARUCO = "charuco"
     CHESSBOARD = "chessboard"
+
+
+# in each direction: fewer have not the corners that fix a pose; OpenCV finds no plain chessboard
+# with fewer than three inner corners, which it says by raising
+FEWEST_SQUARES: Mapping[BoardKind, int] = {BoardKind.CHARUCO: 3, BoardKind.CHESSBOARD: 4}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,21 +54,29 @@ class BoardSpec:
     legacy: bool = False
 
     def __post_init__(self) -> None:
-        if min(self.columns, self.rows) < _FEWEST_SQUARES:
+        fewest = FEWEST_SQUARES[self.kind]
+        if not all(fewest <= count <= MOST_SQUARES for count in (self.columns, self.rows)):
             raise ConfigError(
-                f"{self.columns}x{self.rows} squares are too few",
+                f"a {self.kind} of {brief(self.columns)} x {brief(self.rows)} squares",
                 _WHERE,
-                f"give columns x rows of squares, at least {_FEWEST_SQUARES} each",
+                f"give columns x rows of squares, {fewest} to {MOST_SQUARES} each",
             )
-        if not 0.0 < self.square_m < _LARGEST_SQUARE_M:
+        if not SMALLEST_SQUARE_M <= self.square_m < LARGEST_SQUARE_M:
             raise ConfigError(
                 f"a square of {self.square_m:g} m",
                 _WHERE,
                 "give the side of one square in metres, as measured with a ruler",
             )
         if self.kind is BoardKind.CHESSBOARD:
+            if not 0.0 <= self.marker_m < LARGEST_SQUARE_M:  # unused, but kept
+                raise ConfigError(
+                    f"a marker of {self.marker_m:g} m", _WHERE, "leave it out for a chessboard"
+                )
             return
-        if not 0.0 < self.marker_m < self.square_m:
+        # OpenCV computes in single precision, and raises where they are the same there
+        if not 0.5 * SMALLEST_SQUARE_M <= self.marker_m or not (
+            np.float32(self.marker_m) < np.float32(self.square_m)
+        ):
             raise ConfigError(
                 f"a marker of {self.marker_m:g} m in a square of {self.square_m:g} m",
                 _WHERE,
@@ -68,7 +84,7 @@ class BoardSpec:
             )
         if self.dictionary not in dictionaries():
             raise ConfigError(
-                f"no marker dictionary {self.dictionary!r}",
+                f"no marker dictionary {brief(self.dictionary)}",
                 _WHERE,
                 "one of " + ", ".join(dictionaries()),
             )
@@ -98,9 +114,17 @@ class BoardSpec:
 def board_size(text: str) -> tuple[int, int]:
     """`4x5` as (4, 5): columns and rows of squares. Raises ConfigError."""
     columns, _, rows = text.lower().partition("x")
-    if not (columns.strip().isdecimal() and rows.strip().isdecimal()):
-        raise ConfigError(f"the board size {text!r}", _WHERE, "write columns x rows, as 4x5")
-    return int(columns), int(rows)
+    try:
+        return (
+            whole_number_of_text(columns, 1, MOST_SQUARES),
+            whole_number_of_text(rows, 1, MOST_SQUARES),
+        )
+    except MalformedError as error:
+        raise ConfigError(
+            f"the board size {brief(text)}: {error}",
+            _WHERE,
+            f"write columns x rows, as 4x5, up to {MOST_SQUARES} each",
+        ) from None
 
 
 def dictionaries() -> tuple[str, ...]:

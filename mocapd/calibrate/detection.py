@@ -12,6 +12,7 @@ import numpy as np
 
 from mocapd.calibrate.board import BoardKind, BoardSpec, aruco_board, first_markers
 from mocapd.calibrate.sharpness import edge_sharpness
+from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Floats, Ints
 
 _KNOWN_MARKERS = 250  # of a dictionary: no board that is carried has more
@@ -69,9 +70,22 @@ class BoardDetector:
             )
 
     def find(self, pixels: Bytes, index: int = 0) -> BoardView | None:
-        """The board in a picture (h,w,3) BGR or (h,w) grey; None without enough of it."""
+        """The board in a picture (h,w,3) BGR or (h,w) grey; None without enough of it.
+
+        Raises ConfigError when OpenCV cannot look for such a board.
+        """
         grey = self.as_printed(pixels)
-        found = self._of_charuco(grey) if self._charuco is not None else self._of_chessboard(grey)
+        try:
+            found = (
+                self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
+            )
+        except cv2.error as error:
+            raise ConfigError(
+                f"OpenCV cannot look for a {self.spec} in a picture of"
+                f" {grey.shape[1]}x{grey.shape[0]} ({error.err})",
+                "the board",
+                "give another board, or pictures of another size",
+            ) from None
         if found is None:
             return None
         ids, corners_px = found

@@ -11,6 +11,7 @@ import numpy as np
 
 from mocapd.calibrate.board import BoardKind, BoardSpec, dictionaries, first_markers
 from mocapd.calibrate.detection import BoardDetector, NotSeen, Reason, as_grey
+from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Ints
 
 _DARK = 45  # grey value under which all but the lamps of a dark picture lie
@@ -81,10 +82,25 @@ def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> NotSeen:
         and rows == max(3, -(-2 * (int(ids[-1]) + 1) // columns))
     ]
     for columns, rows in sizes:
-        if BoardDetector(replace(spec, columns=columns, rows=rows)).find(grey_of(spec, grey)):
+        if _shows(_resized(spec, columns, rows), grey):
             detail = f"it fits rows of {columns} squares, {spec.columns}x{spec.rows} was given"
             return NotSeen(index, Reason.OTHER_SIZE, detail)
     return NotSeen(index, Reason.FEW, f"{len(ids)} of {spec.columns * spec.rows // 2} markers")
+
+
+def _resized(spec: BoardSpec, columns: int, rows: int) -> BoardSpec | None:
+    """The board with so many squares; None when there is none, as with more than its dictionary has
+    markers for."""
+    try:
+        return replace(spec, columns=columns, rows=rows)
+    except ConfigError:
+        return None
+
+
+def _shows(spec: BoardSpec | None, as_printed: Bytes) -> bool:
+    if spec is None:
+        return False
+    return BoardDetector(spec).find(grey_of(spec, as_printed)) is not None
 
 
 def grey_of(spec: BoardSpec, as_printed: Bytes) -> Bytes:
@@ -115,10 +131,7 @@ def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | None:
     others = [(r, c), (c + 1, r + 1), (c - 1, r - 1), (r + 1, c + 1), (r - 1, c - 1)]
     others += [(c + 1, r), (c, r + 1), (c - 1, r), (c, r - 1)]
     for columns, rows in dict.fromkeys(others):
-        if min(columns, rows) < 3 or {columns, rows} == {c, r}:
-            continue
-        other = replace(spec, columns=columns, rows=rows)
-        if BoardDetector(other).find(grey_of(spec, grey)) is not None:
+        if {columns, rows} != {c, r} and _shows(_resized(spec, columns, rows), grey):
             detail = f"{columns}x{rows} squares are seen, {c}x{r} were given (squares, not corners)"
             return NotSeen(index, Reason.OTHER_SIZE, detail)
     return None

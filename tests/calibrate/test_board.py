@@ -28,8 +28,14 @@ def picture(board: PrintedBoard = PRINT, light: BoardLight | None = None) -> Byt
     "change",
     [
         {"columns": 2},
+        {"columns": 20000, "rows": 20000},
+        {"rows": 10**5000},
         {"square_m": 0.0},
         {"square_m": 54.0},
+        {"square_m": 1e-300, "marker_m": 1e-301},
+        {"square_m": float("nan")},
+        {"marker_m": float("nan")},
+        {"marker_m": 0.07 * (1.0 - 1e-12)},  # not smaller as OpenCV computes
         {"marker_m": 0.08},
         {"dictionary": "DICT_9X9"},
         {"columns": 12, "rows": 12, "dictionary": "DICT_4X4_50"},
@@ -40,9 +46,52 @@ def test_a_board_that_cannot_be_is_refused(change: dict[str, object]) -> None:
         replace(SPEC, **change)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"columns": 3},
+        {"rows": 3},
+        {"columns": 101},
+        {"columns": 20000, "rows": 20000},
+        {"marker_m": float("inf")},
+    ],
+)
+def test_a_chessboard_that_opencv_does_not_find_is_refused(change: dict[str, object]) -> None:
+    with pytest.raises(ConfigError, match=" -- "):
+        replace(CHESS, **change)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size_px", [(3, 5), (16, 16), (1000, 16), (640, 480)])
+@pytest.mark.parametrize(
+    "spec",
+    [
+        replace(CHESS, columns=4, rows=4),
+        replace(CHESS, columns=100, rows=100),
+        replace(SPEC, columns=3, rows=3),
+        replace(SPEC, columns=3, rows=100, square_m=0.001, marker_m=0.0005),
+        replace(SPEC, columns=44, rows=45, marker_m=0.0699),
+    ],
+    ids=str,
+)
+def test_every_board_that_is_taken_can_be_looked_for(
+    spec: BoardSpec, size_px: tuple[int, int]
+) -> None:
+    empty = np.full(size_px[::-1], 128, np.uint8)
+    assert BoardDetector(spec).find(empty) is None
+
+
+@pytest.mark.parametrize(
+    "spec", [replace(CHESS, columns=4, rows=4), replace(SPEC, dictionary="DICT_4X4_50")], ids=str
+)
+def test_why_a_board_is_not_seen_is_told_of_boards_at_the_limits(spec: BoardSpec) -> None:
+    """Its neighbours in size, which are tried too, cannot all be printed."""
+    told = why_not_seen(BoardDetector(spec), picture())
+    assert told.reason in (Reason.NOTHING, Reason.OTHER_SIZE, Reason.FEW)
+
+
 def test_the_size_is_columns_by_rows() -> None:
     assert board_size("4x5") == (4, 5)
-    for text in ("4", "4x", "x5", "-4x5", "4x5x6"):
+    for text in ("4", "4x", "x5", "-4x5", "4x5x6", "4x101", "9" * 5000 + "x5", "\u0664x5"):
         with pytest.raises(ConfigError):
             board_size(text)
 
