@@ -74,9 +74,8 @@ class BoardSpec:
                 )
             return
         # OpenCV computes in single precision, and raises where they are the same there
-        if not 0.5 * SMALLEST_SQUARE_M <= self.marker_m or not (
-            np.float32(self.marker_m) < np.float32(self.square_m)
-        ):
+        in_square = np.float32(self.marker_m) < np.float32(self.square_m)
+        if not (self.marker_m >= 0.5 * SMALLEST_SQUARE_M and in_square):
             raise ConfigError(
                 f"a marker of {self.marker_m:g} m in a square of {self.square_m:g} m",
                 _WHERE,

@@ -76,9 +76,7 @@ class BoardDetector:
         """
         grey = self.as_printed(pixels)
         try:
-            found = (
-                self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
-            )
+            found = self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
         except cv2.error as error:
             raise ConfigError(
                 f"OpenCV cannot look for a {self.spec} in a picture of"

@@ -1,10 +1,8 @@
 """The room with the board: held where cameras see it together, then laid on the floor.
 
-Commands: `floor`: the board lies on the floor now; `skip_floor`: go on with a guessed one; `solve`: with
-the moments there are.
+Its commands are `commands.BOARD_ROOM`.
 """
 
-from collections.abc import Mapping
 from dataclasses import replace
 from enum import StrEnum
 from itertools import combinations
@@ -27,6 +25,7 @@ from mocapd.wizard.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
 from mocapd.wizard.board_form import usual_board
 from mocapd.wizard.board_watch import INDEX_STEP, BoardWatch, Look
 from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
 from mocapd.wizard.draft import RoomQuality
 from mocapd.wizard.moments import Moments
 from mocapd.wizard.room_plan import plan_of
@@ -58,6 +57,8 @@ class Stage(StrEnum):
 
 class BoardRoom:
     """See the head of this file. The draft is changed when the floor is known or skipped."""
+
+    verbs = BOARD_ROOM
 
     def __init__(self, context: Context) -> None:
         draft = context.draft
@@ -117,20 +118,21 @@ class BoardRoom:
         if self._stage is Stage.COLLECT and self._context.job is None and self._due():
             self._solve()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:  # noqa: ARG002 - none has any
-        """See the head of this file."""
-        if verb == "floor":
-            self._floor_by_hand()
-        elif verb == "skip_floor":
-            self._skip_floor()
-        elif verb == "solve":
-            if self._stage is not Stage.COLLECT or not self._moments.linked(FEWEST_SHARED):
-                raise InputError(
-                    "there is nothing to solve yet", "room", "show the board to pairs of cameras"
-                )
-            self._asked = True
-        else:
-            raise InputError(f"no command {verb!r} in this step", "room", "reload the page")
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Floor():
+                self._floor_by_hand()
+            case SkipFloor():
+                self._skip_floor()
+            case Solve():
+                if self._stage is not Stage.COLLECT or not self._moments.linked(FEWEST_SHARED):
+                    raise InputError(
+                        "there is nothing to solve yet",
+                        "room",
+                        "show the board to pairs of cameras",
+                    )
+                self._asked = True
 
     def job_failed(self, error: MocapdError) -> None:
         """See Step."""

@@ -1,12 +1,8 @@
 """The step Body: the stature is typed, the proportions are measured while the wearer bends the arms.
 
-Commands:
-- `stature` {m}: how tall the wearer is without shoes [m].
-- `measure`: look at the wearer and work out the proportions; also again.
-- `skip`: go on with the proportions that people of this stature have.
+Its commands are `commands.BODY`.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -24,6 +20,7 @@ from mocapd.wizard.body_measuring import (
     measure,
 )
 from mocapd.wizard.bone_shapes import bone_shapes
+from mocapd.wizard.commands import BODY, Command, MeasureBody, SkipBody, Stature
 from mocapd.wizard.step import (
     Context,
     Json,
@@ -36,13 +33,12 @@ from mocapd.wizard.step import (
 )
 from mocapd.wizard.stroke_images import encode_picture
 
-_SHORTEST_M, _TALLEST_M = 0.8, 2.3
-
 
 class BodyStep:
     """See the module."""
 
     name = StepName.BODY
+    verbs = BODY
 
     def __init__(self, context: Context, make_tracker: MakeTracker = colour_tracker) -> None:
         self._context, self._make_tracker = context, make_tracker
@@ -67,24 +63,23 @@ class BodyStep:
             self._measure_next = False
             self._start()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        """See the module."""
-        if verb == "stature":
-            self._set_stature(args.get("m"))
-        elif verb == "measure":
-            missing = self._missing()
-            if missing is not None:
-                raise InputError(missing.what, "body", missing.fix)
-            self._stop()
-            self._measure_next, self._skipped = True, False
-        elif verb == "skip":
-            if self._context.draft.stature_m is None:
-                raise InputError("the stature is not known", "body", "type it first")
-            self._stop()
-            self._forget()
-            self._skipped = True
-        else:
-            raise InputError(f"no command {verb!r}", "body", "reload the page")
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Stature():
+                self._set_stature(command.m)
+            case MeasureBody():
+                missing = self._missing()
+                if missing is not None:
+                    raise InputError(missing.what, "body", missing.fix)
+                self._stop()
+                self._measure_next, self._skipped = True, False
+            case SkipBody():
+                if self._context.draft.stature_m is None:
+                    raise InputError("the stature is not known", "body", "type it first")
+                self._stop()
+                self._forget()
+                self._skipped = True
 
     def job_failed(self, error: MocapdError) -> None:
         """It can be measured again, or skipped."""
@@ -97,20 +92,12 @@ class BodyStep:
 
     # -- work ------------------------------------------------------------------------------------
 
-    def _set_stature(self, m: Json) -> None:
-        if isinstance(m, bool) or not isinstance(m, int | float) or not math.isfinite(m):
-            raise InputError(f"a stature of {m!r}", "body", "type it in metres, like 1.75")
-        if not _SHORTEST_M <= m <= _TALLEST_M:
-            raise InputError(
-                f"a stature of {m:g} m",
-                "body",
-                f"type it in metres, {_SHORTEST_M} to {_TALLEST_M}: 1.75 is 175 cm or 5 ft 9 in",
-            )
+    def _set_stature(self, m: float) -> None:
         context = self._context
         if context.draft.stature_m == m:
             return
         self._stop()
-        context.draft = replace(context.draft, stature_m=float(m))
+        context.draft = replace(context.draft, stature_m=m)
         self._forget()  # proportions are relative to the stature
 
     def _forget(self) -> None:

@@ -1,7 +1,6 @@
 """The step Cameras: each is there, names its trouble, settles, and is locked.
 
-Commands: `leave_out` {camera}, `take_in` {camera}, `name` {camera, name}, `mode` {camera, size_px:
-[w, h], fps_hz} (one that its node lists), `lock` {camera}: let it settle and lock it anew.
+Its commands are `commands.CAMERAS`.
 
 `details`: `cameras`: [{id, label, source, size_px, fps_hz, measured_hz, taken, phase, share, lockable,
 controls: {name: value}, problems: [{what, where, fix}], offer: {size_px, fps_hz} or null}], `others`:
@@ -11,6 +10,8 @@ controls: {name: value}, problems: [{what, where, fix}], offer: {size_px, fps_hz
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 
+from mocapd.boundary.numbers import brief
+from mocapd.boundary.urls import without_password
 from mocapd.capture.listing import CameraInfo
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.usb_bandwidth import Mode
@@ -20,6 +21,16 @@ from mocapd.wizard.camera_draft import with_cameras
 from mocapd.wizard.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.camera_locks import CameraLocks
 from mocapd.wizard.camera_nodes import node_of, offers, unused_nodes
+from mocapd.wizard.commands import (
+    CAMERAS,
+    ChangeMode,
+    Command,
+    LeaveOut,
+    Lock,
+    Name,
+    OfCamera,
+    TakeIn,
+)
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.light_check import light_problems
 from mocapd.wizard.picture_watch import PictureWatch
@@ -27,7 +38,6 @@ from mocapd.wizard.step import Context, Json, Problem, StepName, StepState, Step
 
 _LIST_EVERY_NS = 4 * NS_PER_S
 _LIGHT_EVERY_NS = NS_PER_S // 2
-_LONGEST_NAME = 40
 
 
 class CamerasStep:
@@ -38,6 +48,7 @@ class CamerasStep:
     """
 
     name = StepName.CAMERAS
+    verbs = CAMERAS
 
     def __init__(
         self,
@@ -86,25 +97,25 @@ class CamerasStep:
         if self._ready:
             self._write_draft()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
+    def command(self, command: Command) -> None:
         """See Step."""
-        name = str(args.get("camera", ""))
+        assert isinstance(command, OfCamera)
+        name = command.camera
         if name not in self._cameras:
-            raise InputError(f"there is no camera {name!r}", "the page", "reload the page")
-        if verb == "leave_out":
-            if self._taken == [name]:
-                raise InputError("one camera must stay", name, "take another in first")
-            self._left_out.add(name)
-        elif verb == "take_in":
-            self._left_out.discard(name)
-        elif verb == "name":
-            self._call(name, str(args.get("name", "")))
-        elif verb == "mode":
-            self._change_mode(name, args)
-        elif verb == "lock":
-            self._locking[name].again()
-        else:
-            raise InputError(f"no command {verb!r}", "the page", "reload the page")
+            raise InputError(f"there is no camera {brief(name)}", "the page", "reload the page")
+        match command:
+            case LeaveOut():
+                if self._taken == [name]:
+                    raise InputError("one camera must stay", name, "take another in first")
+                self._left_out.add(name)
+            case TakeIn():
+                self._left_out.discard(name)
+            case Name():
+                self._call(name, command.name)
+            case ChangeMode():
+                self._change_mode(name, command.size_px, command.fps_hz)
+            case Lock():
+                self._locking[name].again()
 
     def job_failed(self, error: MocapdError) -> None:
         """See Step. Only the list of nodes is a job; the cameras in use do not depend on it."""
@@ -168,29 +179,26 @@ class CamerasStep:
 
     def _call(self, name: str, label: str) -> None:
         label = label.strip()
-        if len(label) > _LONGEST_NAME or not label.isprintable():
-            raise InputError(
-                "this name does not do", name, f"take up to {_LONGEST_NAME} printable characters"
-            )
+        if not label.isprintable():
+            raise InputError(Name.refused, name, Name.fix)
         others = (self._label(other) for other in self._cameras if other != name)
         if label and label in others:
             raise InputError(f"another camera is called {label!r}", name, "take another name")
         self._cameras[name] = replace(self._cameras[name], label=label)
 
-    def _change_mode(self, name: str, args: Mapping[str, Json]) -> None:
-        camera, size, fps_hz = self._cameras[name], args.get("size_px"), args.get("fps_hz")
+    def _change_mode(self, name: str, size_px: tuple[int, int], fps_hz: float) -> None:
+        camera = self._cameras[name]
         node = node_of(camera, self._nodes)
-        found = [
-            (one.size_px, rate_hz)
-            for one in (node.formats if node is not None else ())
-            for rate_hz in one.rates_hz
-            if list(one.size_px) == size and rate_hz == fps_hz
-        ]
-        if not found or not self._locks.can_lock(name):
-            raise InputError(f"has no mode {size} at {fps_hz} Hz", name, "take one that is offered")
-        size_px, rate_hz = found[0]
-        self._locks.change_mode(name, size_px, rate_hz)
-        self._cameras[name] = replace(camera, size_px=size_px, fps_hz=rate_hz)
+        formats = node.formats if node is not None else ()
+        there = any(one.size_px == size_px and fps_hz in one.rates_hz for one in formats)
+        if not there or not self._locks.can_lock(name):
+            raise InputError(
+                f"has no mode {size_px[0]}x{size_px[1]} at {fps_hz:g} Hz",
+                name,
+                "take one that is offered",
+            )
+        self._locks.change_mode(name, size_px, fps_hz)
+        self._cameras[name] = replace(camera, size_px=size_px, fps_hz=fps_hz)
         self._locking[name] = self._new_locking(self._cameras[name])
 
     def _list(self, _tell: Tell) -> tuple[CameraInfo, ...]:
@@ -263,7 +271,7 @@ class CamerasStep:
         return {
             "id": name,
             "label": camera.label,
-            "source": camera.source,
+            "source": without_password(camera.source),
             "size_px": list(camera.size_px),
             "fps_hz": camera.fps_hz,
             "measured_hz": round(status.fps_hz, 1) if status is not None else 0.0,
@@ -283,7 +291,7 @@ def _node_row(one: CameraInfo) -> Json:
     return {
         "node": str(one.node) if one.node else "",
         "name": one.name,
-        "source": one.spec,
+        "source": without_password(one.spec),
         "problem": one.problem,
         "fix": one.fix,
         "note": one.note or ("" if one.problem else "not in use: start the setup again to use it"),

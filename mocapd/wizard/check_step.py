@@ -1,6 +1,6 @@
 """Check: the tracker runs on what was found, five seconds of moving are judged, and it is saved.
 
-Commands: `measure` (judge another five seconds), `save`.
+Its commands are `commands.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
 `lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before).
 """
@@ -25,13 +25,13 @@ from mocapd.wizard.check_verdict import (
     room_problems,
     verdict_json,
 )
+from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saved_lenses import store_lenses
 from mocapd.wizard.saving import calibrated_of, save_draft
 from mocapd.wizard.step import (
     Context,
-    Json,
     Problem,
     Scene,
     StepName,
@@ -66,6 +66,7 @@ class CheckStep:
     picture by whoever serves it: at a tick the newest body is not the newest picture's."""
 
     name = StepName.CHECK
+    verbs = CHECK
 
     def __init__(
         self, context: Context, settings: CheckSettings, shown: NewestBody, died: OnDeath
@@ -116,16 +117,15 @@ class CheckStep:
                 self._seek()
                 self._problems = (_NOBODY, *self._slowness())
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:  # noqa: ARG002  as every step
+    def command(self, command: Command) -> None:
         """See Step."""
-        if verb == "measure":
-            if self._tracking is None:
-                raise InputError("the tracker does not run yet", "check", "wait a moment")
-            self._seek()
-        elif verb == "save":
-            self._save()
-        else:
-            raise InputError(f"no command {verb!r} in this step", "the page", "reload the page")
+        match command:
+            case MeasureAgain():
+                if self._tracking is None:
+                    raise InputError("the tracker does not run yet", "check", "wait a moment")
+                self._seek()
+            case Save():
+                self._save()
 
     def job_failed(self, error: MocapdError) -> None:
         """See Step."""

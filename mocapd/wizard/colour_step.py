@@ -1,12 +1,7 @@
 """The step Colour: a picture of each camera is frozen, strokes are proposed and corrected, the light is solved.
 
-Commands:
-- `freeze` {seconds}: take the pictures after this many seconds, 3 unless told; also takes them again.
-- `propose`: propose strokes anew on the pictures that are there.
-- `strokes` {camera, png_base64, by}: these are the camera's strokes now, colour ids as an 8-bit grey
-  PNG; `by` names the page that drew them, so that it knows its own when it sees them again.
-- `personal` {on}: use the colours of the wearer's own shirt, not the standard's. On from the start,
-  as soon as every colour has strokes: no two printers and dyes agree.
+Its commands are `commands.COLOUR`. The wearer's own colours are used from the start, as soon as every
+colour has strokes: no two printers and dyes agree.
 """
 
 import math
@@ -15,11 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from mocapd.body.shirt import standard_shirt
+from mocapd.boundary.numbers import brief
 from mocapd.calibrate.stroke_check import StrokeProblem
 from mocapd.calibrate.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
 from mocapd.types import Bytes
 from mocapd.wizard.colour_solving import CameraSolution, Drawn, Solution, solve
+from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.draft import DraftColours
 from mocapd.wizard.freezing import Countdown, Frozen
 from mocapd.wizard.proposing import LoadDatabase, pose_database, propose
@@ -37,7 +34,6 @@ from mocapd.wizard.step import (
 from mocapd.wizard.stroke_images import decode_strokes, encode_picture, encode_strokes
 
 _COUNTDOWN_S = 3.0
-_LONGEST_COUNTDOWN_S = 30.0
 _SERVICE = "mocapd"  # who drew proposed strokes
 
 
@@ -61,6 +57,7 @@ class ColourStep:
     """See the module."""
 
     name = StepName.COLOUR
+    verbs = COLOUR
 
     def __init__(self, context: Context, load: LoadDatabase = pose_database) -> None:
         self._context, self._load = context, load
@@ -107,25 +104,25 @@ class ColourStep:
         elif self._to_solve:
             self._start_solving()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        """See the module."""
-        if verb == "freeze":
-            self._countdown = Countdown(self._now_ns, _wait_s(args.get("seconds")))
-        elif verb == "propose":
-            if not self._canvases:
-                raise InputError("there is no picture yet", "colour", "take the pictures first")
-            self._to_propose = True
-        elif verb == "strokes":
-            canvas = self._canvas_of(args.get("camera"))
-            h, w = canvas.drawn.pixels.shape[:2]
-            strokes = decode_strokes(args.get("png_base64"), (w, h), str(args["camera"]))
-            canvas.draw(strokes, canvas.drawn.shirt, str(args.get("by", "")))
-            self._to_solve = True
-        elif verb == "personal":
-            self._personal = bool(args.get("on"))
-            self._to_solve = True
-        else:
-            raise InputError(f"no command {verb!r}", "colour", "reload the page")
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Freeze():
+                wait_s = _COUNTDOWN_S if command.seconds is None else command.seconds
+                self._countdown = Countdown(self._now_ns, wait_s)
+            case Propose():
+                if not self._canvases:
+                    raise InputError("there is no picture yet", "colour", "take the pictures first")
+                self._to_propose = True
+            case Strokes():
+                canvas = self._canvas_of(command.camera)
+                h, w = canvas.drawn.pixels.shape[:2]
+                strokes = decode_strokes(command.png_base64, (w, h), command.camera)
+                canvas.draw(strokes, canvas.drawn.shirt, command.by)
+                self._to_solve = True
+            case Personal():
+                self._personal = command.on
+                self._to_solve = True
 
     def job_failed(self, error: MocapdError) -> None:
         """Drawing by hand always works."""
@@ -200,9 +197,9 @@ class ColourStep:
         }
         context.draft = replace(context.draft, colours=colours, personal=self._solution.personal)
 
-    def _canvas_of(self, camera: Json) -> _Canvas:
-        if not isinstance(camera, str) or camera not in self._canvases:
-            raise InputError(f"no picture of {camera!r}", "colour", "take the pictures first")
+    def _canvas_of(self, camera: str) -> _Canvas:
+        if camera not in self._canvases:
+            raise InputError(f"no picture of {brief(camera)}", "colour", "take the pictures first")
         return self._canvases[camera]
 
     # -- view ------------------------------------------------------------------------------------
@@ -336,18 +333,6 @@ def _canvas(pixels: Bytes, strokes: Bytes | None = None) -> _Canvas:
     if strokes is None:
         strokes = pixels[..., 0] * 0
     return _Canvas(Drawn(pixels, strokes), encode_picture(pixels), encode_strokes(strokes))
-
-
-def _wait_s(seconds: Json) -> float:
-    if seconds is None:
-        return _COUNTDOWN_S
-    if isinstance(seconds, bool) or not isinstance(seconds, int | float):
-        raise InputError(f"cannot wait {seconds!r}", "freeze", "give seconds")
-    if not 0.0 <= seconds <= _LONGEST_COUNTDOWN_S:
-        raise InputError(
-            f"cannot wait {seconds} s", "freeze", f"give 0 to {_LONGEST_COUNTDOWN_S:g} seconds"
-        )
-    return float(seconds)
 
 
 def _problem(one: StrokeProblem, camera: str) -> Problem:

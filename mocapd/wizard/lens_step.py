@@ -1,15 +1,14 @@
 """The step Lens: the board is shown to every camera, whose lens is solved as soon as enough was seen.
 
-Commands: `board` {kind, columns, rows, square_mm, marker_mm, dictionary, inverted, legacy}, each may be
-left out; `ruler` {mm}: how long the printed 100 mm are; `use_saved` {camera}, all without one;
-`measure` {camera}: not the saved lens but a new one; `finish`: with the lenses as good as they are.
+Its commands are `commands.LENS`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from mocapd.boundary.numbers import brief
 from mocapd.calibrate.board import BoardSpec, corners_m
 from mocapd.calibrate.lens import Lens
 from mocapd.calibrate.view_picking import PickedViews
@@ -18,12 +17,12 @@ from mocapd.wizard.board_advice import BoardAdvice
 from mocapd.wizard.board_form import board_of, form_of, same_print, scaled_board, usual_board
 from mocapd.wizard.board_watch import BoardWatch, Look
 from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
 from mocapd.wizard.lens_views import LensCamera, Offered
 from mocapd.wizard.moments import Moments
 from mocapd.wizard.saved_lenses import SavedLens, lens_for, read_lenses
 from mocapd.wizard.step import (
     Context,
-    Json,
     Problem,
     Scene,
     Shape,
@@ -40,6 +39,7 @@ class LensStep:
     """Collects pictures of the board, of all cameras at once, and solves lens after lens."""
 
     name = StepName.LENS
+    verbs = LENS
 
     def __init__(self, context: Context) -> None:
         """Raises InputError without cameras."""
@@ -80,21 +80,21 @@ class LensStep:
         if self._context.job is None:
             self._solve_next()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        """See the head of this file."""
-        if verb == "board":
-            self._change_board(board_of(args, self._spec))
-        elif verb == "ruler":
-            self._change_board(scaled_board(self._spec, args.get("mm")))
-        elif verb == "use_saved":
-            one = [self._named(args)] if "camera" in args else list(self._cameras.values())
-            self._use_saved(one)
-        elif verb == "measure":
-            self._named(args).use(None)
-        elif verb == "finish":
-            self._finish()
-        else:
-            raise InputError(f"no command {verb!r} in this step", "lens", "reload the page")
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Board():
+                self._change_board(board_of(command, self._spec))
+            case Ruler():
+                self._change_board(scaled_board(self._spec, command.mm))
+            case UseSaved(camera=None):
+                self._use_saved(list(self._cameras.values()))
+            case UseSaved(camera=str(camera)):
+                self._use_saved([self._named(camera)])
+            case MeasureLens():
+                self._named(command.camera).use(None)
+            case Finish():
+                self._finish()
 
     def job_failed(self, error: MocapdError) -> None:
         """See Step."""
@@ -249,11 +249,10 @@ class LensStep:
             one.use(one.offered)
         self._write_when_done()
 
-    def _named(self, args: Mapping[str, Json]) -> LensCamera:
-        one = self._cameras.get(str(args.get("camera")))
-        if one is None:
-            raise InputError(f"no camera {args.get('camera')!r}", "lens", "reload the page")
-        return one
+    def _named(self, camera: str) -> LensCamera:
+        if camera not in self._cameras:
+            raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
+        return self._cameras[camera]
 
     # -- what is told ----------------------------------------------------------------------------
 

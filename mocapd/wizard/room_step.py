@@ -1,7 +1,6 @@
 """The step Room: where the cameras stand, with the board or from the wearer alone.
 
-Commands: `method` {method}: "board" or "wearer" (`wearer`: true does the same); the others are the
-method's own.
+Its commands are `commands.ROOM` and the method's own.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,16 +10,19 @@ from typing import Protocol
 
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.board_room import BoardRoom
-from mocapd.wizard.step import Context, Json, StepName, StepView
+from mocapd.wizard.commands import ROOM, Command, Method, Verbs
+from mocapd.wizard.step import Context, StepName, StepView
 from mocapd.wizard.wearer_room import WearerRoom
 
 
 class RoomMethod(Protocol):
     """A way to find the room: as a Step, which see, but for the name."""
 
+    @property
+    def verbs(self) -> Verbs: ...
     def enter(self) -> None: ...
     def tick(self, now_ns: int) -> None: ...
-    def command(self, verb: str, args: Mapping[str, Json]) -> None: ...
+    def command(self, command: Command) -> None: ...
     def job_failed(self, error: MocapdError) -> None: ...
     def view(self) -> StepView: ...
     def leave(self) -> None: ...
@@ -59,12 +61,17 @@ class RoomStep:
         """See Step."""
         self._method.tick(now_ns)
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        """See the head of this file."""
-        if verb == "method":
-            self._choose(args)
+    @property
+    def verbs(self) -> Verbs:
+        """See Step."""
+        return {**self._method.verbs, **ROOM}
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        if isinstance(command, Method):
+            self._choose("wearer" if command.wearer else command.method)
         else:
-            self._method.command(verb, args)
+            self._method.command(command)
 
     def job_failed(self, error: MocapdError) -> None:
         """See Step."""
@@ -80,10 +87,7 @@ class RoomStep:
         """See Step."""
         self._method.leave()
 
-    def _choose(self, args: Mapping[str, Json]) -> None:
-        name = "wearer" if args.get("wearer") is True else str(args.get("method", "board"))
-        if name not in METHODS:
-            raise InputError(f"no method {name!r}", "room", "one of " + ", ".join(METHODS))
+    def _choose(self, name: str) -> None:
         if name == self._method_name:
             return
         if self._context.job is not None:

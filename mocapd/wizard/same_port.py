@@ -1,6 +1,6 @@
 """A webcam in another USB port than when it was calibrated: asked about once, in the step Cameras.
 
-Command: `same_port` {camera, same: true | false}. Details: moved: [{camera, was, now}] not yet answered.
+Its command is `commands.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -9,8 +9,9 @@ from dataclasses import asdict, dataclass, replace
 from mocapd.calibrate.calibration_file import calibration_path, rewrite_sources
 from mocapd.capture.identity import PREFIX, WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.step import Context, Json, Problem, Step, StepState, StepView, T
+from mocapd.wizard.step import Context, Problem, Step, StepState, StepView, T
 from mocapd.wizard.wizard import MakeStep
 
 
@@ -97,15 +98,20 @@ class AsksForPorts:
         """See Step."""
         self._step.leave()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
+    @property
+    def verbs(self) -> Verbs:
         """See Step."""
-        if verb != "same_port":
-            self._step.command(verb, args)
+        return {**self._step.verbs, **PORTS}
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        if not isinstance(command, SamePort):
+            self._step.command(command)
             return
-        asked = [one for one in self._moved if one.camera == args.get("camera")]
-        if not asked or not isinstance(args.get("same"), bool):
+        asked = [one for one in self._moved if one.camera == command.camera]
+        if not asked:
             raise InputError("nothing is asked of this camera", "the page", "reload the page")
-        if args["same"]:
+        if command.same:
             self._remember(asked[0])
         else:
             self._context.draft = other_camera(self._context.draft, asked[0])

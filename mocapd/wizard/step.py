@@ -9,6 +9,7 @@ from typing import Protocol, TypeVar
 from mocapd.capture.thread import CaptureStatus
 from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.draft import Draft
 
 T = TypeVar("T")
@@ -131,10 +132,15 @@ class Context(Protocol):
 class Step(Protocol):
     """One step. Made anew when it is entered or begun again; nothing of it is called by two threads.
 
-    A command that does not fit raises InputError, whose text is shown; the step goes on as it was.
+    A command that does not fit raises a MocapdError, whose text is shown; the step goes on as it was.
     """
 
     name: StepName
+
+    @property
+    def verbs(self) -> Verbs:
+        """The commands it takes now."""
+        ...
 
     def enter(self) -> None:
         """It is shown now."""
@@ -144,8 +150,8 @@ class Step(Protocol):
         """About 20 times a second: look at the hub's newest frames, start jobs, change state."""
         ...
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        """Something the person did on the page."""
+    def command(self, command: Command) -> None:
+        """Something the person did on the page: one of `verbs`."""
         ...
 
     def job_failed(self, error: MocapdError) -> None:

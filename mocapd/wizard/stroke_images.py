@@ -1,46 +1,36 @@
 """Strokes and pictures as the page's files: grey PNG of colour ids, JPEG of what was frozen, PNG of what is seen."""
 
 import base64
-import binascii
 
 import cv2
 import numpy as np
 
 from mocapd.body.shirt import N_COLOURS, standard_shirt
-from mocapd.errors import InputError
+from mocapd.boundary.pictures import decode_picture
+from mocapd.errors import InputError, MalformedError
 from mocapd.types import Bytes
-from mocapd.wizard.step import Json
 
-_LARGEST = 32 << 20  # bytes of a PNG that a page may send
 _ROOM = 0.35  # brightness of what is not the shirt
 _RELOAD = "reload the page and draw again"
 
 
-def decode_strokes(png_base64: Json, size_px: tuple[int, int], camera: str) -> Bytes:
+def decode_strokes(png_base64: str, size_px: tuple[int, int], camera: str) -> Bytes:
     """Strokes (h,w) 0..10 of an 8-bit grey PNG (or one in colour whose channels agree) in base64.
 
     size_px: width and height of the camera's frozen picture. Raises InputError.
     """
-    if not isinstance(png_base64, str) or len(png_base64) > _LARGEST:
-        raise InputError("the strokes did not come as a picture", camera, _RELOAD)
     try:
-        data = np.frombuffer(base64.b64decode(png_base64, validate=True), np.uint8)
-    except binascii.Error:
+        data = base64.b64decode(png_base64, validate=True)
+    except ValueError:  # letters beyond ASCII; binascii.Error is one too
         raise InputError("the strokes are no base64", camera, _RELOAD) from None
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
-    if image is None or image.dtype != np.uint8:
-        raise InputError("the strokes are no 8-bit PNG", camera, _RELOAD)
+    try:
+        image = decode_picture(data, cv2.IMREAD_UNCHANGED, size_px)
+    except MalformedError as error:
+        raise InputError(f"the picture of the strokes {error}", camera, _RELOAD) from None
     if image.ndim == 3:
         if (image[..., :3] != image[..., :1]).any():
             raise InputError("the strokes are painted in colours, not in ids", camera, _RELOAD)
         image = image[..., 0]
-    w, h = size_px
-    if image.shape != (h, w):
-        raise InputError(
-            f"the strokes are {image.shape[1]}x{image.shape[0]} pixels, the picture is {w}x{h}",
-            camera,
-            _RELOAD,
-        )
     if image.max() > N_COLOURS:
         raise InputError(f"there is no colour {image.max()}", camera, _RELOAD)
     return np.ascontiguousarray(image, dtype=np.uint8)

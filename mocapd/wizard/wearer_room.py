@@ -1,19 +1,19 @@
 """The room without a board: the wearer in the shirt walks about for 20 to 30 s.
 
-Commands: `walk`: begin, also again; `stop`: end early, nothing is changed.
+Its commands are `commands.WEARER_ROOM`.
 
 It needs lenses, colours and stature. A room that is there already, of cameras that were bumped since, is
 where the search begins.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.commands import WEARER_ROOM, Command, StartWalk, StopWalk
 from mocapd.wizard.draft import RoomQuality
 from mocapd.wizard.proposing import LoadDatabase, pose_database
 from mocapd.wizard.room_plan import plan_of_cameras
@@ -27,6 +27,7 @@ class WearerRoom:
     """See the head of this file. The draft is changed when the room is found."""
 
     name = StepName.ROOM
+    verbs = WEARER_ROOM
 
     def __init__(
         self,
@@ -58,18 +59,17 @@ class WearerRoom:
             self._walk_next = False
             self._start()
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:  # noqa: ARG002 - none has any
-        """See the head of this file."""
-        if verb == "walk":
-            missing = self._missing()
-            if missing is not None:
-                raise InputError(missing.what, missing.where, missing.fix)
-            self._stop()
-            self._walk_next = True
-        elif verb == "stop":
-            self._stop()
-        else:
-            raise InputError(f"no command {verb!r} in this step", "room", "reload the page")
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case StartWalk():
+                missing = self._missing()
+                if missing is not None:
+                    raise InputError(missing.what, missing.where, missing.fix)
+                self._stop()
+                self._walk_next = True
+            case StopWalk():
+                self._stop()
 
     def job_failed(self, error: MocapdError) -> None:
         """It can be begun again; the room that was there stays."""

@@ -1,5 +1,6 @@
 """The wizard: which step is shown, the thread it works in, and what the page may see of it."""
 
+import logging
 import queue
 import threading
 from collections.abc import Callable, Mapping
@@ -8,11 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from mocapd.boundary.numbers import brief
 from mocapd.capture.thread import CaptureStatus
 from mocapd.clock import monotonic_ns
-from mocapd.errors import InputError, MocapdError
+from mocapd.errors import InputError
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.wizard.commands import OF_WIZARD, Again, Go, Next, read_command
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.numeric_trouble import EXPECTED, named
 from mocapd.wizard.step import (
     Context,
     Json,
@@ -27,6 +31,11 @@ from mocapd.wizard.step import (
 )
 
 _TICK_S = 0.05
+_MOST_COMMANDS = 32  # that wait to be taken, of up to 8 MB each; a person never gets there
+
+_log = logging.getLogger(__name__)
+
+_TOO_MANY = Problem("too many commands at once", "the page", "wait until it answers")
 
 MakeStep = Callable[[Context], Step]
 
@@ -71,7 +80,8 @@ class Wizard:
         self._steps, self._statuses, self._died = steps, statuses, died
         self._scene, self._on_saved = scene, on_saved
         self._names = tuple(name for name in StepName if name in steps)
-        self._commands: queue.SimpleQueue[tuple[str, Mapping[str, Json]]] = queue.SimpleQueue()
+        self._commands: queue.Queue[tuple[str, Mapping[str, Json]]] = queue.Queue(_MOST_COMMANDS)
+        self._flooded = threading.Event()  # a command was not even queued
         self._stopping = threading.Event()
         self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
         self._job: Future[Any] | None = None
@@ -82,6 +92,7 @@ class Wizard:
             self._reached |= set(StepName)
         self._saved = False  # since the start
         self._refused: Problem | None = None
+        self._stumbled = ""  # what the last tick ended in, if it did
         self._step: Step = steps[first](self)
         self._changed = threading.Condition()  # guards the view
         self._view = self._snapshot(0)
@@ -102,8 +113,11 @@ class Wizard:
         return not self._thread.is_alive()
 
     def send(self, verb: str, args: Mapping[str, Json] | None = None) -> None:
-        """A command of the page: `go` {step}, `next`, `again`, or one of the step's own."""
-        self._commands.put((verb, args or {}))
+        """A command of the page: one of `commands.OF_WIZARD`, or of the step's own."""
+        try:
+            self._commands.put_nowait((verb, args or {}))
+        except queue.Full:
+            self._flooded.set()
 
     def view(self) -> WizardView:
         """The newest snapshot."""
@@ -161,7 +175,7 @@ class Wizard:
             self._step.enter()
             while not self._stopping.is_set():
                 self._look_after_job()
-                self._step.tick(monotonic_ns())
+                self._tick()
                 self._publish()
                 self._take_commands()
             self._step.leave()
@@ -175,13 +189,22 @@ class Wizard:
         if job is None or done is None or not job.done():
             return
         self._job = self._job_done = None
-        error = job.exception()
-        if isinstance(error, MocapdError):
-            self._step.job_failed(error)
-        elif error is not None:
-            raise error
-        else:
+        try:
             done(job.result())
+        except EXPECTED as error:
+            self._step.job_failed(named(error, self._step.name))
+
+    def _tick(self) -> None:
+        """Trouble is told where refusals are, and tried again with the next tick."""
+        try:
+            self._step.tick(monotonic_ns())
+            self._stumbled = ""
+        except EXPECTED as error:
+            told = named(error, self._step.name)
+            if str(told) != self._stumbled:  # not twenty times a second
+                self._stumbled = str(told)
+                _log.warning("%s", told)
+            self._refused = Problem.of(told)
 
     def _take_commands(self) -> None:
         """Waits a tick for the first; takes all that are there."""
@@ -192,29 +215,50 @@ class Wizard:
             except queue.Empty:
                 return
             timeout_s = 0.0
-            try:
-                self._take(verb, args)
-                self._refused = None
-            except InputError as error:
-                self._refused = Problem.of(error)
+            self._refused = self._refusal_of(verb, args)
+            if self._commands.empty() and self._flooded.is_set():
+                self._flooded.clear()
+                self._refused = _TOO_MANY
             self._publish()
 
+    def _refusal_of(self, verb: str, args: Mapping[str, Json]) -> Problem | None:
+        """Take a command; why it was refused, None when it was not."""
+        try:
+            self._take(verb, args)
+        except EXPECTED as error:
+            return Problem.of(named(error, self._step.name))
+        # Arguments were checked, so this is a bug of ours. It is not worth a setup that took a person
+        # a quarter of an hour: what the command did is doubtful, what was found before it is not.
+        except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+            _log.exception("a bug in mocapd: the command %r of the step %s", verb, self._step.name)
+            return Problem(
+                f"this went wrong inside mocapd ({type(error).__name__})",
+                self._step.name,
+                "press “Start again”, and report what mocapd has logged",
+            )
+        return None
+
     def _take(self, verb: str, args: Mapping[str, Json]) -> None:
-        if verb == "go":
-            names = {name.value: name for name in self._names}
-            if args.get("step") not in names:
-                raise InputError(f"no step {args.get('step')!r}", "the page", "reload the page")
-            self._show(names[str(args["step"])])
-        elif verb == "next":
-            if self._step.view().state is not StepState.DONE:
-                raise InputError("this step is not done yet", self._step.name, "finish it first")
-            at = self._names.index(self._step.name)
-            if at + 1 < len(self._names):
-                self._show(self._names[at + 1])
-        elif verb == "again":
-            self._show(self._step.name)
-        else:
-            self._step.command(verb, args)
+        """Raises MocapdError when it is refused."""
+        verbs = {**self._step.verbs, **OF_WIZARD}
+        match read_command(verbs, verb, args, self._step.name):
+            case Go(step=name):
+                names = {name.value: name for name in self._names}
+                if name not in names:
+                    raise InputError(f"no step {brief(name)}", "the page", "reload the page")
+                self._show(names[name])
+            case Next():
+                if self._step.view().state is not StepState.DONE:
+                    raise InputError(
+                        "this step is not done yet", self._step.name, "finish it first"
+                    )
+                at = self._names.index(self._step.name)
+                if at + 1 < len(self._names):
+                    self._show(self._names[at + 1])
+            case Again():
+                self._show(self._step.name)
+            case command:
+                self._step.command(command)
 
     def _show(self, name: StepName) -> None:
         step = self._steps[name](self)  # refused when what it builds on is missing: this one stays

@@ -1,7 +1,7 @@
 """A host of the page without daemon: cameras whose pictures a test hands in, a body, a step that listens."""
 
-from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -16,20 +16,32 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.trackers.canned.tracker import CannedParams, canned_pose
 from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
-from mocapd.wizard.step import Context, Json, Problem, Shape, StepName, StepState, StepView
+from mocapd.wizard.commands import Command, Verbs
+from mocapd.wizard.step import Context, Problem, Shape, StepName, StepState, StepView
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring
 
 OVERLAY = Shape("text", ((10.0, 40.0),), "hint", "seen")
 
 
+class Said(Command, frozen=True):
+    """Something that fits."""
+
+    png: str = ""
+
+
+class Bad(Said, frozen=True):
+    """Something that does not."""
+
+
 class ListeningStep:
-    """Keeps what it is told; `bad` does not fit, `long` makes it say as much as its argument asks."""
+    """Keeps what it is told; `bad` does not fit."""
 
     name = StepName.CAMERAS
+    verbs: Verbs = MappingProxyType({"rename": Said, "strokes": Said, "good": Said, "bad": Bad})
 
     def __init__(self, context: Context) -> None:
-        self.commands: list[tuple[str, Mapping[str, Json]]] = []
+        self.commands: list[Said] = []
         self._names = context.hub.names
 
     def enter(self) -> None:
@@ -38,10 +50,11 @@ class ListeningStep:
     def tick(self, now_ns: int) -> None:
         """Nothing to do."""
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        if verb == "bad":
+    def command(self, command: Command) -> None:
+        assert isinstance(command, Said)
+        if isinstance(command, Bad):
             raise InputError("strokes for 3 of 10 colours", "cam0", "paint the others")
-        self.commands.append((verb, args))
+        self.commands.append(command)
 
     def job_failed(self, error: MocapdError) -> None:
         """It has no job."""
@@ -53,7 +66,7 @@ class ListeningStep:
             0.4,
             (Problem("too dark", "cam1", "switch on a lamp"),),
             dict.fromkeys(self._names, (OVERLAY,)),
-            {"lengths": [len(str(args)) for _, args in self.commands], "picture": "strokes/1"},
+            {"lengths": [len(one.png) for one in self.commands], "picture": "strokes/1"},
             {"strokes/1": b"\x89PNG and so on"},
         )
 

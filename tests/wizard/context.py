@@ -8,8 +8,15 @@ from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Bytes, Frame
+from mocapd.wizard.commands import read_command
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Scene, Step, T, Tell
+
+
+def do(step: Step, verb: str, args: Mapping[str, object] | None = None) -> None:
+    """What the page does: a command is read, and taken. Raises MocapdError when it is refused."""
+    step.command(read_command(step.verbs, verb, args or {}, step.name))
+
 
 TICK_NS = 50_000_000
 BEGIN_NS = 1_000_000_000

@@ -24,7 +24,7 @@ from mocapd.wizard.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 from mocapd.wizard.saving import calibrated_of
 from mocapd.wizard.step import Scene, StepState, Tell
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, Wearer, wearer
 
 ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
@@ -114,8 +114,8 @@ def measured(
 
     step = BodyStep(context, make)
     step.enter()
-    step.command("stature", {"m": m})
-    step.command("measure", {})
+    do(step, "stature", {"m": m})
+    do(step, "measure", {})
     step.tick(0)
     with playing(context, bends):
         assert context.run_job(step)
@@ -141,7 +141,7 @@ def test_proportions_of_an_odd_wearer(
     assert len(view.pictures) == 2
     assert context.draft.stature_m == person.stature_m
     # another stature makes them void
-    step.command("stature", {"m": 1.8})
+    do(step, "stature", {"m": 1.8})
     assert kept(context).factors is None
     assert step.view().state is StepState.WAITING
 
@@ -203,18 +203,18 @@ def test_a_stature_is_asked_for_and_checked(tmp_path: Path, draft: Draft) -> Non
     assert "how tall" in step.view().sentence
     for bad in (None, "1.8", True, float("nan"), 0.7, 2.4, 175):
         with pytest.raises(InputError, match="stature"):
-            step.command("stature", {"m": bad})
+            do(step, "stature", {"m": bad})
     with pytest.raises(InputError, match="not known"):
-        step.command("measure", {})
+        do(step, "measure", {})
     with pytest.raises(InputError, match="not known"):
-        step.command("skip", {})
+        do(step, "skip", {})
     assert kept(context).stature_m is None
-    step.command("stature", {"m": 1.62})
+    do(step, "stature", {"m": 1.62})
     assert kept(context).stature_m == 1.62
     view = step.view()
     assert view.state is StepState.WAITING
     assert view.details["can_measure"]
-    step.command("skip", {})
+    do(step, "skip", {})
     assert step.view().state is StepState.DONE
     assert context.draft.factors is None
 
@@ -236,12 +236,12 @@ def test_where_nothing_can_be_measured_the_stature_is_enough(
     context = FakeContext(tmp_path, replace(draft, **lacking))  # type: ignore[arg-type]
     step = BodyStep(context)
     step.enter()
-    step.command("stature", {"m": 1.7})
+    do(step, "stature", {"m": 1.7})
     view = step.view()
     assert view.state is StepState.DONE
     assert why in view.sentence
     with pytest.raises(InputError, match=why):
-        step.command("measure", {})
+        do(step, "measure", {})
 
 
 def test_leaving_ends_the_measurement(
@@ -257,8 +257,8 @@ def test_leaving_ends_the_measurement(
     context = FakeContext(tmp_path, draft)
     step = BodyStep(context, make)
     step.enter()
-    step.command("stature", {"m": 1.7})
-    step.command("measure", {})
+    do(step, "stature", {"m": 1.7})
+    do(step, "measure", {})
     step.tick(0)
     assert context.run_job(step)  # nobody feeds the hub, yet it ends
     assert context.draft.factors is None

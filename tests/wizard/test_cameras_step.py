@@ -14,7 +14,7 @@ from mocapd.wizard.camera_locks import CameraLocks
 from mocapd.wizard.cameras_step import CamerasStep
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import StepState, StepView
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.fake_webcam import FACTORY, FakeWebcam
 
 FRAME_NS = 33_333_333
@@ -192,20 +192,20 @@ def test_a_camera_can_be_left_out_and_taken_in_again(tmp_path: Path) -> None:
     bench = Bench(tmp_path, FakeWebcam("left"), FakeWebcam("right"))
     bench.context.lost["right"] = "busy: used by pid 4711 (cheese) -- end that program"
     bench.run(3.0)
-    bench.step.command("leave_out", {"camera": "right"})
+    do(bench.step, "leave_out", {"camera": "right"})
     bench.until_done()
     assert [one.id for one in bench.context.draft.cameras] == ["left"]
     with pytest.raises(InputError, match="one camera must stay"):
-        bench.step.command("leave_out", {"camera": "left"})
+        do(bench.step, "leave_out", {"camera": "left"})
     bench.context.lost.clear()
-    bench.step.command("take_in", {"camera": "right"})
+    do(bench.step, "take_in", {"camera": "right"})
     bench.until_done()
     assert [one.id for one in bench.context.draft.cameras] == ["left", "right"]
 
 
 def test_who_was_left_out_stays_so_when_the_step_is_shown_again(tmp_path: Path) -> None:
     bench = Bench(tmp_path, FakeWebcam("left"), FakeWebcam("right"))
-    bench.step.command("leave_out", {"camera": "right"})
+    do(bench.step, "leave_out", {"camera": "right"})
     bench.until_done()
     bench.step.leave()
     bench.enter()
@@ -215,14 +215,14 @@ def test_who_was_left_out_stays_so_when_the_step_is_shown_again(tmp_path: Path) 
 
 def test_a_camera_gets_a_name(tmp_path: Path) -> None:
     bench = Bench(tmp_path, FakeWebcam("left"), FakeWebcam("right"))
-    bench.step.command("name", {"camera": "left", "name": " by the window "})
+    do(bench.step, "name", {"camera": "left", "name": " by the window "})
     bench.until_done()
     assert bench.context.draft.cameras[0].label == "by the window"
     for wrong in ("x" * 41, "two\nlines", "right"):
         with pytest.raises(InputError):
-            bench.step.command("name", {"camera": "left", "name": wrong})
+            do(bench.step, "name", {"camera": "left", "name": wrong})
     with pytest.raises(InputError):
-        bench.step.command("name", {"camera": "nobody", "name": "x"})
+        do(bench.step, "name", {"camera": "nobody", "name": "x"})
 
 
 def yuyv_node(number: int) -> CameraInfo:
@@ -245,8 +245,8 @@ def test_two_uncompressed_cameras_on_one_bus_are_offered_a_lower_mode(tmp_path: 
     offer = rows["right"]["offer"]
     assert offer == {"size_px": [320, 240], "fps_hz": 30.0}
     with pytest.raises(InputError, match="no mode"):
-        bench.step.command("mode", {"camera": "right", "size_px": [1280, 720], "fps_hz": 30.0})
-    bench.step.command("mode", {"camera": "right", **offer})
+        do(bench.step, "mode", {"camera": "right", "size_px": [1280, 720], "fps_hz": 30.0})
+    do(bench.step, "mode", {"camera": "right", **offer})
     assert (right.settings.size_px, right.opened) == ((320, 240), 1)
     bench.context.lost.clear()
     bench.until_done()

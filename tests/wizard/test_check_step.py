@@ -19,7 +19,7 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import Scene, StepState
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft
 
 ALL_ARRIVE = Delivery(received=150, lost=0, rate_hz=29.9, asked_hz=30.0, width_px=640)
@@ -112,7 +112,7 @@ def test_nothing_is_saved_before_it_is_judged(tmp_path: Path) -> None:
     assert step.view().state is StepState.WORKING
     for verb in ("save", "measure", "dance"):
         with pytest.raises(InputError):
-            step.command(verb, {})
+            do(step, verb, {})
     step.leave()
     assert context.times_saved == 0
 
@@ -127,11 +127,11 @@ def test_a_place_that_cannot_be_written_is_told_and_can_be_mended(tmp_path: Path
     colours.rename(tmp_path / "away")
     colours.write_text("in the way")
     with pytest.raises(InputError, match="untouched"):
-        step.command("save", {})
+        do(step, "save", {})
     assert (context.state_dir / FILE_NAME).read_bytes() == before
     assert context.times_saved == 0
     colours.unlink()
-    step.command("save", {})
+    do(step, "save", {})
     assert context.times_saved == 1
     assert load_draft(context.state_dir).stature_m == 1.72
     assert step.view().details["saved"] == str(context.state_dir / FILE_NAME)

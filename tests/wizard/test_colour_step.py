@@ -21,7 +21,7 @@ from mocapd.vision.white_balance import frobenius_distance
 from mocapd.wizard.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import Scene, StepState, StepView, Tell
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import Wearer, wearer
 
 NAMES = standard_shirt().colour_names
@@ -51,7 +51,7 @@ def no_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
 def frozen(step: ColourStep, context: FakeContext, pictures: Mapping[str, Bytes]) -> StepView:
     """After the pictures were taken and every job was done."""
     context.drive(step, pictures)
-    step.command("freeze", {"seconds": 0})
+    do(step, "freeze", {"seconds": 0})
     context.drive(step, pictures, 0.3)
     return step.view()
 
@@ -66,7 +66,7 @@ def by_hand(context: FakeContext, person: Wearer) -> ColourStep:
 
 def drawn(step: ColourStep, context: FakeContext, camera: str, strokes: Bytes) -> StepView:
     """After a page sent these strokes."""
-    step.command("strokes", {"camera": camera, "png_base64": png(strokes), "by": "page"})
+    do(step, "strokes", {"camera": camera, "png_base64": png(strokes), "by": "page"})
     context.drive(step, {}, 0.1)
     return step.view()
 
@@ -184,11 +184,11 @@ def test_what_is_no_picture_of_strokes_is_refused_and_nothing_changes(
     coloured[0, 0, 0] += 1
     for bad in ("?", png(good[:50]), png(good + 11), png(coloured), 7):
         with pytest.raises(InputError):
-            step.command("strokes", {"camera": "left", "png_base64": bad})
+            do(step, "strokes", {"camera": "left", "png_base64": bad})
     with pytest.raises(InputError, match="no picture of 'middle'"):
-        step.command("strokes", {"camera": "middle", "png_base64": png(good)})
+        do(step, "strokes", {"camera": "middle", "png_base64": png(good)})
     with pytest.raises(InputError):
-        step.command("freeze", {"seconds": "soon"})
+        do(step, "freeze", {"seconds": "soon"})
     context.drive(step, {})
     assert step.view().details == before.details
     # a canvas sends colour with equal channels
@@ -204,7 +204,7 @@ def test_the_countdown_is_shown_and_a_camera_without_picture_is_named(
     step.enter()
     one = {"left": person.pictures["left"]}
     context.drive(step, one)
-    step.command("freeze", {})
+    do(step, "freeze", {})
     assert step.view().details["countdown"] == 3
     context.drive(step, one, 1.5)
     assert step.view().sentence.endswith(": 2")
@@ -235,10 +235,10 @@ def test_the_own_shirts_colours_can_be_left_out_and_need_every_colour(
     for name, mine in person.scribbles.items():
         drawn(step, context, name, mine.strokes)
     assert is_personal(context)
-    step.command("personal", {"on": False})
+    do(step, "personal", {"on": False})
     context.drive(step, {})
     assert not is_personal(context)
-    step.command("personal", {"on": True})
+    do(step, "personal", {"on": True})
     for name, mine in person.scribbles.items():
         drawn(step, context, name, np.where(mine.strokes == 10, 0, mine.strokes).astype(np.uint8))
     view = step.view()

@@ -26,7 +26,7 @@ from tests.wizard.board_pictures import (
     floor_pictures,
     held_pictures,
 )
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 
 STILL_S = 0.2
 
@@ -199,13 +199,13 @@ def test_cameras_moved_since_the_lens_step_are_no_trouble(tmp_path: Path) -> Non
 def test_the_floor_is_where_the_person_says(tmp_path: Path) -> None:
     room = Room(tmp_path, drafted())
     with pytest.raises(InputError, match="not known yet"):
-        room.step.command("floor", {})
+        do(room.step, "floor", {})
     room.show(held_pictures())
     room.show([{}])
     with pytest.raises(InputError, match="no camera sees the board lie still"):
-        room.step.command("floor", {})
+        do(room.step, "floor", {})
     room.show([floor_pictures()], 0.6)
-    room.step.command("floor", {})
+    do(room.step, "floor", {})
     assert room.step.view().state is StepState.DONE
     assert room.context.draft.floor_known
 
@@ -220,9 +220,9 @@ def test_a_board_held_up_is_not_taken_for_the_floor(tmp_path: Path) -> None:
 def test_a_guessed_floor_is_called_one(tmp_path: Path) -> None:
     room = Room(tmp_path, drafted())
     with pytest.raises(InputError, match="not known yet"):
-        room.step.command("skip_floor", {})
+        do(room.step, "skip_floor", {})
     room.show(held_pictures())
-    room.step.command("skip_floor", {})
+    do(room.step, "skip_floor", {})
     view = room.step.view()
     assert view.state is StepState.DONE
     assert "the floor is guessed" in room.told()
@@ -236,7 +236,7 @@ def test_one_camera_is_placed_by_the_floor_alone(tmp_path: Path) -> None:
     room = Room(tmp_path, drafted(1))
     assert room.context.scenes == [Scene.FLOOR]
     with pytest.raises(InputError, match="lay the board on the floor"):
-        room.step.command("skip_floor", {})
+        do(room.step, "skip_floor", {})
     room.show([{"cam0": floor_pictures()["cam0"]}], 2.5)
     draft = room.context.draft
     assert room.step.view().state is StepState.DONE
@@ -264,10 +264,10 @@ def test_a_camera_that_stops_is_told_and_the_step_goes_on_with_it(tmp_path: Path
 def test_fewer_places_are_solved_when_asked_for(tmp_path: Path) -> None:
     room = Room(tmp_path, drafted())
     with pytest.raises(InputError, match="nothing to solve"):
-        room.step.command("solve", {})
+        do(room.step, "solve", {})
     room.show(held_pictures()[:6])
     assert room.step.view().details["can_solve"]
-    room.step.command("solve", {})
+    do(room.step, "solve", {})
     room.show([{}])
     assert room.step.view().details["stage"] == "floor"
 
@@ -281,7 +281,7 @@ def test_a_room_without_lenses_is_refused(tmp_path: Path) -> None:
 def test_commands_and_methods_that_are_not_there_are_refused(tmp_path: Path) -> None:
     room = Room(tmp_path, drafted())
     with pytest.raises(InputError, match="no command 'paint'"):
-        room.step.command("paint", {})
-    with pytest.raises(InputError, match="no method 'magic'"):
-        room.step.command("method", {"method": "magic"})
+        do(room.step, "paint", {})
+    with pytest.raises(InputError, match="no such method"):
+        do(room.step, "method", {"method": "magic"})
     assert room.step.view().details["method"] == "board"

@@ -9,12 +9,13 @@ from mocapd.calibrate.calibration_file import read_calibration
 from mocapd.capture.identity import WebcamIdentity, parse_identity
 from mocapd.capture.listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
+from mocapd.wizard.commands import CAMERAS, Command, Lock
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.found_cameras import plugged_cameras, where_now
 from mocapd.wizard.same_port import AsksForPorts, moved_cameras
 from mocapd.wizard.saving import save_draft
 from mocapd.wizard.step import Context, StepName, StepState, StepView
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft, source_of
 
 STAYED = source_of("cam0", "1-1")
@@ -35,17 +36,18 @@ class Done:
     """The step Cameras, done."""
 
     name = StepName.CAMERAS
+    verbs = CAMERAS
 
     def __init__(self, _context: Context) -> None:
-        self.told: list[str] = []
+        self.told: list[Command] = []
 
     def enter(self) -> None: ...
     def leave(self) -> None: ...
     def tick(self, now_ns: int) -> None: ...
     def job_failed(self, error: Exception) -> None: ...
 
-    def command(self, verb: str, args: object) -> None:
-        self.told.append(verb)
+    def command(self, command: Command) -> None:
+        self.told.append(command)
 
     def view(self) -> StepView:
         return StepView(StepState.DONE, "Go on.", 1.0, details={"cameras": []})
@@ -66,7 +68,7 @@ def test_a_camera_in_another_port_is_asked_about_and_remembered(tmp_path: Path) 
     assert view.state is StepState.WAITING
     assert "1-2" in view.problems[0].what
     assert "2-4" in view.problems[0].what
-    step.command("same_port", {"camera": "cam1", "same": True})
+    do(step, "same_port", {"camera": "cam1", "same": True})
     assert step.view().state is StepState.DONE
     assert not step.view().problems
     saved = read_calibration(context.state_dir)
@@ -79,7 +81,7 @@ def test_a_camera_in_another_port_is_asked_about_and_remembered(tmp_path: Path) 
 def test_another_camera_in_its_place_is_calibrated_anew(tmp_path: Path) -> None:
     context, step = asking(tmp_path)
     before = (context.state_dir / "calibration.toml").read_bytes()
-    step.command("same_port", {"camera": "cam1", "same": False})
+    do(step, "same_port", {"camera": "cam1", "same": False})
     assert context.draft.rig is None
     assert set(context.draft.lenses) == {"cam0"}
     assert set(context.draft.colours) == {"cam0"}
@@ -89,10 +91,10 @@ def test_another_camera_in_its_place_is_calibrated_anew(tmp_path: Path) -> None:
 def test_nothing_else_is_answered_and_the_rest_is_the_steps_own(tmp_path: Path) -> None:
     _, step = asking(tmp_path)
     with pytest.raises(InputError):
-        step.command("same_port", {"camera": "cam0", "same": True})
-    step.command("lock", {"camera": "cam0"})
+        do(step, "same_port", {"camera": "cam0", "same": True})
+    do(step, "lock", {"camera": "cam0"})
     assert isinstance(step._step, Done)
-    assert step._step.told == ["lock"]
+    assert step._step.told == [Lock(camera="cam0")]
 
 
 def test_who_is_not_plugged_in_or_may_be_a_twin_is_not_asked_about() -> None:

@@ -23,7 +23,7 @@ from mocapd.wizard.room_step import RoomStep
 from mocapd.wizard.step import Scene, StepState
 from mocapd.wizard.wearer_room import WearerRoom
 from mocapd.wizard.wearer_walking import WalkParams
-from tests.wizard.context import FakeContext
+from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, Wearer, wearer
 
 SHORT = WalkParams(
@@ -89,7 +89,7 @@ def walking(context: FakeContext, database: PoseDatabase, params: WalkParams = S
     """The wearer was asked to walk, and the job waits."""
     step = WearerRoom(context, lambda _cache, _tell: database, params)
     step.enter()
-    step.command("walk", {})
+    do(step, "walk", {})
     step.tick(0)
     return step
 
@@ -133,9 +133,9 @@ def test_the_room_of_a_wearer(tmp_path: Path, draft: Draft, database: PoseDataba
     for camera, true in zip(found.rig.cameras, person.rig.cameras, strict=True):
         assert centre(camera)[1] == pytest.approx(centre(true)[1], abs=0.3)
     # a second walk begins at the room that is there, and can be ended without changing it
-    step.command("walk", {})
+    do(step, "walk", {})
     step.tick(0)
-    step.command("stop", {})
+    do(step, "stop", {})
     context.run_job(step)
     assert kept(context).rig is found.rig
     assert step.view().state is StepState.DONE
@@ -168,9 +168,9 @@ def test_what_must_be_known_first(
     context = FakeContext(tmp_path, replace(draft, **change))  # type: ignore[arg-type]
     step = RoomStep(context)
     step.enter()
-    step.command("method", {"method": "wearer"})
+    do(step, "method", {"method": "wearer"})
     view = step.view()
     assert (view.details["method"], view.details["actions"]) == ("wearer", [])
     assert f"the step {where} first" in view.sentence
     with pytest.raises(InputError, match=where):
-        step.command("walk", {})
+        do(step, "walk", {})

@@ -1,16 +1,20 @@
 """Which step is shown, what becomes of commands and jobs, and what others see of it."""
 
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Camera, Rig
+from mocapd.wizard.commands import Command
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import Context, Json, Scene, StepName, StepState, StepView, Tell
 from mocapd.wizard.wizard import Wizard, WizardView
@@ -20,8 +24,47 @@ CAMERA = DraftCamera("cam0", "sim:cam0", (640, 480))
 PLACED = Camera("cam0", (640, 480), np.eye(3), np.zeros(5), np.eye(3), np.zeros(3))
 
 
+class Done(Command, frozen=True):
+    """The step is done."""
+
+
+class FindRig(Command, frozen=True):
+    """The draft has a rig, and the step is done."""
+
+
+class Job(Command, frozen=True):
+    """Start this job."""
+
+    job: Any
+
+
+class SaveIt(Command, frozen=True):
+    """The draft is saved."""
+
+
+class Raise(Command, frozen=True):
+    """Raise this."""
+
+    error: Any
+
+
+class RaiseInTick(Raise, frozen=True):
+    """Raise this in the next tick."""
+
+
 class ScriptedStep:
     """A step that does what a test tells it by commands, and shows what happened."""
+
+    verbs = MappingProxyType(
+        {
+            "done": Done,
+            "find_rig": FindRig,
+            "job": Job,
+            "save": SaveIt,
+            "raise": Raise,
+            "raise_in_tick": RaiseInTick,
+        }
+    )
 
     def __init__(self, context: Context, name: StepName) -> None:
         self.name = name
@@ -29,28 +72,33 @@ class ScriptedStep:
         self.state = StepState.WAITING
         self.said = ""
         self.happened: list[str] = []
+        self.error: BaseException | None = None
 
     def enter(self) -> None:
         self.context.scene(Scene.EMPTY)
 
     def tick(self, now_ns: int) -> None:
+        error, self.error = self.error, None
+        if error is not None:
+            raise error
         job = self.context.job
         self.said = job[0] if job else ""
 
-    def command(self, verb: str, args: Mapping[str, Json]) -> None:
-        if verb == "done":
-            self.state = StepState.DONE
-        elif verb == "find_rig":
-            self.context.draft = replace(self.context.draft, rig=Rig((PLACED,)))
-            self.state = StepState.DONE
-        elif verb == "job":
-            job = args["job"]
-            assert callable(job)
-            self.context.start_job(job, lambda result: self.happened.append(f"got {result}"))
-        elif verb == "save":
-            self.context.saved()
-        else:
-            raise InputError(f"no command {verb!r}", self.name, "another one")
+    def command(self, command: Command) -> None:
+        match command:
+            case Done():
+                self.state = StepState.DONE
+            case FindRig():
+                self.context.draft = replace(self.context.draft, rig=Rig((PLACED,)))
+                self.state = StepState.DONE
+            case Job(job=job):
+                self.context.start_job(job, lambda result: self.happened.append(f"got {result}"))
+            case SaveIt():
+                self.context.saved()
+            case Raise(error=error):
+                raise error
+            case RaiseInTick(error=error):
+                self.error = error
 
     def job_failed(self, error: MocapdError) -> None:
         self.happened.append(f"failed: {error.what}")
@@ -185,6 +233,55 @@ def test_a_jobs_result_and_its_failure_reach_the_step(run: Run) -> None:
     assert happened(run.until(lambda view: happened(view) != [])) == ["got 7"]
     run.wizard.send("job", {"job": fails})
     run.until(lambda view: happened(view) == ["got 7", "failed: nothing found"])
+
+
+@pytest.mark.parametrize(
+    "error", [np.linalg.LinAlgError("singular"), cv2.error("(-215) too few points")], ids=str
+)
+def test_where_solvers_end_on_what_was_drawn_is_told_and_not_deadly(
+    run: Run, error: Exception
+) -> None:
+    def fails(tell: Tell) -> int:
+        raise error
+
+    run.wizard.send("job", {"job": fails})
+    seen = happened(run.until(lambda view: happened(view) != []))
+    assert isinstance(seen, list)
+    assert "failed: this cannot be worked out" in seen[0]
+    for verb in ("raise", "raise_in_tick"):
+        run.wizard.send("done")
+        run.until(lambda view: view.refused is None)
+        run.wizard.send(verb, {"error": error})
+        view = run.until(lambda view: view.refused is not None)
+        assert view.refused is not None
+        assert "cannot be worked out" in view.refused.what
+
+
+@pytest.mark.parametrize("error", [TypeError("a list"), OverflowError("1e400"), KeyError("cam7")])
+def test_a_command_that_meets_a_bug_is_refused_and_the_bug_is_logged(
+    run: Run, error: Exception, caplog: pytest.LogCaptureFixture
+) -> None:
+    run.wizard.send("raise", {"error": error})
+    view = run.until(lambda view: view.refused is not None)
+    assert view.refused is not None
+    assert type(error).__name__ in view.refused.what
+    assert "a bug in mocapd: the command 'raise'" in caplog.text
+    assert "Traceback" in caplog.text
+    run.wizard.send("done")
+    assert run.until(lambda view: view.view.state is StepState.DONE).refused is None
+
+
+def test_commands_beyond_those_that_wait_are_refused(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    for _ in range(1000):
+        run.wizard.send("done")
+    run.wizard.start()
+    view = run.until(lambda view: view.refused is not None)
+    assert view.refused is not None
+    assert "too many commands" in view.refused.what
+    run.wizard.send("done")
+    run.until(lambda view: view.refused is None)
+    assert run.wizard.stop(WAIT_S)
 
 
 def test_a_job_left_behind_does_not_disturb_the_next_one(run: Run) -> None:
