@@ -141,6 +141,20 @@ def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) 
     )
 
 
+def as_held(controls: Controls) -> Held:
+    """The values that a lock had found, for `restore`, which switches their automatics off."""
+    rate, mains_hz = controls.dynamic_framerate, controls.power_line_hz
+    values = {
+        Control.EXPOSURE: controls.exposure,
+        Control.WB_TEMPERATURE: controls.wb_temperature,
+        Control.FOCUS: controls.focus,
+        Control.GAIN: controls.gain,
+        Control.DYNAMIC_FRAMERATE: None if rate is None else int(rate),
+        Control.POWER_LINE: None if mains_hz is None else power_line_code(mains_hz),
+    }
+    return {control: value for control, value in values.items() if value is not None}
+
+
 def restore(device: ControlDevice, before: Held) -> None:
     """Give back what was held before. Raises UnavailableError."""
     for one in _AUTOMATICS:

@@ -27,17 +27,19 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         where_now,
     )
     from mocapd.wizard.same_port import moved_cameras
+    from mocapd.wizard.setup_keeper import kept_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
+    known = kept_cameras(config.state_dir, before.cameras)
     if step is not None:
         for one in before.cameras:
             require_password(one.id, one.source, str(config.state_dir))
         draft = replace(before, cameras=where_now(before.cameras, infos))
     else:
         cameras = (
-            configured_cameras(config.camera, before.cameras)
+            configured_cameras(config.camera, known)
             if config.camera
-            else plugged_cameras(infos, before.cameras)
+            else plugged_cameras(infos, known)
         )
         # what was typed once need not be typed again
         draft = Draft(cameras=cameras, board=before.board, stature_m=before.stature_m)

@@ -83,6 +83,17 @@ class CameraLocks:
             source = self._sources[camera]
             source.change(replace(source.settings, size_px=size_px, fps_hz=fps_hz))
 
+    def take_up(self, camera: str, settings: WebcamSettings) -> None:
+        """Lock it to what an earlier setup has found: now, where it is open, and at each opening."""
+        with self._lock:
+            source = self._sources[camera]
+            device = None if self._ended else source.device()
+            if device is not None:
+                if camera not in self._before:
+                    self._before[camera] = control_lock.read_held(device)
+                control_lock.restore(device, control_lock.as_held(settings.controls))
+            source.change(settings)
+
     def restore(self) -> None:
         """Give back what the cameras held before; nothing can be locked any more. May be called twice."""
         with self._lock:

@@ -21,6 +21,7 @@ from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.same_port import Moved, moved_cameras, same_camera
 from mocapd.wizard.saving import load_draft
+from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.steps import SetupCameras, all_steps
 from mocapd.wizard.wizard import Wizard
 
@@ -139,6 +140,7 @@ class DaemonHost:
             daemon.died,
             draft=draft,
             on_saved=self.saved.set,
+            keeper=SetupKeeper(state_dir, draft, self._locks),
         )
         wizard.start()
         return wizard

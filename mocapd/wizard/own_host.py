@@ -16,6 +16,7 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.open_cameras import OpenCameras
 from mocapd.wizard.same_port import Moved
+from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Scene, StepName
 from mocapd.wizard.steps import SetupCameras, all_steps, only
 from mocapd.wizard.wizard import Wizard
@@ -58,6 +59,8 @@ class OwnHost:
             first=step or StepName.CAMERAS,
             draft=draft,
             on_saved=self._saved.set,
+            # one step done again is not worth an offer: it would be of the whole setup
+            keeper=SetupKeeper(state_dir, draft, self._locks) if step is None else None,
         )
 
     def start(self) -> None:

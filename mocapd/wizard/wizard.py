@@ -5,7 +5,7 @@ import queue
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +14,11 @@ from mocapd.capture.thread import CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.wizard.commands import OF_WIZARD, Again, Go, Next, read_command
+from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, read_command
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.kept_setup import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, named
+from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import (
     Context,
     Json,
@@ -74,11 +76,13 @@ class Wizard:
         first: StepName = StepName.CAMERAS,
         draft: Draft | None = None,
         on_saved: Callable[[], None] | None = None,
+        keeper: SetupKeeper | None = None,
     ) -> None:
         self.hub, self.state_dir, self.cache_dir = hub, state_dir, cache_dir
         self.draft = draft if draft is not None else Draft()
         self._steps, self._statuses, self._died = steps, statuses, died
         self._scene, self._on_saved = scene, on_saved
+        self._keeper = keeper
         self._names = tuple(name for name in StepName if name in steps)
         self._commands: queue.Queue[tuple[str, Mapping[str, Json]]] = queue.Queue(_MOST_COMMANDS)
         self._flooded = threading.Event()  # a command was not even queued
@@ -160,6 +164,8 @@ class Wizard:
     def saved(self) -> None:
         """See Context."""
         self._saved = True
+        if self._keeper is not None:
+            self._keeper.saved(self.draft)
         if self._on_saved is not None:
             self._on_saved()
 
@@ -180,6 +186,8 @@ class Wizard:
                 self._take_commands()
             self._step.leave()
             self._publish()  # that it has ended
+            if self._keeper is not None:
+                self._keeper.close()
         except BaseException as error:
             self._died(error)
             raise
@@ -241,7 +249,14 @@ class Wizard:
     def _take(self, verb: str, args: Mapping[str, Json]) -> None:
         """Raises MocapdError when it is refused."""
         verbs = {**self._step.verbs, **OF_WIZARD}
-        match read_command(verbs, verb, args, self._step.name):
+        command = read_command(verbs, verb, args, self._step.name)
+        if self._offer is not None and isinstance(command, Go | Next):
+            raise InputError(
+                "a setup of before is kept",
+                "this setup",
+                "say below whether to go on with it, or begin anew",
+            )
+        match command:
             case Go(step=name):
                 names = {name.value: name for name in self._names}
                 if name not in names:
@@ -257,8 +272,29 @@ class Wizard:
                     self._show(self._names[at + 1])
             case Again():
                 self._show(self._step.name)
-            case command:
+            case Resume():
+                self._resume()
+            case BeginAnew():
+                self._kept_by().begin_anew()
+            case _:
                 self._step.command(command)
+
+    @property
+    def _offer(self) -> KeptSetup | None:
+        return self._keeper.offer if self._keeper is not None else None
+
+    def _resume(self) -> None:
+        """Go on with the first step that is not done. Raises InputError when nothing is kept."""
+        kept = self._kept_by().resume()
+        self.draft = kept.draft
+        self._reached |= kept.done
+        left = [name for name in self._names if not self._is_done(name)]
+        self._show(left[0] if left else self._names[-1])
+
+    def _kept_by(self) -> SetupKeeper:
+        if self._keeper is None:
+            raise InputError("no setup is kept here", "this setup", "reload the page")
+        return self._keeper
 
     def _show(self, name: StepName) -> None:
         step = self._steps[name](self)  # refused when what it builds on is missing: this one stays
@@ -289,6 +325,8 @@ class Wizard:
         view = self._step.view()
         if view.state is StepState.DONE:
             self._reached.add(self._step.name)
+        if self._offer is not None:
+            view = _with_offer(view, self._offer)
         return WizardView(
             serial,
             self._step.name,
@@ -304,3 +342,18 @@ class Wizard:
         with self._changed:
             self._view = self._snapshot(self._view.serial + 1)
             self._changed.notify_all()
+        if self._keeper is not None:
+            self._keeper.keep(self.draft, self._view.done)
+
+
+def _with_offer(view: StepView, offer: KeptSetup) -> StepView:
+    """Nobody goes on before the choice is made."""
+    told: Json = {
+        "when": offer.when.isoformat(),
+        "done": [name.value for name in StepName if name in offer.done],
+    }
+    view = replace(view, details={**view.details, "kept": told})
+    if view.state is not StepState.DONE:
+        return view
+    sentence = "Say below whether to go on with the setup that is kept, or begin anew."
+    return replace(view, state=StepState.WAITING, sentence=sentence)

@@ -1,5 +1,6 @@
 // The step Cameras: one card a camera with its name, its state and what can be done; other nodes below.
 
+import { KeptSetup } from "./kept_setup.js";
 import { PortQuestions } from "./same_port.js";
 import { button, element, setText } from "./setup.js";
 
@@ -35,7 +36,9 @@ export class StepPart {
     this.others.hidden = true;
     const questions = element("div", { id: "port-questions", hidden: true });
     this.ports = new PortQuestions(questions, link);
-    root.replaceChildren(questions, this.list, this.others);
+    const kept = element("div", { id: "kept-setup", hidden: true });
+    this.kept = new KeptSetup(kept, link);
+    root.replaceChildren(kept, questions, this.list, this.others);
   }
 
   update(view) {
@@ -52,6 +55,7 @@ export class StepPart {
         if (figure.dataset.camera === row.id) figure.classList.toggle("left-out", !row.taken);
       }
     }
+    this.kept.update(view.details.kept ?? null);
     this.ports.update(view.details.moved ?? []);
     this.drawOthers(view.details.others ?? []);
   }

@@ -107,8 +107,8 @@ class BoardForm {
     this.told = "";
     this.kind = select("board-kind", Object.entries(KINDS));
     this.dictionary = select("board-dictionary", []);
-    this.columns = number("board-columns", 3, 40, 1);
-    this.rows = number("board-rows", 3, 40, 1);
+    this.columns = number("board-columns", 3, 100, 1);
+    this.rows = number("board-rows", 3, 100, 1);
     this.square = number("board-square", 1, 999, 0.01);
     this.marker = number("board-marker", 0, 999, 0.01);
     this.inverted = element("input", { type: "checkbox", id: "board-inverted" });
@@ -159,6 +159,7 @@ class BoardForm {
     const told = JSON.stringify(board);
     if (told === this.told) return; // what is being typed stays
     this.told = told;
+    this.shown = board;
     const kind = board.kind === "charuco" ? "ChArUco board" : "Chessboard";
     this.summary.textContent =
       `Your board: ${kind}, ${board.columns} x ${board.rows} squares of ${board.square_mm} mm` +
@@ -177,13 +178,17 @@ class BoardForm {
 
   showMarkers() {
     const plain = this.kind.value === "chessboard";
+    for (const count of [this.columns, this.rows]) {
+      count.min = this.shown.fewest[this.kind.value];
+      count.max = this.shown.most;
+    }
     for (const label of [this.markerLabel, this.dictionaryLabel, this.legacyLabel]) {
       label.hidden = plain;
     }
   }
 
   send() {
-    const shown = JSON.parse(this.told);
+    const shown = this.shown;
     const args = {
       kind: this.kind.value,
       columns: Number(this.columns.value),
