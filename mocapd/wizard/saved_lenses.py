@@ -1,6 +1,5 @@
 """Lenses of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
 
-import tomllib
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
@@ -9,10 +8,12 @@ from typing import Annotated
 import msgspec
 import numpy as np
 
+from mocapd.boundary.files import MissingError, read_text
+from mocapd.boundary.messages import convert, parse_toml
 from mocapd.calibrate.lens import Lens
 from mocapd.calibrate.toml_text import toml_text
 from mocapd.capture.identity import PREFIX, parse_identity
-from mocapd.errors import CannotCreateError, ConfigError
+from mocapd.errors import CannotCreateError, ConfigError, MocapdError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
 
@@ -25,25 +26,34 @@ _HEADER = """\
 """
 _FIX = "take the file away: lenses are measured anew"
 
-Row3 = tuple[float, float, float]
-Row5 = tuple[float, float, float, float, float]
-Positive = Annotated[float, msgspec.Meta(gt=0.0)]
+_MOST_BYTES = 8 << 20
+
+Finite = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]  # NaN is in no range
+NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e9)]
+Pixels = Annotated[int, msgspec.Meta(ge=16, le=100_000)]
+Row3 = tuple[Finite, Finite, Finite]
+Row5 = tuple[Finite, Finite, Finite, Finite, Finite]
+Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e9)]
 
 
 class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
     """camera: vid:pid:serial; focus: what its focus was locked to; when: UTC."""
 
     camera: str
-    size_px: tuple[int, int]
+    size_px: tuple[Pixels, Pixels]
     when: datetime
-    focus: int | None = None
-    views: int
-    rms_px: float
-    held_out_px: float
+    focus: Annotated[int, msgspec.Meta(ge=-(1 << 31), lt=1 << 31)] | None = None
+    views: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
+    rms_px: NotNegative
+    held_out_px: NotNegative
     focal_deviation: Positive
     free: tuple[bool, bool, bool, bool, bool]
     K: tuple[Row3, Row3, Row3]
     dist: Row5
+
+    def __post_init__(self) -> None:
+        if not (self.K[0][0] > 0.0 and self.K[1][1] > 0.0 and self.K[2] == (0.0, 0.0, 1.0)):
+            raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
 
     def lens(self) -> Lens:
         """As the lens step finds one."""
@@ -61,7 +71,7 @@ class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _File(msgspec.Struct, frozen=True):
-    schema: int
+    schema: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
     lens: tuple[SavedLens, ...] = ()
 
 
@@ -76,12 +86,11 @@ def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
     """All that were saved; none without the file. Raises ConfigError when it is damaged."""
     path = state_dir / FILE_NAME
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-        file = msgspec.convert(data, _File)
-    except FileNotFoundError:
+        file: _File = convert(parse_toml(read_text(path, _MOST_BYTES)), _File)
+    except MissingError:
         return ()
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
-        raise ConfigError(f"cannot be read ({error})", str(path), _FIX) from None
+    except MocapdError as error:
+        raise ConfigError(f"cannot be read ({error.what})", str(path), _FIX) from None
     if file.schema != SCHEMA:
         raise ConfigError(f"has schema {file.schema}, not {SCHEMA}", str(path), _FIX)
     return file.lens

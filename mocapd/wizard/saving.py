@@ -10,6 +10,7 @@ import numpy as np
 
 import mocapd
 from mocapd.body.shape import FACTORS
+from mocapd.boundary.numbers import brief
 from mocapd.calibrate.calibrated_inputs import Calibrated, read_calibrated
 from mocapd.calibrate.calibration_file import (
     FILE_NAME,
@@ -28,10 +29,12 @@ from mocapd.calibrate.saved_calibration import (
     SavedCamera,
     Wearer,
 )
-from mocapd.errors import InputError
+from mocapd.errors import ConfigError, InputError
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes, Camera
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+
+_MOST_VIEWS = 10**6  # of one lens
 
 NOT_WRITTEN_YET = "-"  # pictures get their names when they are written
 
@@ -78,6 +81,13 @@ def load_draft(place: Path) -> Draft:
     saved = read_calibration(path)
     known = read_calibrated(saved, path)
     room = saved.room
+    for one in saved.camera:
+        if one.lens is not None and one.lens.views > _MOST_VIEWS:
+            raise ConfigError(
+                f"a lens of {brief(one.lens.views)} pictures",
+                f"{path}, camera {one.id!r}",
+                "calibrate again (`mocapd calibrate`), or restore the file",
+            )
     return Draft(
         cameras=tuple(
             DraftCamera(one.id, one.source, one.size_px, one.fps_hz, one.controls, one.label)

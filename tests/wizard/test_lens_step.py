@@ -1,5 +1,6 @@
 """The step Lens, driven by pictures of a simulated board."""
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -329,6 +330,36 @@ def test_a_damaged_file_of_lenses_is_told_and_the_step_goes_on(tmp_path: Path, t
     view = LensStep(context).view()
     assert FILE_NAME in view.problems[0].where
     assert view.state is StepState.WAITING
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes"),
+    [
+        ("views = 12", "views = 1000000000000"),
+        ("views = 12", "views = 1.5"),
+        ("rms_px = 0.2", "rms_px = nan"),
+        ("rms_px = 0.2", "rms_px = -1.0"),
+        ("focal_deviation = 0.002", "focal_deviation = inf"),
+        ("size_px = [640, 480]", "size_px = [640, 0]"),
+        ("size_px = [640, 480]", f"size_px = [640, {'9' * 5000}]"),
+        ("[614.5", "[-614.5"),
+        ("schema = 1", f"schema = 1\nx = {'[' * 600}{']' * 600}"),
+    ],
+)
+def test_numbers_that_cannot_be_are_damage(tmp_path: Path, was: str, becomes: str) -> None:
+    store_lenses(Draft(cameras=(WEBCAM,), lenses={"cam0": LENS}), tmp_path, WHEN)
+    path = tmp_path / FILE_NAME
+    text = path.read_text()
+    assert was in text
+    path.write_text(text.replace(was, becomes))
+    with pytest.raises(ConfigError, match=FILE_NAME):
+        read_lenses(tmp_path)
+
+
+def test_a_file_of_lenses_that_is_none_is_told(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / FILE_NAME)  # opening it would wait for a writer
+    with pytest.raises(ConfigError, match="no regular file"):
+        read_lenses(tmp_path)
 
 
 def test_a_step_without_cameras_is_refused(tmp_path: Path) -> None:

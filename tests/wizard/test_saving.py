@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.errors import InputError
+from mocapd.errors import ConfigError, InputError
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import load_draft, save_draft
 from tests.wizard.drafts import full_draft
@@ -44,6 +44,15 @@ def test_without_colours_and_wearer_the_cameras_alone_are_kept(tmp_path: Path) -
     loaded = load_draft(tmp_path)
     assert not loaded.colours
     assert loaded.stature_m is None
+
+
+def test_more_pictures_of_a_lens_than_there_can_be_are_no_calibration(tmp_path: Path) -> None:
+    path = save_draft(full_draft(), tmp_path)
+    text = path.read_text()
+    assert "views = 12" in text
+    path.write_text(text.replace("views = 12", "views = 1000000000000"))
+    with pytest.raises(ConfigError, match=path.name):
+        load_draft(tmp_path)
 
 
 def test_a_draft_without_a_room_is_not_saved(tmp_path: Path) -> None:

@@ -1,0 +1,422 @@
+"""A setup that survives the end of its process: what is kept, what is offered, and what is not."""
+
+import hashlib
+import stat
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from types import MappingProxyType
+
+import msgspec
+import numpy as np
+import pytest
+
+from mocapd.calibrate.detection import BoardView
+from mocapd.capture.camera_controls import Control
+from mocapd.capture.v4l2 import WebcamSettings
+from mocapd.errors import MocapdError
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.wizard.camera_locks import CameraLocks
+from mocapd.wizard.commands import Command, Verbs
+from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, _Kept, read_kept, write_kept
+from mocapd.wizard.setup_keeper import SetupKeeper, kept_cameras
+from mocapd.wizard.step import Context, StepName, StepState, StepView
+from mocapd.wizard.wizard import MakeStep, Wizard, WizardView
+from tests.wizard.drafts import full_draft
+from tests.wizard.fake_webcam import FakeWebcam
+
+WAIT_S = 10.0
+WHEN = datetime(2026, 11, 22, 10, 0, tzinfo=UTC)
+DONE = frozenset({StepName.CAMERAS, StepName.LENS})
+NO_LOCKS = CameraLocks(())
+
+
+def drafted() -> Draft:
+    """All of it, with moments of the board and a camera whose address has a password."""
+    draft = full_draft()
+    one, other = draft.cameras
+    corners_px = np.random.default_rng(2).uniform(0, 48, (24, 2))
+    views = {7: BoardView(7, np.arange(24), corners_px, 0.4)}
+    return replace(
+        draft,
+        cameras=(one, replace(other, source="rtsp://admin:hunter2@10.0.0.7/live")),
+        board_views={"cam0": views, "gone": views},
+    )
+
+
+def begun(draft: Draft) -> Draft:
+    """What the next setup begins with: the same cameras, nothing known."""
+    return Draft(cameras=draft.cameras)
+
+
+def same(a: object, b: object) -> bool:
+    """Whether two drafts, or parts of them, hold the same."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if is_dataclass(a):
+        return type(a) is type(b) and all(
+            same(getattr(a, field.name), getattr(b, field.name)) for field in fields(a)
+        )
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, float | np.ndarray):
+        return np.array_equal(a, b, equal_nan=isinstance(a, float))  # type: ignore[arg-type]
+    return a == b
+
+
+def keep(folder: Path, draft: Draft, when: datetime = WHEN) -> Path:
+    path = folder / FILE_NAME
+    write_kept(path, KeptSetup(when, DONE, draft))
+    return path
+
+
+def keeper(folder: Path, draft: Draft, now: datetime = WHEN) -> SetupKeeper:
+    return SetupKeeper(folder, draft, NO_LOCKS, lambda: now)
+
+
+def test_all_of_it_comes_back_but_the_password(tmp_path: Path) -> None:
+    draft = drafted()
+    path = keep(tmp_path / "state", draft)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    assert b"hunter2" not in path.read_bytes()
+    read = read_kept(path)
+    assert (read.when, read.done) == (WHEN, DONE)
+    assert read.draft.cameras[1].source == "rtsp://admin:***@10.0.0.7/live"
+    assert same(replace(read.draft, cameras=draft.cameras), draft)
+    setup = keeper(path.parent, begun(draft))
+    assert setup.offer is not None
+    assert same(setup.resume().draft, draft)  # the password is that of the camera that is open
+    setup.close()
+
+
+def test_nothing_is_all_that_comes_back_of_a_draft_without_anything(tmp_path: Path) -> None:
+    empty = begun(full_draft())
+    assert same(read_kept(keep(tmp_path, empty)).draft, empty)
+
+
+def test_damage_is_found_and_the_file_taken_away(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    path = keep(tmp_path, drafted())
+    data = path.read_bytes()
+    random = np.random.default_rng(3)
+    for _ in range(200):
+        broken = bytearray(data)
+        broken[random.integers(len(data))] ^= 1 << random.integers(8)
+        path.write_bytes(broken if random.random() < 0.7 else broken[: random.integers(len(data))])
+        with pytest.raises(MocapdError):
+            read_kept(path)
+    setup = keeper(tmp_path, begun(drafted()))
+    assert setup.offer is None
+    assert not path.exists()
+    assert "its checksum does not fit" in caplog.text
+    setup.close()
+
+
+def test_what_is_whole_but_cannot_be_is_named(tmp_path: Path) -> None:
+    """As if somebody had made the file: every number replaced by what it cannot be."""
+    path = keep(tmp_path, drafted())
+    body = path.read_bytes()[32:]
+    tree = msgspec.msgpack.decode(body)
+    wrong: tuple[object, ...] = (None, -1, 10**18, float("nan"), float("inf"), "x", [], {}, b"x")
+    refused = 0
+    places = list(places_of(tree))
+    random = np.random.default_rng(4)
+    for index in random.choice(len(places), 40, replace=False):
+        holder, key = places[index]
+        before = holder[key]
+        for value in wrong:
+            holder[key] = value
+            changed = msgspec.msgpack.encode(tree)
+            path.write_bytes(hashed(changed))
+            try:
+                read_kept(path)
+            except MocapdError:
+                refused += 1
+        holder[key] = before
+    assert refused > 240
+
+
+def places_of(tree: object) -> list[tuple[dict[object, object] | list[object], object]]:
+    """Every place in a tree: who holds it, and its key."""
+    items: list[tuple[object, object]] = []
+    if isinstance(tree, dict):
+        items = list(tree.items())
+    elif isinstance(tree, list):
+        items = list(enumerate(tree))
+    found: list[tuple[dict[object, object] | list[object], object]] = []
+    for key, value in items:
+        assert isinstance(tree, dict | list)
+        found += [(tree, key), *places_of(value)]
+    return found
+
+
+def hashed(body: bytes) -> bytes:
+    return hashlib.sha256(body).digest() + body
+
+
+def test_another_schema_is_not_gone_on_with(tmp_path: Path) -> None:
+    path = keep(tmp_path, drafted())
+    tree = msgspec.msgpack.decode(path.read_bytes()[32:])
+    tree["schema"] = 2
+    path.write_bytes(hashed(msgspec.msgpack.encode(tree)))
+    setup = keeper(tmp_path, begun(drafted()))
+    assert setup.offer is None
+    assert not path.exists()
+    setup.close()
+
+
+@pytest.mark.parametrize("days", [0, 6, 8])
+def test_an_old_one_is_forgotten(tmp_path: Path, days: int) -> None:
+    path = keep(tmp_path, drafted())
+    setup = keeper(tmp_path, begun(drafted()), WHEN + timedelta(days=days))
+    assert (setup.offer is not None) is (days < 7) is path.exists()
+    setup.close()
+
+
+def test_one_of_other_cameras_is_not_offered(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO")
+    path = keep(tmp_path, drafted())
+    moved = tuple(replace(one, source="usb:9-9:046d:0825:x") for one in drafted().cameras)
+    setup = keeper(tmp_path, Draft(cameras=moved))
+    assert setup.offer is None
+    assert not path.exists()
+    assert "of other cameras" in caplog.text
+    setup.close()
+
+
+def test_a_camera_left_out_then_may_be_there_now(tmp_path: Path) -> None:
+    keep(tmp_path, drafted())
+    more = (*drafted().cameras, DraftCamera("cam2", "/dev/video9", (640, 480)))
+    setup = keeper(tmp_path, Draft(cameras=more))
+    assert [one.id for one in setup.resume().draft.cameras] == ["cam0", "cam1"]
+    setup.close()
+
+
+def test_webcams_are_set_to_what_was_found_and_others_must_fit(tmp_path: Path) -> None:
+    draft = replace(drafted(), lens_saved=frozenset({"cam1"}))
+    keep(tmp_path, draft)
+    webcam = FakeWebcam("cam0")
+    locks = CameraLocks((webcam,))
+    # both are open in another mode than then; cam1 cannot be set
+    opened = tuple(replace(one, size_px=(640, 480)) for one in draft.cameras)
+    locks.set_free("cam0")
+    setup = SetupKeeper(tmp_path, Draft(cameras=opened), locks, lambda: WHEN)
+    found = setup.resume().draft
+    one, other = found.cameras
+    assert one == draft.cameras[0]
+    assert webcam.settings == WebcamSettings(one.size_px, one.fps_hz, one.controls)
+    assert webcam.values[Control.AUTO_EXPOSURE] == 1
+    assert webcam.values[Control.EXPOSURE] == one.controls.exposure
+    assert other.size_px == (640, 480)
+    assert set(found.lenses) == set(found.colours) == {"cam0"}
+    assert found.rig is None
+    locks.restore()
+    assert webcam.values[Control.AUTO_EXPOSURE] == 3  # as it was before the setup
+    setup.close()
+
+
+def test_cameras_are_opened_under_the_names_and_in_the_modes_they_had(tmp_path: Path) -> None:
+    kept, saved = (
+        drafted().cameras,
+        (
+            DraftCamera("cam0", "usb:3-1:1:1:a", (640, 480)),
+            DraftCamera("left", "usb:3-2:1:1:b", (640, 480)),
+        ),
+    )
+    assert kept_cameras(tmp_path, saved) == saved
+    keep(tmp_path, drafted())
+    assert [one.id for one in kept_cameras(tmp_path, saved)] == ["cam0", "cam1", "left"]
+    assert kept_cameras(tmp_path, saved)[0] == kept[0]
+
+
+# -- in the wizard -------------------------------------------------------------------------------
+
+
+class Find(Command, frozen=True):
+    """What `full_draft` has."""
+
+
+class Save(Command, frozen=True):
+    """The draft is saved."""
+
+
+class FindingStep:
+    """Is done, and finds everything when it is told to."""
+
+    verbs: Verbs = MappingProxyType({"find": Find, "save": Save})
+
+    def __init__(self, context: Context, name: StepName) -> None:
+        self.name, self._context = name, context
+
+    def enter(self) -> None: ...
+    def leave(self) -> None: ...
+    def tick(self, now_ns: int) -> None: ...
+    def job_failed(self, error: MocapdError) -> None: ...
+
+    def command(self, command: Command) -> None:
+        if isinstance(command, Find):
+            self._context.draft = replace(drafted(), cameras=self._context.draft.cameras)
+        else:
+            self._context.saved()
+
+    def view(self) -> StepView:
+        return StepView(StepState.DONE, "Go on.", 1.0)
+
+
+class Run:
+    """A wizard over a state directory, as a host makes one."""
+
+    def __init__(self, folder: Path) -> None:
+        draft = begun(drafted())
+        self.died: list[BaseException] = []
+        self._marks = 0
+        self.wizard = Wizard(
+            FrameHub(["cam0", "cam1"]),
+            {name: self.maker(name) for name in StepName},
+            dict,
+            folder,
+            folder,
+            self.died.append,
+            draft=draft,
+            keeper=SetupKeeper(folder, draft, NO_LOCKS),
+        )
+        self.wizard.start()
+
+    @staticmethod
+    def maker(name: StepName) -> MakeStep:
+        return lambda context: FindingStep(context, name)
+
+    def after(self, verb: str, **args: object) -> WizardView:
+        """The view when this was taken."""
+        self._marks += 1
+        mark = f"mark {self._marks}"
+        self.wizard.send(verb, args)
+        self.wizard.send(mark)  # refused by every step
+        return self.until(lambda what: mark in what)
+
+    def refused(self, verb: str, **args: object) -> str:
+        """Why it was refused."""
+        self.wizard.send(verb, args)
+        refused = self.until(lambda what: "mark" not in what).refused
+        assert refused is not None
+        return refused.what
+
+    def until(self, is_it: Callable[[str], bool]) -> WizardView:
+        """The first view with such a refusal."""
+        view = self.wizard.view()
+        for _ in range(400):
+            if view.refused is not None and is_it(view.refused.what):
+                return view
+            view = self.wizard.newer(view.serial, WAIT_S)
+        raise AssertionError(f"not seen; last: {view}")
+
+    def stop(self) -> None:
+        assert self.wizard.stop(WAIT_S)
+        assert not self.died
+
+
+def wait_for(path: Path, there: bool = True) -> None:
+    """Until the file is there, or gone."""
+    waited = threading.Event()
+    for _ in range(500):
+        if path.exists() is there:
+            return
+        waited.wait(0.01)
+    raise AssertionError(f"{path} {'is not there' if there else 'stays'}")
+
+
+def interrupted(folder: Path) -> None:
+    """A setup that found everything, Lens shown last, and was killed: what is in the file is what was
+    written as it went."""
+    run = Run(folder)
+    run.after("go", step="lens")
+    run.after("find")
+    wait_for(folder / FILE_NAME)
+    while StepName.LENS not in read_kept(folder / FILE_NAME).done:
+        wait_for(folder / FILE_NAME)
+    data = (folder / FILE_NAME).read_bytes()
+    run.stop()
+    (folder / FILE_NAME).write_bytes(data)
+
+
+def test_after_a_kill_the_next_setup_goes_on_where_it_was(tmp_path: Path) -> None:
+    interrupted(tmp_path)
+    run = Run(tmp_path)
+    offered = run.wizard.newer(0, WAIT_S)
+    kept = offered.view.details["kept"]
+    assert isinstance(kept, dict)
+    assert kept["done"] == ["cameras", "lens"]
+    assert offered.step is StepName.CAMERAS
+    assert offered.view.state is StepState.WAITING
+    assert "kept" in run.refused("go", step="room")
+    run.after("find")
+    assert "kept" in run.refused("next")
+    run.after("find")  # what is found before the choice does not take the place of what is kept
+    view = run.after("resume")
+    assert view.step is StepName.ROOM  # the first that is not done
+    assert {StepName.CAMERAS, StepName.LENS} <= view.done
+    assert "kept" not in view.view.details
+    assert same(run.wizard.draft, drafted())
+    assert "no setup of before is kept" in run.refused("resume")
+    run.stop()
+    again = Run(tmp_path)  # nothing new was found: still the same one
+    assert "kept" in again.wizard.newer(0, WAIT_S).view.details
+    again.stop()
+
+
+def test_begun_anew_what_was_kept_is_gone(tmp_path: Path) -> None:
+    interrupted(tmp_path)
+    run = Run(tmp_path)
+    view = run.after("begin_anew")
+    assert "kept" not in view.view.details
+    assert not (tmp_path / FILE_NAME).exists()
+    assert run.wizard.draft.rig is None
+    run.stop()
+
+
+def test_nothing_is_kept_of_what_is_saved_or_only_has_cameras(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    run.after("go", step="lens")
+    assert not (tmp_path / FILE_NAME).exists()
+    run.after("find")
+    wait_for(tmp_path / FILE_NAME)
+    run.after("save")
+    assert not (tmp_path / FILE_NAME).exists()
+    run.after("go", step="room")
+    run.stop()
+    assert not (tmp_path / FILE_NAME).exists()
+
+
+def test_what_was_found_last_is_written_before_the_end(tmp_path: Path) -> None:
+    run = Run(tmp_path)
+    run.wizard.send("find")
+    run.after("go", step="room")
+    run.stop()
+    assert same(read_kept(tmp_path / FILE_NAME).draft.factors, drafted().factors)
+
+
+def test_where_nothing_can_be_written_the_setup_goes_on(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    blocked = tmp_path / "state"
+    blocked.write_text("a file where the folder should be")
+    run = Run(blocked)
+    run.after("find")
+    run.after("go", step="room")
+    run.stop()
+    assert caplog.text.count("the setup in progress is not kept") == 1
+
+
+def test_every_part_of_a_draft_has_its_place_in_the_file() -> None:
+    told = {field.name for field in msgspec.structs.fields(_Kept)}
+    assert told == {"schema", "when", "done", "draft"}
+    kept = next(f.type for f in msgspec.structs.fields(_Kept) if f.name == "draft")
+    assert {f.name for f in msgspec.structs.fields(kept)} == {f.name for f in fields(Draft)}
