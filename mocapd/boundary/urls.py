@@ -8,6 +8,7 @@ from mocapd.errors import ConfigError
 HIDDEN = "***"
 
 _CREDENTIALS = re.compile(r"^([a-z][a-z0-9+.\-]*://)(.*)@", re.IGNORECASE | re.DOTALL)
+_ADDRESS = re.compile(r"[a-z][a-z0-9+.\-]*://\S+", re.IGNORECASE)
 _SECRET_QUERY = re.compile(
     r"([?&;](?:[\w.\-]*(?:pass|pwd|secret|token|key|auth|credential|sig)[\w.\-]*|pw|p)=)[^&;#]*",
     re.IGNORECASE,
@@ -44,6 +45,11 @@ def without_password(text: str) -> str:
 def is_masked(text: str) -> bool:
     """Whether its password is hidden, so that nothing can be reached by it."""
     return "://" in text and (f":{HIDDEN}@" in text or f"={HIDDEN}" in text)
+
+
+def without_passwords(text: str) -> str:
+    """A text in which addresses may stand, such as an error's, as it may be shown and sent."""
+    return _ADDRESS.sub(lambda found: without_password(found[0]), without_password(text))
 
 
 def has_password(text: str) -> bool:

@@ -1,23 +1,25 @@
 """What is at which address of the page."""
 
 import os
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-import msgspec
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
-from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 import mocapd
-from mocapd.errors import UnavailableError
+from mocapd.boundary.messages import decode_json
+from mocapd.errors import MalformedError, MocapdError
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.host import Host
 from mocapd.web.live_link import LiveLink
 from mocapd.web.picture_link import picture_link
 from mocapd.web.seat import Seat
+from mocapd.web.shown_json import as_json
 from mocapd.web.status import SetupAnswer, SetupRequest, Status
 from mocapd.web.wizard_link import WizardLink
 
@@ -30,6 +32,8 @@ MEDIA_TYPES = {
     ".svg": "image/svg+xml",
     ".png": "image/png",
 }
+LONGEST_BODY = 64 << 10  # of a request [bytes]
+MOST_SOCKETS = 24  # WebSockets at once; a window has three
 _PNG = b"\x89PNG"
 
 
@@ -42,6 +46,13 @@ class _Routes:
     def __init__(self, host: Host, encoder: PictureEncoder) -> None:
         self._host, self._encoder = host, encoder
         self._seat = Seat()
+        self._sockets = 0  # that are open
+        # all of them, now: no path is ever made of what somebody asks for
+        self._files = {
+            path.name: (path.read_bytes(), MEDIA_TYPES[path.suffix])
+            for path in PAGE_DIR.iterdir()
+            if path.suffix in MEDIA_TYPES
+        }
 
     def routes(self) -> list[Route | WebSocketRoute]:
         return [
@@ -56,13 +67,16 @@ class _Routes:
         ]
 
     async def _index(self, _request: Request) -> Response:
-        return FileResponse(PAGE_DIR / "index.html", media_type=MEDIA_TYPES[".html"])
+        return self._named("index.html")
 
     async def _file(self, request: Request) -> Response:
-        path = PAGE_DIR / request.path_params["name"]  # one part of a path: the route's own rule
-        if path.suffix not in MEDIA_TYPES or not path.is_file():
+        return self._named(request.path_params["name"])
+
+    def _named(self, name: str) -> Response:
+        if name not in self._files:
             return PlainTextResponse("no such file", 404)
-        return FileResponse(path, media_type=MEDIA_TYPES[path.suffix])
+        data, media_type = self._files[name]
+        return Response(data, media_type=media_type)
 
     async def _picture(self, request: Request) -> Response:
         wizard = self._host.wizard
@@ -87,26 +101,54 @@ class _Routes:
     async def _setup(self, request: Request) -> Response:
         """Begin a setup, or go on with the one there is; with {step}, at that step."""
         try:
-            asked = msgspec.json.decode(await request.body() or b"{}", type=SetupRequest)
-        except msgspec.DecodeError as error:
+            body = await _body(request)
+            asked = decode_json(body or b"{}", SetupRequest)
+        except _TooLongError:
+            # the rest is not waited for
+            return PlainTextResponse("that is too much", 413, headers={"connection": "close"})
+        except MalformedError as error:
             return PlainTextResponse(f"not understood: {error}", 400)
         try:
             wizard = await run_in_threadpool(self._host.setup)
-        except UnavailableError as error:
+        except MocapdError as error:
             return _json(SetupAnswer(error.what, error.where, error.fix), 503)
         if asked.step is not None:
             wizard.send("go", {"step": asked.step})
         return _json(SetupAnswer())
 
     async def _wizard_link(self, socket: WebSocket) -> None:
-        await WizardLink(socket, self._host, self._seat).run()
+        await self._if_room(socket, WizardLink(socket, self._host, self._seat).run)
 
     async def _pictures(self, socket: WebSocket) -> None:
-        await picture_link(socket, self._host, self._encoder)
+        await self._if_room(socket, lambda: picture_link(socket, self._host, self._encoder))
 
     async def _live(self, socket: WebSocket) -> None:
-        await LiveLink(socket, self._host).run()
+        await self._if_room(socket, LiveLink(socket, self._host).run)
+
+    async def _if_room(self, socket: WebSocket, run: Callable[[], Awaitable[None]]) -> None:
+        if self._sockets >= MOST_SOCKETS:
+            await socket.send_denial_response(PlainTextResponse("too many windows", 503))
+            return
+        self._sockets += 1
+        try:
+            await run()
+        finally:
+            self._sockets -= 1
+
+
+class _TooLongError(Exception):
+    """A body is longer than anything we are asked for."""
+
+
+async def _body(request: Request) -> bytes:
+    """Raises _TooLongError as soon as it is known, and ClientDisconnect."""
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > LONGEST_BODY:
+            raise _TooLongError
+    return bytes(body)
 
 
 def _json(answer: object, status: int = 200) -> Response:
-    return Response(msgspec.json.encode(answer), status, media_type="application/json")
+    return Response(as_json(answer), status, media_type="application/json")

@@ -5,15 +5,18 @@ from collections.abc import Awaitable, Coroutine, Iterable, Iterator
 from contextlib import suppress
 from typing import TypeVar
 
-import msgspec
-import numpy as np
 from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from mocapd.boundary.messages import decode_json
+from mocapd.errors import MalformedError
+from mocapd.web.shown_json import as_json
 
 T = TypeVar("T")
 
 LONGEST_MESSAGE = 8 << 20  # strokes come as PNG in base64 [bytes]
 _WS_BAD_DATA = 1007
 _WS_GONE = 1006
+_LONGEST_REASON = 120  # of a closed WebSocket; its frame holds 123 [bytes]
 MOST_HZ = 15.0  # how often anything is sent to a page
 
 
@@ -34,8 +37,8 @@ async def received(socket: WebSocket) -> str | bytes:
 async def understood(socket: WebSocket, kind: type[T]) -> T:
     """The next message as `kind`. Raises WebSocketDisconnect or BadMessageError."""
     try:
-        return msgspec.json.decode(await received(socket), type=kind)
-    except msgspec.DecodeError as error:
+        return decode_json(await received(socket), kind)
+    except MalformedError as error:
         raise BadMessageError(str(error)) from error
 
 
@@ -58,17 +61,6 @@ async def _sent(sending: Awaitable[None]) -> None:
         raise WebSocketDisconnect(_WS_GONE) from closed
 
 
-def as_json(message: object) -> bytes:
-    """JSON; NaN becomes null. Numbers may be numpy's: steps and metrics compute with them."""
-    return msgspec.json.encode(message, enc_hook=_plain)
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"a {type(value).__name__} is no JSON")
-
-
 async def serve(socket: WebSocket, *jobs: Coroutine[object, object, None]) -> None:
     """Accept, and run these until the first ends, mostly because the browser has left."""
     await socket.accept()
@@ -83,7 +75,8 @@ async def serve(socket: WebSocket, *jobs: Coroutine[object, object, None]) -> No
         if isinstance(error, BadMessageError):
             # only now: nothing may be sent any more by the other jobs
             with suppress(WebSocketDisconnect):
-                await _sent(socket.close(_WS_BAD_DATA, str(error)[:100]))
+                reason = str(error).encode()[:_LONGEST_REASON].decode(errors="ignore")
+                await _sent(socket.close(_WS_BAD_DATA, reason))
         elif not isinstance(error, WebSocketDisconnect | asyncio.CancelledError):
             raise error
 

@@ -17,7 +17,8 @@ from starlette.websockets import WebSocket
 
 from mocapd.web.encoder import Picture, PictureEncoder
 from mocapd.web.host import Host
-from mocapd.web.links import BadMessageError, as_json, send_bytes, serve, understood
+from mocapd.web.links import BadMessageError, send_bytes, serve, understood
+from mocapd.web.shown_json import as_json
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.step import Shape, StepName
 
@@ -26,14 +27,16 @@ BODY_WAIT_S = 0.08  # the pose of a frame comes a little after the frame [s]
 SAME_MOMENT_NS = 8_000_000  # a body this close to a frame is the frame's
 _LOOK_EVERY_S = 0.008
 MOST_UNDER_WAY = 32  # of one page
+LONGEST_NAME = 4096  # of a camera; the longest that anybody has tried has 3000 characters
+MOST_FRAMES = 2**63 - 1
 
 
 class Request(msgspec.Struct, frozen=True):
     """What a page asks for."""
 
-    camera: str
+    camera: Annotated[str, Meta(max_length=LONGEST_NAME)]
     width: Annotated[int, Meta(ge=1, le=8192)] = DEFAULT_WIDTH_PX
-    after: int | None = None
+    after: Annotated[int, Meta(ge=0, le=MOST_FRAMES)] | None = None
     over: Literal["setup", "body"] = "setup"
 
 

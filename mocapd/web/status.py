@@ -1,6 +1,9 @@
 """What other processes ask of a running page: is it alive, begin a setup."""
 
+from typing import Annotated
+
 import msgspec
+from msgspec import Meta
 
 
 class Status(msgspec.Struct, frozen=True):
@@ -16,7 +19,7 @@ class Status(msgspec.Struct, frozen=True):
 class SetupRequest(msgspec.Struct, frozen=True):
     """POST /setup: begin one, or go on with the one there is; `step`: shown at once."""
 
-    step: str | None = None
+    step: Annotated[str, Meta(max_length=100)] | None = None
 
 
 class SetupAnswer(msgspec.Struct, frozen=True):

@@ -8,14 +8,18 @@ setup, the rest is the wizard's.
 
 import asyncio
 from dataclasses import asdict
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 from starlette.websockets import WebSocket
 
-from mocapd.errors import UnavailableError
+from mocapd.boundary.messages import decode_json
+from mocapd.errors import MalformedError, MocapdError
 from mocapd.web.host import Host
-from mocapd.web.links import MOST_HZ, as_json, received, send_json, serve
+from mocapd.web.links import MOST_HZ, received, send_json, serve
 from mocapd.web.seat import Seat
+from mocapd.web.shown_json import as_json
 from mocapd.wizard.step import Problem
 from mocapd.wizard.wizard import WizardView
 
@@ -27,7 +31,7 @@ NOT_THE_DRIVER = Problem(
 class Command(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a person did on the page."""
 
-    verb: str
+    verb: Annotated[str, Meta(max_length=100)]
     args: dict[str, object] = {}
 
 
@@ -71,8 +75,8 @@ class WizardLink:
         while True:
             text = await received(self._socket)
             try:
-                command = msgspec.json.decode(text, type=Command)
-            except msgspec.DecodeError as error:
+                command = decode_json(text, Command)
+            except MalformedError as error:
                 self._refused = Problem(f"not understood: {error}", "the page", "reload the page")
                 continue
             self._refused = None
@@ -89,7 +93,7 @@ class WizardLink:
         elif command.verb == "begin":
             try:
                 await asyncio.to_thread(self._host.setup)
-            except UnavailableError as error:
+            except MocapdError as error:
                 self._refused = Problem.of(error)
         elif (wizard := self._host.wizard) is not None:
             wizard.send(command.verb, command.args)
