@@ -48,8 +48,13 @@ def is_masked(text: str) -> bool:
 
 
 def without_passwords(text: str) -> str:
-    """A text in which addresses may stand, such as an error's, as it may be shown and sent."""
-    return _ADDRESS.sub(lambda found: without_password(found[0]), without_password(text))
+    """A text in which addresses may stand, such as an error's, as it may be shown and sent.
+
+    One that begins with an address is taken for an address as a whole: a password may have spaces.
+    """
+    if _ADDRESS.match(text):
+        return without_password(text)
+    return _ADDRESS.sub(lambda found: without_password(found[0]), text)
 
 
 def has_password(text: str) -> bool:

@@ -2,6 +2,10 @@
 
 Other pages in the same browser can reach 127.0.0.1 too, by a fetch, a WebSocket or a name of their
 own that they let point here (DNS rebinding). So next to the token, Host and Origin must be ours.
+
+A browser sends a cookie to every port of this machine, also to those of other users. So the page has
+a place of its own, a path that nobody can guess: its cookie is for that path alone, and holds a secret
+of the browser's session, not the token. Programs give the token, with or without that path.
 """
 
 import secrets
@@ -10,10 +14,11 @@ from html import escape
 
 from starlette.datastructures import MutableHeaders
 from starlette.requests import HTTPConnection
-from starlette.responses import HTMLResponse
+from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 TOKEN = "token"  # its name in the URL's query
+LET_IN = "let_in"  # in the scope's state, for the connection that asked
 # Without form-action, base-uri and frame-ancestors, default-src would leave those three open.
 CONTENT_SECURITY_POLICY = (
     "default-src 'self'; img-src 'self' blob:; connect-src 'self'; frame-ancestors 'none'; "
@@ -26,6 +31,7 @@ HEADERS = {
     "referrer-policy": "no-referrer",  # or a link would carry the token away
     "cache-control": "no-store",
 }
+LONGEST_ADDRESS = 8 << 10  # path and query of a request [bytes]
 _WS_POLICY_VIOLATION = 1008
 
 
@@ -40,11 +46,14 @@ class Refusal:
 class Access:
     """ASGI middleware: lets in who may see the page, and puts the protecting headers on every answer.
 
-    The token is in the query of the URL that was printed, or in the cookie that the first page set.
+    The token is in the query of the URL that was printed; `/` leads from there to the page's place,
+    where a cookie lets in from then on.
     """
 
     def __init__(self, app: ASGIApp, port: int, token: str) -> None:
-        self._app, self._token = app, token.encode()
+        self._app, self._token = app, token
+        self._session = secrets.token_urlsafe(24)
+        self._place = f"/{secrets.token_urlsafe(9)}"
         self._hosts = frozenset({f"127.0.0.1:{port}", f"localhost:{port}"})
         self._origins = frozenset(f"http://{host}" for host in self._hosts)
         # cookies are shared by all ports of a machine: several daemons must not overwrite each other's
@@ -55,12 +64,18 @@ class Access:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
+        inside = scope["path"].startswith(f"{self._place}/")
+        if inside:
+            scope["root_path"] = self._place
         connection = HTTPConnection(scope)
-        # the first page leaves a cookie, so that the token need not stay in the address bar
-        given = connection.query_params.get(TOKEN, "")
+        has_token = _same(connection.query_params.get(TOKEN, ""), self._token)
+        has_cookie = inside and _same(connection.cookies.get(self._cookie, ""), self._session)
         cookie = ""
-        if scope["type"] == "http" and self._is_token(given):
-            cookie = f"{self._cookie}={given}; HttpOnly; SameSite=Strict; Path=/"
+        if inside and has_token and scope["type"] == "http":
+            # so that the token need not stay in the address bar
+            cookie = (
+                f"{self._cookie}={self._session}; HttpOnly; SameSite=Strict; Path={self._place}/"
+            )
 
         async def protected(message: Message) -> None:
             if message["type"] in ("http.response.start", "websocket.http.response.start"):
@@ -70,30 +85,41 @@ class Access:
                     headers.append("set-cookie", cookie)
             await send(message)
 
-        refusal = self._refusal(connection)
+        refusal = self._refusal(connection, has_token or has_cookie)
         if refusal is None:
-            await self._app(scope, receive, protected)
+            scope["state"][LET_IN] = True
+            app: ASGIApp = self._app
+            if scope["type"] == "http" and scope["path"] == "/":
+                # With the token again: a browser that a file led here would not send along a cookie
+                # that is SameSite=Strict. What follows # in the address it keeps by itself.
+                app = RedirectResponse(f"{self._place}/?{TOKEN}={self._token}", 303)
+            await app(scope, receive, protected)
         elif scope["type"] == "http" or "websocket.http.response" in scope.get("extensions", {}):
             answer = HTMLResponse(_page(refusal), refusal.status)
             await answer(scope, receive, protected)
         else:
             await send({"type": "websocket.close", "code": _WS_POLICY_VIOLATION})
 
-    def _refusal(self, connection: HTTPConnection) -> Refusal | None:
+    def _refusal(self, connection: HTTPConnection, known: bool) -> Refusal | None:
+        if (
+            len(connection.scope["raw_path"]) + len(connection.scope["query_string"])
+            > LONGEST_ADDRESS
+        ):
+            return Refusal(414, "This address is too long.")
         hosts = connection.headers.getlist("host")
         if len(hosts) != 1 or hosts[0] not in self._hosts:
             return Refusal(403, "This address is not the one that mocapd printed.")
         if any(origin not in self._origins for origin in connection.headers.getlist("origin")):
             return Refusal(403, "Another site asked for this.")
-        given = connection.query_params.get(TOKEN), connection.cookies.get(self._cookie)
-        if not any(self._is_token(one) for one in given if one):
+        if not known:
             return Refusal(
                 401, "The address has no valid token. Each start of mocapd makes a new one."
             )
         return None
 
-    def _is_token(self, given: str) -> bool:
-        return secrets.compare_digest(given.encode(errors="replace"), self._token)
+
+def _same(given: str, secret: str) -> bool:
+    return secrets.compare_digest(given.encode(errors="replace"), secret.encode())
 
 
 def _page(refusal: Refusal) -> str:

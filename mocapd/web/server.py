@@ -18,9 +18,17 @@ from mocapd.errors import UnavailableError
 from mocapd.outputs.socket_owners import holder_of
 from mocapd.web.access import TOKEN, Access
 from mocapd.web.app import make_app
+from mocapd.web.connections import (
+    ACCEPTED_AT_ONCE,
+    LONGEST_HEAD,
+    QUEUE,
+    HttpConnection,
+    SocketConnection,
+)
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.host import Host
 from mocapd.web.links import LONGEST_MESSAGE
+from mocapd.web.log_limit import limit_logs
 from mocapd.web.runtime_file import announce, withdraw
 from mocapd.web_params import Params
 
@@ -79,23 +87,27 @@ class WebServer:
         """
         listening = _listen(self._port)
         self._port = listening.getsockname()[1]
+        limit_logs()
         app = Access(make_app(self._host, self.encoder), self._port, self._token)
         config = uvicorn.Config(
             _Deadly(app, self._died),
             loop="asyncio",
-            http="h11",
+            http=HttpConnection,
+            ws=SocketConnection,
             lifespan="off",
             log_config=None,
             log_level="warning",
             access_log=False,  # URLs hold the token
             server_header=False,
             proxy_headers=False,
+            backlog=ACCEPTED_AT_ONCE,
+            h11_max_incomplete_event_size=LONGEST_HEAD,
             ws_max_size=LONGEST_MESSAGE,
             ws_ping_interval=None,  # on one machine the system tells when a browser has gone
             ws_per_message_deflate=False,  # JPEG does not get any smaller
             timeout_graceful_shutdown=1,
         )
-        self._server = uvicorn.Server(config)
+        self._server = _Server(config)
         try:
             if self._announce_at is not None:
                 announce(self._announce_at, self.url)
@@ -131,6 +143,15 @@ class WebServer:
         except BaseException as error:
             self._died(error)
             raise
+
+
+class _Server(uvicorn.Server):
+    """With a queue that is longer than what is taken from it at once."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        for one in sockets or ():
+            one.listen(QUEUE)
 
 
 class _Deadly:

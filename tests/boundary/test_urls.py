@@ -2,7 +2,13 @@
 
 import pytest
 
-from mocapd.boundary.urls import has_password, is_masked, split_url, without_password
+from mocapd.boundary.urls import (
+    has_password,
+    is_masked,
+    split_url,
+    without_password,
+    without_passwords,
+)
 from mocapd.errors import ConfigError
 
 
@@ -48,3 +54,10 @@ def test_a_masked_address_is_known_as_such() -> None:
         assert not is_masked(url)
         assert is_masked(without_password(url))
     assert not is_masked("usb:1-3:046d:0825:***")
+
+
+def test_addresses_within_a_text_lose_their_passwords() -> None:
+    text = "cam0: 'rtsp://u:p@ss@host/x' is lost, http://h/?pwd=s and v4l2 me@home"
+    shown = without_passwords(text)
+    assert shown == "cam0: 'rtsp://u:***@host/x' is lost, http://h/?pwd=*** and v4l2 me@home"
+    assert without_passwords("rtsp://u:p w@host/x") == "rtsp://u:***@host/x"

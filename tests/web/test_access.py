@@ -1,6 +1,7 @@
 """Who is let in: the token, our own address, and no other site."""
 
 from collections.abc import Mapping
+from urllib.parse import urlsplit
 
 import httpx
 import pytest
@@ -8,7 +9,9 @@ from websockets.exceptions import InvalidStatus
 
 from mocapd.web.access import HEADERS
 from mocapd.web.server import WebServer
+from mocapd.web_params import Params
 from tests.web.browser import PATIENCE_S, connect, get, origin_of, token_of
+from tests.web.tiny_host import TinyHost
 
 SOCKETS = ("/ws", "/pictures", "/live")
 
@@ -18,19 +21,49 @@ def cookie_of(answer: httpx.Response) -> str:
 
 
 def test_the_printed_url_opens_the_page(server: WebServer) -> None:
-    answer = httpx.get(server.url, trust_env=False, timeout=PATIENCE_S)
+    answer = httpx.get(server.url, trust_env=False, timeout=PATIENCE_S, follow_redirects=True)
     assert answer.status_code == 200
     assert "<title>mocapd</title>" in answer.text
 
 
+def entered(server: WebServer, host: str = "127.0.0.1") -> tuple[str, httpx.Response]:
+    """The page's place, which `/` leads to, and its first answer."""
+    headers = {"host": f"{host}:{server.port}"}
+    door = get(server, "/", headers, token=token_of(server))
+    assert door.status_code == 303
+    place = urlsplit(door.headers["location"]).path
+    return place, get(server, place, headers, token=token_of(server))
+
+
 def test_the_first_page_leaves_a_cookie_that_lets_in_without_token(server: WebServer) -> None:
-    first = get(server, "/", token=token_of(server))
+    place, first = entered(server)
     flags = first.headers["set-cookie"]
     assert "HttpOnly" in flags
     assert "SameSite=Strict" in flags
     assert str(server.port) in cookie_of(first)
-    later = get(server, "/status", {"cookie": cookie_of(first)})
-    assert later.status_code == 200
+    for path in ("", "status", "page/app.js"):
+        assert get(server, place + path, {"cookie": cookie_of(first)}).status_code == 200
+
+
+def test_the_cookie_is_for_the_pages_own_place_and_is_not_the_token(server: WebServer) -> None:
+    """Browsers send cookies to all ports of 127.0.0.1: what another server is sent must not help it."""
+    place, first = entered(server)
+    assert f"Path={place};" in first.headers["set-cookie"] + ";"
+    assert len(place) > 12
+    assert token_of(server) not in first.headers["set-cookie"]
+    assert token_of(server) not in place
+    for path in ("/", "/status", "/page/app.js", place.rstrip("/")):
+        assert get(server, path, {"cookie": cookie_of(first)}).status_code == 401, path
+    secret = cookie_of(first).partition("=")[2]
+    assert get(server, "/", token=secret).status_code == 401
+
+
+def test_each_start_has_a_place_of_its_own(server: WebServer, host: TinyHost) -> None:
+    with WebServer(host, Params(), lambda error: None) as other:
+        place, first = entered(server)
+        other_place, _ = entered(other)
+        assert place != other_place
+        assert get(other, place, {"cookie": cookie_of(first)}).status_code == 401
 
 
 @pytest.mark.parametrize("token", ["", "wrong", "ü", "x" * 5000])
@@ -43,9 +76,10 @@ def test_a_wrong_token_is_refused_and_told_what_to_do(server: WebServer, token: 
 
 
 def test_a_cookie_of_another_start_is_refused(server: WebServer) -> None:
-    cookie = cookie_of(get(server, "/", token=token_of(server)))
-    stale = cookie.replace(token_of(server), "of-the-start-before")
-    assert get(server, "/status", {"cookie": stale}).status_code == 401
+    place, first = entered(server)
+    name, _, _ = cookie_of(first).partition("=")
+    stale = f"{name}=of-the-start-before"
+    assert get(server, f"{place}status", {"cookie": stale}).status_code == 401
 
 
 def test_a_foreign_host_is_refused_despite_the_token(server: WebServer) -> None:
@@ -56,8 +90,11 @@ def test_a_foreign_host_is_refused_despite_the_token(server: WebServer) -> None:
 
 
 def test_localhost_is_our_host_too(server: WebServer) -> None:
+    place, first = entered(server, "localhost")
+    assert first.status_code == 200
     headers = {"host": f"localhost:{server.port}", "origin": f"http://localhost:{server.port}"}
-    assert get(server, "/", headers, token=token_of(server)).status_code == 200
+    headers["cookie"] = cookie_of(first)
+    assert get(server, f"{place}status", headers).status_code == 200
 
 
 @pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:1"])
@@ -84,7 +121,7 @@ def test_websockets_are_guarded_likewise(server: WebServer, path: str) -> None:
 @pytest.mark.parametrize(
     ("path", "query", "headers", "status"),
     [
-        ("/", True, {}, 200),
+        ("/", True, {}, 303),
         ("/page/style.css", True, {}, 200),
         ("/page/none.js", True, {}, 404),
         ("/picture/none", True, {}, 404),

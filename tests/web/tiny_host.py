@@ -102,11 +102,12 @@ class TinyHost:
         if self.wizard is None:
             assert self.hub is not None
             steps = {StepName.CAMERAS: ListeningStep}
-            self.wizard = Wizard(
+            wizard = Wizard(
                 self.hub, steps, dict, self._state_dir, self._state_dir, self._died.append
             )
-            self.wizard.start()
+            wizard.start()
             self.begun += 1
+            self.wizard = wizard
         return self.wizard
 
     def body(self) -> tuple[BodyState, Skeleton] | None:

@@ -9,14 +9,16 @@
 // view: {serial, step, steps, done, view: {state, sentence, progress, problems, details}, refused,
 //        saved, ended, driver, cameras: [names]}
 
+const PLACE = new URL("../", import.meta.url); // of the page; its path is another with each start
 const FIRST_PAUSE_MS = 300;
 const LONGEST_PAUSE_MS = 3000;
 
 /** A WebSocket that is opened again whenever it closes. */
 export class Socket {
   /** onMessage(event); onState(state) as of link.onState. */
-  constructor(path, onMessage, onState = () => {}) {
-    this.url = `ws://${location.host}${path}`;
+  constructor(name, onMessage, onState = () => {}) {
+    this.url = new URL(name, PLACE);
+    this.url.protocol = "ws:";
     this.onMessage = onMessage;
     this.onState = onState;
     this.pause = FIRST_PAUSE_MS;
@@ -62,7 +64,7 @@ export class Socket {
 /** A refused WebSocket tells nothing; a refused page does: the daemon was started anew. */
 async function isRefused() {
   try {
-    const answer = await fetch("/status");
+    const answer = await fetch(new URL("status", PLACE));
     return answer.status === 401 || answer.status === 403;
   } catch {
     return false;
@@ -75,7 +77,7 @@ class Link {
     this.idles = new Listeners();
     this.states = new Listeners();
     this.socket = new Socket(
-      "/ws",
+      "ws",
       (event) => this.take(JSON.parse(event.data)),
       (state) => this.states.tell(state),
     );
@@ -108,7 +110,8 @@ class Link {
   }
 
   pictureUrl(key) {
-    return `/picture/${key.split("/").map(encodeURIComponent).join("/")}`;
+    const path = key.split("/").map(encodeURIComponent).join("/");
+    return new URL(`picture/${path}`, PLACE).href;
   }
 }
 

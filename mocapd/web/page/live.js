@@ -48,7 +48,7 @@ export class Live {
     this.outputs = table(root, ["Output", "Listeners", "Sent", "Refused", "Details"]);
     this.outputs.id = "live-outputs";
     this.socket = new Socket(
-      "/live",
+      "live",
       (event) => this.take(JSON.parse(event.data)),
       (state) => state === "open" && this.watch(),
     );

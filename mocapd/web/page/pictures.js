@@ -17,7 +17,7 @@ class PictureLink {
     this.elements = new Set();
     this.asked = new Map(); // by camera: the elements that wait for its next picture
     this.socket = new Socket(
-      "/pictures",
+      "pictures",
       (event) => this.take(event.data),
       (state) => this.changed(state),
     );

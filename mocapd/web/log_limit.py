@@ -1,0 +1,42 @@
+"""Logs that others can fill: libraries write a record for each trouble with each connection."""
+
+import logging
+import time
+
+PAUSE_S = 10.0  # between two records of one message [s]
+_MOST_MESSAGES = 100  # that are told apart
+
+
+class LogLimit(logging.Filter):
+    """Passes a message once in PAUSE_S, with how many of it were left out since.
+
+    Messages are told apart by the first line of their format: what follows names objects and addresses.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._passed_s: dict[str, float] = {}
+        self._left_out: dict[str, int] = {}
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Whether to log it."""
+        message = str(record.msg).partition("\n")[0]
+        now_s = time.monotonic()
+        if now_s - self._passed_s.get(message, float("-inf")) < PAUSE_S:
+            self._left_out[message] = self._left_out.get(message, 0) + 1
+            return False
+        if len(self._passed_s) >= _MOST_MESSAGES:
+            self._passed_s.clear()
+            self._left_out.clear()
+        self._passed_s[message] = now_s
+        if left_out := self._left_out.pop(message, 0):
+            record.msg = f"{record.msg} ({left_out} more like it were left out)"
+        return True
+
+
+def limit_logs() -> None:
+    """Limit what asyncio and uvicorn log, once for the whole process."""
+    for name in ("asyncio", "uvicorn.error"):
+        logger = logging.getLogger(name)
+        if not any(isinstance(one, LogLimit) for one in logger.filters):
+            logger.addFilter(LogLimit())
