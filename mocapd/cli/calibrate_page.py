@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mocapd.config_sections import Config
+    from mocapd.web.runtime_file import Place, Running
     from mocapd.wizard.step import StepName
 
-SETUP = "#setup"  # the part of the page
 LOOK_EVERY_S = 0.25
 HANG_UP_S = 0.5  # for browsers, at the end [s]
 STAY_S = 6.0  # after Save, so that the page can say so [s]
@@ -39,33 +41,58 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
-    from mocapd.web.runtime_file import begin_setup, running, runtime_path
+    from mocapd.web.runtime_file import SETUP, Place, begin_setup, running, runtime_folder
 
     step = _step(options.step)
-    announce_at = None if options.demo else runtime_path(config.state_dir)
-    there = None if announce_at is None else running(announce_at)
-    if there is not None:
+    folder = runtime_folder(config.state_dir)
+    pages = () if options.demo else running(folder)
+    if pages:
+        there = _the_one(pages, config)
         begin_setup(there.url, None if step is None else step.value)
         print(f"the running mocapd has the cameras; its page: {there.url}{SETUP}", flush=True)
-        _browse(there.url + SETUP, options.browser)
+        _browse(there.redirect, options.browser)
         return 0
     if options.demo and not options.own_place:
         config = replace(config, state_dir=config.state_dir / "demo")
+    place = Place(folder, config.state_dir, config.instance, findable=not options.demo)
     from mocapd.cli.first_start import database_beside
     from mocapd.cli.running import end_despite_work
 
     with database_beside(config):
-        code = _alone(options, config, step, announce_at)
+        code = _alone(options, config, step, place)
     end_despite_work(code)
     return code
 
 
-def _alone(
-    options: PageOptions, config: "Config", step: "StepName | None", announce_at: Path | None
-) -> int:
+def _the_one(pages: "Sequence[Running]", config: "Config") -> "Running":
+    """The page to attach to: the only one, else the one of this configuration. Raises ConfigError."""
+    from mocapd.outputs.keys import chunk
+    from mocapd.web.runtime_file import SETUP
+
+    if len(pages) > 1 and config.instance:
+        named = [page for page in pages if page.instance == chunk(config.instance)]
+        pages = named or pages
+    if len(pages) > 1:
+        own = str(config.state_dir.resolve())
+        beside = [page for page in pages if page.state_dir == own]
+        pages = beside or pages
+    if len(pages) == 1:
+        return pages[0]
+    names = [f"{page.instance or 'a setup'} (pid {page.pid})" for page in pages]
+    for name, page in zip(names, pages, strict=True):
+        print(f"{name}: {page.url}{SETUP}", flush=True)
+    raise ConfigError(
+        f"several are running: {', '.join(names)}",
+        "command line",
+        "open one of these addresses, or choose by --set instance=NAME or --state-dir",
+    )
+
+
+def _alone(options: PageOptions, config: "Config", step: "StepName | None", place: "Place") -> int:
     from mocapd.cli.calibrate_hosts import demo_host, webcam_host
     from mocapd.cli.running import INTERNAL_ERROR, Signals
     from mocapd.daemon import ThreadDiedError
+    from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 
     signals = Signals()
@@ -73,12 +100,12 @@ def _alone(
     # a thread nobody watches must not die unseen either
     threading.excepthook = lambda args: host.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(host)
-    server = WebServer(host, config.web, host.died, announce_at)
+    server = WebServer(host, config.web, host.died, place)
     try:
         server.start()
         host.start()
         print(f"set up mocapd at {server.url}{SETUP}", flush=True)
-        _browse(server.url + SETUP, options.browser)
+        _browse(server.redirect, options.browser)
         until_s = float("inf")
         while not host.wait(LOOK_EVERY_S) and time.monotonic() < until_s:
             if host.saved and until_s == float("inf"):
@@ -113,7 +140,12 @@ def _step(name: str | None) -> "StepName | None":
     return StepName(name)
 
 
-def _browse(url: str, wanted: bool) -> None:
-    """Open the browser where there is a desktop."""
-    if wanted and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        webbrowser.open(url)
+def _browse(redirect: Path | None, wanted: bool) -> None:
+    """Open the browser where there is a desktop, with a file that leads it to the page: the page's
+    address has the token, and every user may read a command line."""
+    if not wanted or redirect is None:
+        return
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        webbrowser.open(redirect.resolve().as_uri())
+        # one from a snap or a flatpak may not read that file
+        print("should the browser not show it, open that address in it", flush=True)

@@ -68,7 +68,7 @@ class DaemonPage:
 
     def _begin(self) -> None:
         # here, as it takes a third of a second that nobody waits for now
-        from mocapd.web.runtime_file import runtime_path
+        from mocapd.web.runtime_file import Place, runtime_folder
         from mocapd.web.server import WebServer
         from mocapd.wizard.daemon_host import DaemonHost
 
@@ -76,9 +76,9 @@ class DaemonPage:
         daemon, session = self._run
         self._host = DaemonHost(self._config)
         self._host.serve(daemon, session)
-        server = WebServer(
-            self._host, self._config.web, self._died, runtime_path(self._config.state_dir)
-        )
+        state_dir = self._config.state_dir
+        place = Place(runtime_folder(state_dir), state_dir, daemon.instance)
+        server = WebServer(self._host, self._config.web, self._died, place)
         try:
             server.start()
         except MocapdError as error:  # bodies are what the daemon is for: it goes on without a page

@@ -1,5 +1,7 @@
 """Which process is at a local TCP port: to name who holds one, or who listens to us."""
 
+import os
+
 import psutil
 
 
@@ -9,6 +11,20 @@ def holder_of(port: int) -> str:
         if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port:
             return describe(connection.pid)
     return ""
+
+
+def listens(pid: int, address: str, port: int) -> bool:
+    """Whether this process lives, is of our user, and itself listens on that local TCP port."""
+    try:
+        process = psutil.Process(pid)
+        if process.uids().real != os.getuid():
+            return False
+        return any(
+            connection.status == psutil.CONN_LISTEN and connection.laddr == (address, port)
+            for connection in process.net_connections("tcp")
+        )
+    except (psutil.NoSuchProcess, psutil.AccessDenied):
+        return False
 
 
 def owners_of(ports: frozenset[int]) -> dict[int, str]:

@@ -1,86 +1,133 @@
-"""Where a running daemon says the URL of its page, so that `mocapd calibrate` finds it.
+"""Where a running process says where its page is, so that `mocapd calibrate` finds it.
 
-A webcam opens only once: whoever wants its pictures must ask the process that has it.
+A webcam opens only once: whoever wants its pictures must ask the process that has it. Each process has
+files of its own in the runtime directory, named by its id; they are believed only while that process
+lives, is ours, and listens on that port: after a kill, anybody's server may have it.
 """
 
 import os
 import urllib.error
 import urllib.request
+from contextlib import suppress
 from dataclasses import dataclass
+from html import escape
+from http.client import HTTPException
 from pathlib import Path
+from typing import Annotated
 from urllib.parse import urlsplit, urlunsplit
 
 import msgspec
+from msgspec import Meta
 
-from mocapd.errors import CannotCreateError, UnavailableError
+from mocapd.boundary.files import read_file
+from mocapd.boundary.messages import decode_json
+from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError
+from mocapd.outputs.socket_owners import listens
+from mocapd.web.access import TOKEN
 from mocapd.web.status import SetupAnswer, SetupRequest, Status
 from mocapd.whole_file import whole_file
 
-NAME = "page.json"
+ADDRESS = "127.0.0.1"
+SETUP = "#setup"  # the part of the page
 ANSWER_S = 2.0  # how long a living daemon may take to answer [s]
-BEGIN_S = 20.0  # and to begin a setup: on a busy machine its code alone takes seconds to load [s]
 BEGIN_S = 30.0  # and to begin a setup: cameras may have to be let go first [s]
+_LONGEST_FILE = 64 << 10  # [bytes]
+_LONGEST_ANSWER = 1 << 20  # [bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a page is announced. folder: see `runtime_folder`; state_dir, instance: by which it is
+    told from other pages of this user; findable: whether others may attach to it."""
+
+    folder: Path
+    state_dir: Path
+    instance: str = ""
+    findable: bool = True
 
 
 class _Said(msgspec.Struct, frozen=True):
-    url: str
-    pid: int
+    port: Annotated[int, Meta(ge=1, le=65535)]
+    token: Annotated[str, Meta(pattern=r"^[\w-]{1,200}$")]
+    pid: Annotated[int, Meta(ge=1, le=2**31)]
+    state_dir: str
+    instance: str
 
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A page that answers. url: with its token; status: what it says of itself."""
+    """A page that answers. url: with its token; status: what it says of itself; redirect: a file of
+    our user that leads a browser there."""
 
     url: str
     status: Status
+    pid: int
+    state_dir: str
+    instance: str
+    redirect: Path
 
 
-def runtime_path(state_dir: Path) -> Path:
+def url_of(port: int, token: str) -> str:
+    """Of the page, with its token."""
+    return f"http://{ADDRESS}:{port}/?{TOKEN}={token}"
+
+
+def runtime_folder(state_dir: Path) -> Path:
     """$RUNTIME_DIRECTORY under systemd, else the session's runtime directory, else `state_dir`."""
     given = os.environ.get("RUNTIME_DIRECTORY", "").partition(":")[0]
     session = os.environ.get("XDG_RUNTIME_DIR", "")
     if given:
-        return Path(given) / NAME
-    return (Path(session) / "mocapd" if session else state_dir) / NAME
+        return Path(given)
+    return Path(session) / "mocapd" if session else state_dir
 
 
-def announce(path: Path, url: str) -> None:
-    """Say that our page is at `url`; only our user may read it, as it holds the token.
+def redirect_file(folder: Path, pid: int) -> Path:
+    """Leads a browser to the page of that process: a token in a command line is read by every user."""
+    return folder / f"page-{pid}.html"
+
+
+def announce(place: Place, port: int, token: str) -> None:
+    """Say where our page is; only our user may read it, as it holds the token.
 
     Raises CannotCreateError.
     """
-    said = msgspec.json.encode(_Said(url, os.getpid()))
+    redirect = redirect_file(place.folder, os.getpid())
     try:
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with whole_file(path) as partial:
-            made = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-            with os.fdopen(made, "wb") as file:
-                file.write(said)
+        place.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        _write(redirect, _redirect_to(url_of(port, token) + SETUP).encode())
+        if place.findable:
+            state_dir = str(place.state_dir.resolve())
+            said = _Said(port, token, os.getpid(), state_dir, place.instance)
+            _write(redirect.with_suffix(".json"), msgspec.json.encode(said))
     except OSError as error:
         raise CannotCreateError(
             f"cannot be written: {error.strerror}",
-            str(path),
+            str(place.folder),
             "set XDG_RUNTIME_DIR to your own folder",
         ) from error
 
 
-def withdraw(path: Path) -> None:
-    """Our page is gone. What another process has said there meanwhile stays."""
-    said = _read(path)
-    if said is not None and said.pid == os.getpid():
-        path.unlink(missing_ok=True)
+def withdraw(folder: Path) -> None:
+    """Our page is gone."""
+    _remove(redirect_file(folder, os.getpid()))
 
 
-def running(path: Path) -> Running | None:
-    """The page that is announced there, when it answers; None without one."""
-    said = _read(path)
-    if said is None:
-        return None
-    try:
-        status = msgspec.json.decode(_answer(said.url, "/status", ANSWER_S), type=Status)
-    except (OSError, msgspec.DecodeError):
-        return None  # it ended without a word, and something else may have its port
-    return Running(said.url, status)
+def running(folder: Path) -> tuple[Running, ...]:
+    """The pages that are announced there and answer, by process id; of others the files are removed."""
+    found = []
+    for path in folder.glob("page-*.json"):
+        said = _believed(path)
+        if said is None:
+            _remove(path)
+            continue
+        url = url_of(said.port, said.token)
+        try:
+            status = decode_json(_answer(url, "/status", ANSWER_S), Status)
+        except (OSError, MalformedError):
+            continue  # it is ending, or too busy
+        redirect = path.with_suffix(".html")
+        found.append(Running(url, status, said.pid, said.state_dir, said.instance, redirect))
+    return tuple(sorted(found, key=lambda page: page.pid))
 
 
 def begin_setup(url: str, step: str | None) -> None:
@@ -89,8 +136,8 @@ def begin_setup(url: str, step: str | None) -> None:
         _answer(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
     except urllib.error.HTTPError as refused:
         try:
-            why = msgspec.json.decode(refused.read(), type=SetupAnswer)
-        except msgspec.DecodeError:
+            why = decode_json(refused.read(_LONGEST_ANSWER), SetupAnswer)
+        except (OSError, MalformedError):
             why = SetupAnswer(f"it refuses: {refused.reason}")
         raise UnavailableError(why.what, why.where, why.fix) from refused
     except OSError as error:
@@ -104,13 +151,42 @@ def _answer(url: str, path: str, timeout_s: float, body: bytes | None = None) ->
     there = urlunsplit(urlsplit(url)._replace(path=path, fragment=""))
     # a proxy for the rest of the world is none for this machine
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-    with opener.open(there, body, timeout=timeout_s) as answer:
-        data: bytes = answer.read()
+    try:
+        with opener.open(there, body, timeout=timeout_s) as answer:
+            data: bytes = answer.read(_LONGEST_ANSWER)
+    except HTTPException as error:
+        raise ConnectionError(f"{type(error).__name__}: {error}") from error
     return data
 
 
-def _read(path: Path) -> _Said | None:
+def _believed(path: Path) -> _Said | None:
+    """What a living process of ours says there; None for anything else."""
     try:
-        return msgspec.json.decode(path.read_bytes(), type=_Said)
-    except (OSError, msgspec.DecodeError):
+        said = decode_json(read_file(path, _LONGEST_FILE), _Said)
+    except InputError:  # of which MalformedError is one
         return None
+    own_name = path.name == redirect_file(path.parent, said.pid).with_suffix(".json").name
+    return said if own_name and listens(said.pid, ADDRESS, said.port) else None
+
+
+def _write(path: Path, data: bytes) -> None:
+    with whole_file(path) as partial:
+        made = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(made, "wb") as file:
+            file.write(data)
+
+
+def _remove(path: Path) -> None:
+    """Both files of a process; what cannot be removed does no harm."""
+    for suffix in (".json", ".html"):
+        with suppress(OSError):
+            path.with_suffix(suffix).unlink()
+
+
+def _redirect_to(url: str) -> str:
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8">'
+        '<meta name="referrer" content="no-referrer"><title>mocapd</title>'
+        f'<meta http-equiv="refresh" content="0;url={escape(url)}">'
+        f'<p><a href="{escape(url)}" rel="noreferrer">Open the page of mocapd</a></p></html>\n'
+    )

@@ -1,6 +1,7 @@
 """The web server: uvicorn in a thread of its own, on 127.0.0.1 only."""
 
 import asyncio
+import os
 import secrets
 import socket
 import threading
@@ -16,7 +17,7 @@ from uvicorn.protocols.utils import ClientDisconnected
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs.socket_owners import holder_of
-from mocapd.web.access import TOKEN, Access
+from mocapd.web.access import Access
 from mocapd.web.app import make_app
 from mocapd.web.connections import (
     ACCEPTED_AT_ONCE,
@@ -29,18 +30,17 @@ from mocapd.web.encoder import PictureEncoder
 from mocapd.web.host import Host
 from mocapd.web.links import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs
-from mocapd.web.runtime_file import announce, withdraw
+from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url_of, withdraw
 from mocapd.web_params import Params
 
-ADDRESS = "127.0.0.1"
 STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
 
 
 class WebServer:
     """Serves the page from `start` to `stop`, or as a context manager.
 
-    `died` is called, in the server's thread, with whatever unexpected happened there. `announce_at`:
-    the file where the URL is said (see runtime_file), if it shall be. `encoder` counts its work.
+    `died` is called, in the server's thread, with whatever unexpected happened there. `place`: where
+    the URL is said (see runtime_file), if it shall be. `encoder` counts its work.
     """
 
     def __init__(
@@ -48,10 +48,10 @@ class WebServer:
         host: Host,
         params: Params,
         died: Callable[[BaseException], None],
-        announce_at: Path | None = None,
+        place: Place | None = None,
     ) -> None:
         self._host, self._port, self._died = host, params.port, died
-        self._announce_at = announce_at
+        self._place = place
         self._token = secrets.token_urlsafe(24)
         self._executor = ThreadPoolExecutor(1, thread_name_prefix="web-encode")
         self.encoder = PictureEncoder(lambda: host.hub, self._executor)
@@ -78,7 +78,12 @@ class WebServer:
     @property
     def url(self) -> str:
         """Where the page is, with the token of this start; valid once started."""
-        return f"http://{ADDRESS}:{self._port}/?{TOKEN}={self._token}"
+        return url_of(self._port, self._token)
+
+    @property
+    def redirect(self) -> Path | None:
+        """A file that leads a browser of our user to the page; None when nothing is announced."""
+        return None if self._place is None else redirect_file(self._place.folder, os.getpid())
 
     def start(self) -> None:
         """Returns as soon as the page can be asked for.
@@ -109,8 +114,8 @@ class WebServer:
         )
         self._server = _Server(config)
         try:
-            if self._announce_at is not None:
-                announce(self._announce_at, self.url)
+            if self._place is not None:
+                announce(self._place, self._port, self._token)
         except BaseException:
             listening.close()
             raise
@@ -128,8 +133,8 @@ class WebServer:
     def stop(self, timeout_s: float = STOP_S) -> bool:
         """Let go and join; False when something still blocks the thread after `timeout_s` [s]."""
         self.let_go()
-        if self._announce_at is not None:
-            withdraw(self._announce_at)
+        if self._place is not None:
+            withdraw(self._place.folder)
         if self._thread is None:
             return True
         self._thread.join(timeout_s)

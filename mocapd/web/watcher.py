@@ -13,7 +13,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from mocapd.errors import UnavailableError
 from mocapd.web.picture_link import DEFAULT_WIDTH_PX
-from mocapd.web.runtime_file import NAME, Running, running
+from mocapd.web.runtime_file import Running, running
 
 ANNOUNCED_S = 20.0  # how long the daemon may take to say where its page is [s]
 
@@ -49,7 +49,7 @@ def watching(runtime_dir: Path) -> Iterator[Watcher]:
 
     `runtime_dir` is the daemon's $XDG_RUNTIME_DIR. Raises UnavailableError when there is no page.
     """
-    page = _page(runtime_dir / "mocapd" / NAME)
+    page = _page(runtime_dir / "mocapd")
     watcher = Watcher()
     with ExitStack() as opened:
         live = opened.enter_context(connect(_address(page.url, "/live"), proxy=None))
@@ -68,14 +68,13 @@ def watching(runtime_dir: Path) -> Iterator[Watcher]:
                 thread.join()
 
 
-def _page(path: Path) -> Running:
+def _page(folder: Path) -> Running:
     give_up_s = time.monotonic() + ANNOUNCED_S
     while time.monotonic() < give_up_s:
-        page = running(path)
-        if page is not None:
+        for page in running(folder):
             return page
         time.sleep(0.1)
-    raise UnavailableError("the daemon serves no page", str(path), "set web.enabled = true")
+    raise UnavailableError("the daemon serves no page", str(folder), "set web.enabled = true")
 
 
 def _address(url: str, path: str) -> str:

@@ -2,7 +2,6 @@
 
 import os
 import socket
-import stat
 from contextlib import suppress
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from mocapd.errors import CannotCreateError, UnavailableError
-from mocapd.web.runtime_file import announce, begin_setup, running, runtime_path, withdraw
+from mocapd.web.runtime_file import Place
 from mocapd.web.server import WebServer
 from mocapd.web_params import Params
 from tests.web.browser import PATIENCE_S, connect, until_closed
@@ -93,54 +92,10 @@ def test_what_nobody_expected_is_told_to_the_owner(host: TinyHost) -> None:
     assert isinstance(died[0], ZeroDivisionError)
 
 
-def test_other_processes_find_the_page(host: TinyHost, tmp_path: Path) -> None:
-    path = tmp_path / "run" / "page.json"
-    with WebServer(host, Params(), lambda error: None, path) as server:
-        assert stat.S_IMODE(path.stat().st_mode) == 0o600
-        found = running(path)
-        assert found is not None
-        assert found.url == server.url
-        assert found.status.setup is None
-        begin_setup(found.url, None)
-        assert host.begun == 1
-        host.why_not = "the cameras are being opened"
-        with pytest.raises(UnavailableError, match="are being opened"):
-            begin_setup(found.url, None)
-    assert not path.exists()
-
-
-def test_a_page_that_is_gone_is_not_found(tmp_path: Path) -> None:
-    path = tmp_path / "page.json"
-    assert running(path) is None
-    path.write_text("damaged")
-    assert running(path) is None
-    announce(path, "http://127.0.0.1:9/?token=of-a-process-that-was-killed")
-    assert running(path) is None
-    with pytest.raises(UnavailableError):
-        begin_setup("http://127.0.0.1:9/?token=x", None)
-
-
-def test_what_another_process_announced_stays(tmp_path: Path) -> None:
-    path = tmp_path / "page.json"
-    path.write_text('{"url": "http://127.0.0.1:9/", "pid": 1}')
-    withdraw(path)
-    assert path.exists()
-
-
-def test_where_it_is_announced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("RUNTIME_DIRECTORY", raising=False)
-    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
-    assert runtime_path(tmp_path) == tmp_path / "page.json"
-    monkeypatch.setenv("XDG_RUNTIME_DIR", "/run/user/7")
-    assert runtime_path(tmp_path) == Path("/run/user/7/mocapd/page.json")
-    monkeypatch.setenv("RUNTIME_DIRECTORY", "/run/mocapd:/run/other")
-    assert runtime_path(tmp_path) == Path("/run/mocapd/page.json")
-
-
 def test_a_place_that_cannot_be_written_is_told(host: TinyHost, tmp_path: Path) -> None:
     blocked = tmp_path / "file"
     blocked.write_text("")
-    server = WebServer(host, Params(), lambda error: None, blocked / "page.json")
+    server = WebServer(host, Params(), lambda error: None, Place(blocked / "run", tmp_path))
     with pytest.raises(CannotCreateError):
         server.start()
     assert server.stop()
