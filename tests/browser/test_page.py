@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from typing import ClassVar
 from urllib.parse import urlsplit
 
 import pytest
@@ -20,9 +21,14 @@ WAIT_MS = 60_000
 
 
 @pytest.fixture(scope="module")
-def url(user_env: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("runtime")
+
+
+@pytest.fixture(scope="module")
+def url(user_env: dict[str, str], runtime_dir: Path) -> Iterator[str]:
     """Of a daemon on simulated webcams, told by the `mocapd calibrate` that attaches to it."""
-    env = user_env | {"XDG_RUNTIME_DIR": str(tmp_path_factory.mktemp("runtime"))}
+    env = user_env | {"XDG_RUNTIME_DIR": str(runtime_dir)}
     process = start(env, "demo", "--set", "zenoh.port=7461", "--set", "osc.enabled=false")
     try:
         wait_for_page(process)
@@ -69,6 +75,21 @@ def test_the_live_view_shows_cameras_body_rate_and_listeners(
     assert "token" not in page.url, "a token in the address bar ends up in screenshots"
 
 
+def test_the_file_leads_the_browser_to_the_setup(page: Page, url: str, runtime_dir: Path) -> None:
+    heard = problems_of(page)
+    (file,) = runtime_dir.glob("mocapd/page-*.html")
+    page.goto(file.as_uri())
+    page.locator("#setup h1").first.wait_for(timeout=WAIT_MS)
+    expect(page.locator("#connection")).to_have_text("Connected", timeout=WAIT_MS)
+    assert page.url.startswith(url.partition("?")[0])
+    assert page.url.endswith("#setup")
+    assert "token" not in page.url
+    assert page.evaluate("document.referrer") == ""
+    page.reload()  # by its cookie
+    expect(page.locator("#connection")).to_have_text("Connected", timeout=WAIT_MS)
+    assert heard == []
+
+
 @pytest.mark.parametrize("view", ["live", "setup"])
 def test_at_phone_width_nothing_is_cut_off(page: Page, url: str, view: str) -> None:
     page.set_viewport_size({"width": 360, "height": 740})
@@ -99,16 +120,28 @@ def test_a_wrong_token_is_refused(page: Page, url: str, token: str) -> None:
     assert page.locator("camera-picture").count() == 0
 
 
+class Foreign(SimpleHTTPRequestHandler):
+    """`cookies`: what it was sent, of each page."""
+
+    cookies: ClassVar[list[str | None]] = []
+
+    def do_GET(self) -> None:
+        if self.path == "/":
+            self.cookies.append(self.headers["Cookie"])
+        super().do_GET()
+
+
 def test_a_foreign_page_gets_nothing_even_with_the_cookie(
     page: Page, url: str, tmp_path: Path
 ) -> None:
     page.goto(url)
     page.locator("h1").first.wait_for(timeout=WAIT_MS)
     (tmp_path / "index.html").write_text("<!doctype html><title>foreign</title>", encoding="utf-8")
-    handler = partial(SimpleHTTPRequestHandler, directory=str(tmp_path))
+    handler = partial(Foreign, directory=str(tmp_path))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as foreign:
         threading.Thread(target=foreign.serve_forever, daemon=True).start()
         page.goto(f"http://127.0.0.1:{foreign.server_port}/")
+        assert Foreign.cookies == [None], "cookies are for all ports of this machine"
         host = urlsplit(url).netloc
         for path in ("/ws", "/pictures", "/live"):
             opened = page.evaluate(

@@ -1,8 +1,10 @@
 """`mocapd calibrate` as a command: the URL it prints, what it attaches to, how it ends."""
 
+import html
 import json
 import re
 import signal
+import stat
 import subprocess
 import time
 import urllib.request
@@ -10,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qs, unquote, urlsplit
 
 import pytest
 
@@ -57,6 +60,17 @@ def url_of(process: subprocess.Popen[str]) -> str:
     return found[0].removesuffix("#setup")
 
 
+def announced(env: dict[str, str], process: subprocess.Popen[str]) -> str:
+    """The URL of this process's page, once it has one."""
+    path = Path(env["XDG_RUNTIME_DIR"]) / "mocapd" / f"page-{process.pid}.json"
+    until_s = time.monotonic() + 2 * WAIT_S  # the film may have to be rendered
+    while not path.exists() and time.monotonic() < until_s:
+        assert process.poll() is None, process.communicate()[1]
+        time.sleep(0.1)
+    told = json.loads(path.read_text())
+    return f"http://127.0.0.1:{told['port']}/?token={told['token']}"
+
+
 def status(url: str) -> dict[str, Any]:
     with urllib.request.urlopen(url.replace("/?", "/status?"), timeout=10) as answer:
         told: dict[str, Any] = json.load(answer)
@@ -87,17 +101,13 @@ def test_it_serves_a_setup_and_a_second_one_attaches_to_it(
         assert status(url)["setup"] == "check"
         code, _ = ended(process)
         assert code == 0
-    assert not list(Path(env["XDG_RUNTIME_DIR"]).rglob("*.json"))
+    assert not list(Path(env["XDG_RUNTIME_DIR"]).rglob("page*"))
 
 
 def test_it_attaches_to_a_running_daemon(env: dict[str, str]) -> None:
     words = ("--tracker", "canned", "--set", "zenoh.enabled=false", "--set", "osc.enabled=false")
     with running(env, "run", "--capture", "sim:living_room", *words) as daemon:
-        announced = Path(env["XDG_RUNTIME_DIR"]) / "mocapd" / "page.json"
-        until_s = time.monotonic() + 2 * WAIT_S  # the film may have to be rendered
-        while not announced.exists() and time.monotonic() < until_s:
-            time.sleep(0.1)
-        url = json.loads(announced.read_text())["url"]
+        url = announced(env, daemon)
         assert status(url)["setup"] is None
         outcome = mocapd(env, "calibrate", "--no-browser")
         assert outcome.code == 0, outcome.err
@@ -106,6 +116,71 @@ def test_it_attaches_to_a_running_daemon(env: dict[str, str]) -> None:
         assert (told["setup"], told["tracks"]) == ("cameras", True)
         code, _ = ended(daemon)
         assert code == 0
+
+
+def test_with_two_daemons_the_one_of_this_name_or_folder_is_taken(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    words = ("run", "--capture", "sim:living_room", "--tracker", "canned")
+    off = ("--set", "zenoh.enabled=false", "--set", "osc.enabled=false")
+    stage = tmp_path / "stage"
+    with (
+        running(env, *words, *off, "--instance", "game") as game,
+        running(env, *words, *off, "--instance", "cave", "--set", f"state_dir={stage}") as cave,
+    ):
+        urls = {"game": announced(env, game), "cave": announced(env, cave)}
+        for chosen, name in (
+            (("--set", "instance=cave"), "cave"),
+            (("--set", "instance=game"), "game"),
+            (("--state-dir", stage), "cave"),
+            ((), "game"),
+        ):
+            outcome = mocapd(env, "calibrate", "--no-browser", *chosen)
+            assert outcome.code == 0, outcome.err
+            assert urls[name] in outcome.out
+        refused = mocapd(env, "calibrate", "--no-browser", "--state-dir", tmp_path / "none")
+        assert refused.code == 78
+        assert "game" in refused.err
+        assert "--set instance=NAME" in refused.err
+        assert all(url in refused.out for url in urls.values())
+        assert ended(cave)[0] == 0
+        last = mocapd(env, "calibrate", "--no-browser")
+        assert urls["game"] in last.out
+
+
+def test_the_token_is_in_no_command_line(
+    env: dict[str, str], cameras: tuple[str, ...], tmp_path: Path
+) -> None:
+    """The browser is told of a file, which only this user may read."""
+    browser, told = tmp_path / "browser", tmp_path / "told"
+    words = f'tr "\\0" "\\n" < /proc/$$/cmdline > {told}.part'
+    browser.write_text(f"#!/bin/sh\n{words}\nmv {told}.part {told}\n")
+    browser.chmod(0o700)
+    desktop = env | {"BROWSER": str(browser), "DISPLAY": ":99"}
+    with running(desktop, "calibrate", *cameras) as process:
+        url = url_of(process)
+        path = led_by(told, url)
+        attached = mocapd(desktop, "calibrate")
+        assert url in attached.out
+        assert led_by(told, url) == path
+        assert ended(process)[0] == 0
+    assert not path.exists()
+
+
+def led_by(told: Path, url: str) -> Path:
+    """The file that the browser was told of, which leads to this URL."""
+    until_s = time.monotonic() + WAIT_S
+    while not told.exists() and time.monotonic() < until_s:
+        time.sleep(0.05)
+    words = told.read_text().split()
+    told.unlink()
+    assert parse_qs(urlsplit(url).query)["token"][0] not in " ".join(words)
+    assert words[-1].startswith("file:///")
+    path = Path(unquote(urlsplit(words[-1]).path))
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    assert f"{url}#setup" in html.unescape(path.read_text())
+    return path
 
 
 def test_one_step_alone_needs_a_calibration_and_keeps_the_rest(
