@@ -103,6 +103,17 @@ class HttpConnection(_Connection, H11Protocol):
         self._end_wait()
         super().handle_websocket_upgrade(event)
 
+    def send_400_response(self, msg: str) -> None:
+        """What has come is no HTTP: perhaps the body of a request that is being answered. uvicorn would
+        say so in between, and that answer would then be an error of ours."""
+        if self.cycle is not None and not self.cycle.response_complete:
+            self.cycle.disconnected = True
+            self.cycle.message_event.set()
+        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
+            super().send_400_response(msg)
+        else:
+            self.transport.close()
+
     def connection_lost(self, exc: Exception | None) -> None:
         """It is closed."""
         self._end_wait()

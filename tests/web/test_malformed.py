@@ -2,6 +2,8 @@
 
 import json
 import socket
+import time
+from contextlib import suppress
 from urllib.parse import urlsplit
 
 import httpx
@@ -67,6 +69,29 @@ def test_a_body_that_is_too_long_is_refused_before_it_has_come(server: WebServer
         one.sendall(f"{head}\r\nContent-Length: 1000000000\r\n\r\n".encode())
         one.sendall(b" " * (LONGEST_BODY + 1))
         assert b" 413 " in one.recv(4096).partition(b"\r\n")[0]
+
+
+@pytest.mark.parametrize("token", [False, True])
+@pytest.mark.parametrize("method", ["GET", "POST"])
+def test_a_body_that_is_no_http_ends_its_connection_only(
+    server: WebServer, token: bool, method: str
+) -> None:
+    """Its request is being answered already; any process of the machine can send this."""
+    query = f"?token={token_of(server)}" if token else ""
+    head = f"{method} /setup{query} HTTP/1.1\r\nHost: {urlsplit(server.url).netloc}\r\n"
+    for body in ("zz\r\n", "5\r\nabcdefgh\r\n", "f" * 30 + "\r\n"):
+        for pause_s in (0.0, 0.05):
+            with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as one:
+                one.sendall(f"{head}Transfer-Encoding: chunked\r\n\r\n".encode() * 2)
+                time.sleep(pause_s)
+                one.sendall(body.encode())
+                with suppress(ConnectionError):
+                    while one.recv(4096):
+                        pass
+            with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as one:
+                one.sendall(f"{head}Transfer-Encoding: chunked\r\n\r\n{body}".encode())
+                assert one.recv(4096).startswith(b"HTTP/1.1 4")
+    assert get(server, "/status", token=token_of(server)).status_code == 200
 
 
 def test_an_address_that_is_too_long_is_refused(server: WebServer) -> None:

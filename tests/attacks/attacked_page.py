@@ -1,0 +1,93 @@
+"""The page that is attacked: of `mocapd run` on simulated cameras, with a home of its own."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import httpx
+import psutil
+
+from tests.cli.mocapd_process import COMMAND
+from tests.conftest import ROOT
+
+START_S = 300.0  # the first start ever compiles, and renders the film
+PATIENCE_S = 30.0
+
+
+@dataclass(frozen=True)
+class AttackedPage:
+    """A running daemon: its process, its page's port and token, and what it wrote to stderr so far."""
+
+    process: subprocess.Popen[bytes]
+    port: int
+    token: str
+    log: Path
+
+    @property
+    def host(self) -> str:
+        """As its requests must name it."""
+        return f"127.0.0.1:{self.port}"
+
+    @property
+    def lives(self) -> bool:
+        """Whether the daemon still runs."""
+        return self.process.poll() is None
+
+    def answers(self, within_s: float) -> float | None:
+        """How long a newcomer with the token waits [s]; None for longer than this."""
+        began_s = time.monotonic()
+        try:
+            httpx.get(
+                f"http://{self.host}/status?token={self.token}", trust_env=False, timeout=within_s
+            ).raise_for_status()
+        except httpx.HTTPError:
+            return None
+        took_s = time.monotonic() - began_s
+        return took_s if took_s <= within_s else None
+
+    def cpu_s(self) -> float:
+        """Processor time so far [s]."""
+        times = psutil.Process(self.process.pid).cpu_times()
+        return float(times.user + times.system)
+
+    def last_error(self) -> str:
+        """The last line of the last traceback."""
+        lines = self.log.read_text(errors="replace").splitlines()
+        ends = [line for line in lines if line[:1].isalpha() and "Error" in line.partition(":")[0]]
+        return ends[-1][:100] if ends else ""
+
+
+@contextmanager
+def attacked_page() -> Iterator[AttackedPage]:
+    """A daemon whose page answers; killed in the end."""
+    dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "RUNTIME_DIRECTORY", "JOURNAL")
+    env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
+    command = [
+        *(*COMMAND, "run", "--capture", "sim:living_room", "--tracker", "canned"),
+        *("--set", "zenoh.enabled=false", "--set", "osc.enabled=false"),
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "stderr"
+        env |= {"XDG_STATE_HOME": folder, "XDG_RUNTIME_DIR": folder, "PYTHONPATH": str(ROOT)}
+        with log.open("wb") as stderr:
+            process = subprocess.Popen(
+                command, env=env, cwd=folder, stdout=stderr, stderr=subprocess.STDOUT
+            )
+        said = Path(folder) / "mocapd" / f"page-{process.pid}.json"
+        try:
+            until_s = time.monotonic() + START_S
+            while not said.exists():
+                if process.poll() is not None or time.monotonic() > until_s:
+                    raise RuntimeError(f"there is no page:\n{log.read_text()}")
+                time.sleep(0.1)
+            told = json.loads(said.read_text())
+            yield AttackedPage(process, told["port"], told["token"], log)
+        finally:
+            process.kill()
+            process.wait()
