@@ -11,6 +11,7 @@ import threading
 import time
 import traceback
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -22,6 +23,7 @@ SLOW_S = 1.0  # that no input may take [s]
 _SURELY_SLOW_S = 3.0  # beyond, it is not for the machine being busy
 _MORE_MEMORY = 5 << 30  # what an input may ask for before it is refused, for the sake of the machine
 _SOURCES = str(Path(mocapd.__file__).parent)
+_SCHEDULED = Path("/proc/self/schedstat")
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 
@@ -76,7 +78,7 @@ def _run(
 
 def _one(attempt: Attempt, seed: str, number: int, tally: Tally) -> Mapping[str, str] | None:
     """The unnamed error, if it came to one."""
-    began_s = time.perf_counter()
+    began_s = _own_s()
     error: BaseException | None = None
     try:
         taken = attempt(Random(seed), number)
@@ -86,7 +88,7 @@ def _one(attempt: Attempt, seed: str, number: int, tally: Tally) -> Mapping[str,
     except BaseException as raised:  # also KeyboardInterrupt and SystemExit: nothing may raise them
         error = raised
         tally.unnamed += 1
-    took_s = time.perf_counter() - began_s
+    took_s = _own_s() - began_s
     if SLOW_S < took_s < _SURELY_SLOW_S:
         took_s = min(took_s, _again_s(attempt, seed, number))
     if took_s > tally.slowest_s:
@@ -96,12 +98,16 @@ def _one(attempt: Attempt, seed: str, number: int, tally: Tally) -> Mapping[str,
 
 def _again_s(attempt: Attempt, seed: str, number: int) -> float:
     """The machine may have been busy with something else."""
-    began_s = time.perf_counter()
-    try:
+    began_s = _own_s()
+    with suppress(BaseException):
         attempt(Random(seed), number)
-    except BaseException:
-        return time.perf_counter() - began_s
-    return time.perf_counter() - began_s
+    return _own_s() - began_s
+
+
+def _own_s() -> float:
+    """A clock that stands still while this thread could run and others had the processors [s]."""
+    waited_ns = int(_SCHEDULED.read_text().split()[1]) if _SCHEDULED.exists() else 0
+    return time.perf_counter() - 1e-9 * waited_ns
 
 
 def _described(error: BaseException) -> Mapping[str, str]:

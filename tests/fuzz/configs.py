@@ -18,7 +18,7 @@ from mocapd.sim.world import rig_of
 from mocapd.simulation import SIM, scenario_path
 from tests.capture.films import write_capture, write_film
 from tests.fuzz.mutations import NUMBERS, TOML_LINES, TOML_VALUES, damaged, mistyped
-from tests.fuzz.row import Attempt, Place, each_of, taken
+from tests.fuzz.row import Attempt, Place, each_of, named, taken
 
 _CONFIG = """\
 instance = "studio"
@@ -191,13 +191,18 @@ def endpoints(place: Place) -> Attempt:
 def boards(place: Place) -> Attempt:
     """`--board-size`, and boards of all sizes."""
 
+    def chessboard(size: tuple[int, int]) -> None:
+        corners_m(BoardSpec(BoardKind.CHESSBOARD, *size, 0.03))
+
+    def charuco(size: tuple[int, int]) -> None:
+        spec = BoardSpec(BoardKind.CHARUCO, *size, 0.03, 0.02)
+        aruco_board(spec, own_markers=True)
+        corners_m(spec)
+
     def make(text: str) -> None:
-        columns, rows = board_size(text)
-        for kind in BoardKind:
-            spec = BoardSpec(kind, columns, rows, 0.03, 0.02)
-            corners_m(spec)
-            if kind is BoardKind.CHARUCO:
-                aruco_board(spec, own_markers=True)
+        size = board_size(text)
+        named(lambda: charuco(size))
+        chessboard(size)
 
     make("5x7")
     return _of_texts(_SIZES, make)

@@ -1,6 +1,6 @@
 """Every parser and its fuzzer: the table of the attack of 2026-11-22, and what was found beside it."""
 
-from tests.fuzz import calibrations, configs, drawings, recordings, wires
+from tests.fuzz import calibrations, configs, drawings, recordings, setups, wires
 from tests.fuzz.row import Row
 
 ROWS = (
@@ -22,5 +22,8 @@ ROWS = (
     Row("webcam-frames", 5042, recordings.webcam_frames),
     Row("videos", 9000, recordings.videos),
     Row("wire", 8881, wires.frames),
+    Row("setup-values", setups.number_of_values(), setups.values),
+    Row("setup-sequences", 3898, setups.sequences),
+    Row("setup-strokes", 400, setups.solved_strokes),
     Row("password-file", 3000, wires.users),
 )
