@@ -17,6 +17,7 @@ from random import Random
 
 import mocapd
 from mocapd.errors import MocapdError
+from tests.fuzz.network import keep_off
 from tests.fuzz.row import Attempt, Place, Row
 
 SLOW_S = 1.0  # that no input may take [s]
@@ -24,7 +25,6 @@ _SURELY_SLOW_S = 3.0  # beyond, it is not for the machine being busy
 _MORE_MEMORY = 5 << 30  # what an input may ask for before it is refused, for the sake of the machine
 _SOURCES = str(Path(mocapd.__file__).parent)
 _SCHEDULED = Path("/proc/self/schedstat")
-_LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 
 class Tally(ctypes.Structure):
@@ -131,23 +131,12 @@ def _keep_apart(log: Path) -> None:
             os.dup2(file.fileno(), descriptor)
     faulthandler.enable(sys.__stderr__)
     threading.excepthook = lambda _: None  # a thread that dies is told by who had it
-    sys.addaudithook(_on_this_machine)
+    keep_off()
     size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]
     limit = size + _MORE_MEMORY
     resource.setrlimit(resource.RLIMIT_AS, (limit if hard < 0 else min(limit, hard), hard))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def _on_this_machine(event: str, args: tuple[object, ...]) -> None:
-    """Raises OSError for an address of another one, as a machine without a network does."""
-    where: object = None
-    if event == "socket.connect":
-        where = args[1]
-    elif event == "socket.getaddrinfo":
-        where = (args[0],)
-    if isinstance(where, tuple) and where[0] not in (*_LOOPBACK, None):
-        raise OSError(101, "the fuzzers stay on this machine")
 
 
 def _forget_peak() -> int:

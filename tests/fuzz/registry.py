@@ -1,6 +1,17 @@
 """Every parser and its fuzzer: the table of the attack of 2026-11-22, and what was found beside it."""
 
-from tests.fuzz import calibrations, configs, drawings, recordings, setups, wires
+from tests.fuzz import (
+    announcements,
+    boundaries,
+    caches,
+    calibrations,
+    configs,
+    drawings,
+    pages,
+    recordings,
+    setups,
+    wires,
+)
 from tests.fuzz.row import Row
 
 ROWS = (
@@ -25,5 +36,21 @@ ROWS = (
     Row("setup-values", setups.number_of_values(), setups.values),
     Row("setup-sequences", 3898, setups.sequences),
     Row("setup-strokes", 400, setups.solved_strokes),
+    Row("page-requests", 3000, pages.requests),
+    Row("page-setup", 314, pages.setup_bodies),
+    Row("page-ws", 1000, pages.setup_messages),
+    Row("page-pictures", 1000, pages.picture_messages),
+    Row("page-live", 1000, pages.live_messages),
+    Row("page-strangers", 4000, pages.strangers),
+    Row("page-json", 3012, announcements.files),
+    Row("page-answer", 1000, announcements.answers),
+    Row("film-cache", 5002, caches.films),
+    Row("pose-database", 5001, caches.databases),
+    Row("prepared", 500, caches.markers),
     Row("password-file", 3000, wires.users),
+    Row("boundary-pictures", 6000, boundaries.pictures),
+    Row("boundary-messages", 6000, boundaries.messages),
+    Row("boundary-numbers", 3000, boundaries.numbers),
+    Row("boundary-files", 1000, boundaries.files),
+    Row("boundary-urls", 5000, boundaries.urls),
 )

@@ -1,0 +1,105 @@
+"""page.json, by which a running page is found, and what answers at its address."""
+
+import json
+import os
+import socket
+import threading
+from random import Random
+
+from mocapd.web.runtime_file import announce, begin_setup, running, withdraw
+from mocapd.web.status import SetupAnswer, Status
+from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
+from tests.fuzz.network import own_ports
+from tests.fuzz.row import Attempt, Place, named
+
+_URLS = (
+    "http://[bad/", "http://127.0.0.1:x/", "http://127.0.0.1:99999/", "http://127.0.0.1:-1/", "", "x", "file:///etc/passwd",
+    "ftp://127.0.0.1/", "data:,x", "http://", "http:///x", "http://é/", "http://127.0.0.1:1/\\n", "http://a b/", "//x",
+    "http://127.0.0.1:1\\r\\nX: y/", "http://\\u0000/", "gopher://x", "http://user:pw@127.0.0.1:1/",
+)  # fmt: skip
+_HEADS = (
+    b"HTTP/1.1 200 OK", b"HTTP/1.0 200", b"HTTP/1.1 503 No", b"HTTP/1.1 302 Found\r\nLocation: http://127.0.0.1:1/",
+    b"HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd", b"HTTP/1.1 401 No", b"HTTP/9 abc", b"ICY 200 OK", b"",
+    b"HTTP/1.1 100 Continue\r\n\r\nHTTP/1.1 200 OK", b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked", b"SSH-2.0-x",
+    b"HTTP/1.1 " + b"9" * 5000, b"HTTP/1.1 200 OK\r\n" + b"A: b\r\n" * 300, b"HTTP/1.1 200 OK\r\nX: " + b"y" * 70_000,
+)  # fmt: skip
+
+
+class _Answers:
+    """Whoever connects is answered `data`, and left."""
+
+    def __init__(self) -> None:
+        self.data = b""
+        self._socket = socket.create_server(("127.0.0.1", 0))
+        self.port: int = self._socket.getsockname()[1]
+        own_ports.add(self.port)
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def _serve(self) -> None:
+        while True:
+            one, _ = self._socket.accept()
+            with one:
+                one.settimeout(1.0)
+                try:
+                    one.recv(65536)
+                    one.sendall(self.data)
+                    one.shutdown(socket.SHUT_WR)
+                    while one.recv(65536):
+                        pass
+                except OSError:
+                    continue
+
+
+def files(place: Place) -> Attempt:
+    """page.json, as `mocapd calibrate` reads it and the daemon takes it back."""
+    answers = _Answers()
+    answers.data = _answer(_HEADS[0], _status())
+    path = place.folder / "page.json"
+    announce(path, f"http://127.0.0.1:{answers.port}/?token=abc")
+    good = path.read_bytes()
+    assert running(path) is not None
+
+    def attempt(random: Random, number: int) -> bool:
+        data = mistyped(random, good, JSON_VALUES)
+        if random.random() < 0.1:
+            data = b'{"url":"%s","pid":%d}' % (random.choice(_URLS).encode(), os.getpid())
+        path.write_bytes(data)
+        found = running(path)
+        withdraw(path)
+        return found is not None
+
+    return attempt
+
+
+def answers(place: Place) -> Attempt:
+    """What another program may say at the port that was announced."""
+    server = _Answers()
+    path = place.folder / "page.json"
+    url = f"http://127.0.0.1:{server.port}/?token=abc"
+    announce(path, url)
+
+    def attempt(random: Random, number: int) -> bool:
+        body = mistyped(random, random.choice((_status(), _refusal())), JSON_VALUES)
+        server.data = _answer(random.choice(_HEADS), body)
+        if random.random() < 0.5:
+            server.data = damaged(random, _answer(_HEADS[number % 3], body))
+        begun = named(lambda: begin_setup(url, "lens"))
+        return running(path) is not None or begun
+
+    return attempt
+
+
+def _answer(head: bytes, body: bytes) -> bytes:
+    return head + b"\r\nContent-Length: %d\r\n\r\n" % len(body) + body
+
+
+def _status() -> bytes:
+    return _json(Status("0.2.0", os.getpid(), ("cam0",), None, True))
+
+
+def _refusal() -> bytes:
+    return _json(SetupAnswer("busy", "cam0", "wait"))
+
+
+def _json(one: Status | SetupAnswer) -> bytes:
+    return json.dumps({name: getattr(one, name) for name in one.__struct_fields__}).encode()
