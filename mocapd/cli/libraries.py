@@ -5,11 +5,13 @@ import tempfile
 from pathlib import Path
 
 import mocapd
-from mocapd.errors import CannotCreateError
+from mocapd.boundary.folders import require_own_folder
+from mocapd.errors import CannotCreateError, PermissionDeniedError
 
 
 def prepare_libraries(cache_dir: Path) -> None:
-    """Before anything imports numba. Raises CannotCreateError when the cache cannot be written."""
+    """Before anything imports numba. Raises CannotCreateError when the cache cannot be written,
+    PermissionDeniedError when others could write there."""
     import cv2
 
     use_cache_dir(cache_dir)
@@ -20,17 +22,29 @@ def prepare_libraries(cache_dir: Path) -> None:
 def use_cache_dir(cache_dir: Path) -> None:
     """Make the folder, and have numba keep its code there when it cannot beside the source.
 
-    Before anything imports numba, which reads the variable then. Raises CannotCreateError.
+    Before anything imports numba, which reads the variable then. numba runs what it finds: a folder
+    that others could write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
+    _own_folder(cache_dir)
+    package = Path(mocapd.__file__).parent
+    if not os.access(package, os.W_OK):
+        numba = cache_dir / "numba"
+        _own_folder(numba)
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(numba))
+
+
+def _own_folder(path: Path) -> None:
     try:
-        cache_dir.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=cache_dir).close()
+        path.mkdir(mode=0o700, parents=True, exist_ok=True)
+        require_own_folder(path)
+        tempfile.TemporaryFile(dir=path).close()
+    except PermissionDeniedError as error:
+        raise PermissionDeniedError(
+            f"the cache {error.what}", error.where, f"{error.fix} as cache_dir"
+        ) from None
     except OSError as error:
         raise CannotCreateError(
             f"the cache cannot be written ({error.strerror})",
-            str(cache_dir),
+            str(path),
             "make the folder writable, or set cache_dir",
         ) from None
-    package = Path(mocapd.__file__).parent
-    if not os.access(package, os.W_OK):
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_dir / "numba"))

@@ -1,0 +1,41 @@
+"""The cache folder: what lies there is run, so it must be ours."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import mocapd
+from mocapd.cli.libraries import use_cache_dir
+from mocapd.errors import CannotCreateError, PermissionDeniedError
+
+
+@pytest.fixture(autouse=True)
+def read_only_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The package as it is installed for all users: numba keeps its code in the cache folder."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setattr(mocapd, "__file__", str(tmp_path / "no such package" / "__init__.py"))
+
+
+def test_the_cache_is_made_for_us_alone(tmp_path: Path) -> None:
+    use_cache_dir(tmp_path / "new" / "cache")
+    for path in (tmp_path / "new" / "cache", tmp_path / "new" / "cache" / "numba"):
+        assert path.stat().st_mode & 0o777 == 0o700
+    assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / "new" / "cache" / "numba")
+
+
+@pytest.mark.parametrize("shared", ["cache", "cache/numba"])
+def test_a_cache_that_others_may_write_is_refused(tmp_path: Path, shared: str) -> None:
+    """A pickle planted there ran as the user."""
+    (tmp_path / "cache" / "numba").mkdir(parents=True)
+    (tmp_path / shared).chmod(0o777)
+    with pytest.raises(PermissionDeniedError, match="written by others") as caught:
+        use_cache_dir(tmp_path / "cache")
+    assert str(tmp_path / shared) in caught.value.where
+    assert "cache_dir" in caught.value.fix
+    assert "NUMBA_CACHE_DIR" not in os.environ
+
+
+def test_a_path_that_cannot_be_is_named(tmp_path: Path) -> None:
+    with pytest.raises(CannotCreateError, match="cannot be written"):
+        use_cache_dir(tmp_path / ("x" * 300))
