@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mocapd
-from mocapd.errors import MocapdError
+from mocapd.boundary.files import read_text
+from mocapd.errors import InputError, MocapdError
 from mocapd.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 MARKER = "prepared"  # in the cache folder: what was prepared for, one a line
 REMEMBERED = 8
+_MOST_BYTES = 1 << 16
+_COMPILING = "preparing: compiling the tracker (once on this machine, some minutes on a slow one)"
+
+_log = logging.getLogger(__name__)
 
 
 def prepare_apart(config: "Config") -> None:
@@ -32,7 +37,7 @@ def prepare_apart(config: "Config") -> None:
     """
     marker = config.cache_dir / MARKER
     want = _fingerprint(config)
-    done = marker.read_text().split() if marker.is_file() else []
+    done = _prepared(marker)
     if want in done:
         return
     from mocapd.session import SIM  # and all that the processes need, imported once for them
@@ -42,8 +47,26 @@ def prepare_apart(config: "Config") -> None:
     simulated = any(camera.source.startswith(SIM) for camera in config.camera)
     first = (_make_film, _make_database) if simulated else ()
     if _all_end_well(config, first) and _all_end_well(config, (_open,)):
+        _remember(marker, [*done[1 - REMEMBERED :], want])
+
+
+def _prepared(marker: Path) -> list[str]:
+    """What is remembered; nothing of it where that cannot be read, so all is prepared once more."""
+    try:
+        return read_text(marker, _MOST_BYTES).split()
+    except InputError:
+        return []
+
+
+def _remember(marker: Path, done: Sequence[str]) -> None:
+    try:
         with whole_file(marker) as partial:
-            partial.write_text("\n".join([*done[1 - REMEMBERED :], want]) + "\n")
+            partial.write_text("\n".join(done) + "\n", "utf-8")
+    except OSError as error:
+        _log.warning(
+            "%s cannot be written (%s): the next start prepares everything again",
+            *(marker, error.strerror),
+        )
 
 
 @contextmanager
@@ -104,6 +127,7 @@ def _make_database(config: "Config") -> None:
     from mocapd.tracker_setup import make_caches
 
     with ProgressBars() as progress:
+        progress.begin(_COMPILING)
         progress("pose database", 0, 100)  # something to see while its maker is compiled
         make_caches(config.tracker.name, config.cache_dir, progress)
 
@@ -123,6 +147,7 @@ def _open(config: "Config") -> None:
     from mocapd.session import open_session
 
     with ProgressBars() as progress:
+        progress.begin(_COMPILING)
         open_session(config, progress)
 
 

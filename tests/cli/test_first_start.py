@@ -1,8 +1,14 @@
 """What is made once is made in a process that ends, and remembered."""
 
+import os
 import socket
+import time
 from pathlib import Path
 
+import pytest
+
+from mocapd.cli import progress
+from mocapd.cli.progress import ProgressBars
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
 
@@ -35,3 +41,66 @@ def test_trouble_in_the_first_start_is_told_once(clean_env: dict[str, str], tmp_
     assert outcome.err.count("mocapd: ") == 1
     assert "Traceback" not in outcome.err
     assert not (cache / "prepared").exists()
+
+
+@pytest.mark.parametrize("damage", ["bytes", "folder"])
+def test_a_marker_that_cannot_be_used_is_no_hint(
+    clean_env: dict[str, str], tmp_path: Path, damage: str
+) -> None:
+    capture, cache = write_capture(tmp_path / "capture"), tmp_path / "cache"
+    cache.mkdir()
+    if damage == "bytes":
+        (cache / "prepared").write_bytes(b"\xff\xfe")
+    else:  # nor can it be written
+        (cache / "prepared" / "x").mkdir(parents=True)
+    outcome = run(clean_env, capture, "--set", f"cache_dir={cache}")
+    assert outcome.code == 0, outcome.err
+    assert "Traceback" not in outcome.err
+    assert outcome.err.count("the next start prepares") == (damage == "folder")
+    if damage == "bytes":
+        assert len((cache / "prepared").read_text().split()) == 1
+
+
+@pytest.fixture
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lines come in a test's time."""
+    monkeypatch.setattr(progress, "FIRST_AFTER_S", 0.02)
+    monkeypatch.setattr(progress, "TELL_EVERY_S", 0.02)
+
+
+def err_with(capfd: pytest.CaptureFixture[str], text: str) -> str:
+    """What was said on stderr till this was, or 20 s have passed."""
+    said, until_s = "", time.monotonic() + 20.0
+    while text not in said and time.monotonic() < until_s:
+        time.sleep(0.01)
+        said += capfd.readouterr().err
+    return said
+
+
+def test_what_takes_long_says_so_without_a_terminal(
+    soon: None, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """In a small VM the first start compiled for four minutes without a line."""
+    with ProgressBars() as bars:
+        bars.begin("preparing: compiling")
+        assert err_with(capfd, "preparing: compiling: 0 %").startswith("preparing: compiling\n")
+        bars("the tracker", 2, 8)
+        assert "the tracker: 25 %" in err_with(capfd, "the tracker: 25 %\n")
+    assert "the tracker: done after" in capfd.readouterr().err
+
+
+def test_in_the_journal_the_lines_have_their_priority(
+    soon: None, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = os.fstat(2)
+    monkeypatch.setenv("JOURNAL_STREAM", f"{there.st_dev}:{there.st_ino}")
+    with ProgressBars() as bars:
+        bars("the tracker", 2, 8)
+        assert "<6>" in err_with(capfd, "<6>the tracker: 25 %\n")
+
+
+def test_what_is_done_at_once_is_not_told(capfd: pytest.CaptureFixture[str]) -> None:
+    with ProgressBars() as bars:
+        bars("the tracker", 0, 8)
+        bars("the tracker", 8, 8)
+    assert capfd.readouterr().err == ""
