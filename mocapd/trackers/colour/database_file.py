@@ -165,7 +165,7 @@ def _read(path: Path, wanted: str) -> PoseDatabase:
     try:
         with path.open("rb") as file:
             base, entries = _header(file, path, wanted)
-        arrays = {
+        arrays: dict[str, NDArray[Any]] = {
             str(entry["name"]): np.memmap(
                 path, np.dtype(entry["dtype"]), "r", base + entry["offset"], tuple(entry["shape"])
             )
