@@ -14,6 +14,7 @@ from mocapd.errors import ConfigError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from mocapd.cli.running import Signals
     from mocapd.config_sections import Config
     from mocapd.web.runtime_file import Place, Running
     from mocapd.wizard.step import StepName
@@ -56,10 +57,11 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
         config = replace(config, state_dir=config.state_dir / "demo")
     place = Place(folder, config.state_dir, config.instance, findable=not options.demo)
     from mocapd.cli.first_start import database_beside
-    from mocapd.cli.running import end_despite_work
+    from mocapd.cli.running import Signals, end_despite_work
 
+    signals = Signals()  # first, so that its end ends the work beside it too
     with database_beside(config):
-        code = _alone(options, config, step, place)
+        code = _alone(options, config, step, place, signals)
     end_despite_work(code)
     return code
 
@@ -88,14 +90,19 @@ def _the_one(pages: "Sequence[Running]", config: "Config") -> "Running":
     )
 
 
-def _alone(options: PageOptions, config: "Config", step: "StepName | None", place: "Place") -> int:
+def _alone(
+    options: PageOptions,
+    config: "Config",
+    step: "StepName | None",
+    place: "Place",
+    signals: "Signals",
+) -> int:
     from mocapd.cli.calibrate_hosts import demo_host, webcam_host
-    from mocapd.cli.running import INTERNAL_ERROR, Signals
+    from mocapd.cli.running import INTERNAL_ERROR
     from mocapd.daemon import ThreadDiedError
     from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 
-    signals = Signals()
     host = demo_host(config, step) if options.demo else webcam_host(config, step)
     # a thread nobody watches must not die unseen either
     threading.excepthook = lambda args: host.died(args.exc_value or RuntimeError(args.exc_type))

@@ -106,7 +106,7 @@ def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]])
 
 
 def _work(work: Callable[["Config"], None], config: "Config") -> None:
-    for number in (signal.SIGTERM, signal.SIGINT):
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     try:
         work(config)

@@ -1,7 +1,9 @@
-"""The entry of the command `mocapd`: quiet libraries first, then the command, then its exit code."""
+"""The entry of the command `mocapd`: signals and quiet libraries first, then the command, its exit code."""
 
 import os
 import sys
+
+from mocapd.cli.first_signals import SIGINT_EXIT, end_at_once, interruptible
 
 # Read by the libraries while they are imported. A pool of threads costs more than it brings at the
 # sizes met here: one thread per camera, and the libraries at one each.
@@ -9,15 +11,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("MKL_NUM_THREADS", "1")
 
-import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
-from mocapd.cli.app import app
-from mocapd.errors import MocapdError
-
-SIGINT_EXIT = 130
-
 
 def main() -> None:
     """Run one command. An expected trouble is one line on stderr; its code is the exit code."""
+    end_at_once(sys.argv)  # before the imports, which take long
+
+    import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
+    from mocapd.cli.app import app
+    from mocapd.errors import MocapdError
+
+    interruptible(sys.argv)
     try:
         app(prog_name="mocapd")
     except MocapdError as error:

@@ -6,9 +6,11 @@ import sys
 import threading
 import time
 import traceback
+from collections.abc import Iterable
 from types import FrameType
 from typing import Protocol
 
+from mocapd.cli.first_signals import SIGINT_EXIT
 from mocapd.cli.status_line import StatusLine
 from mocapd.daemon import Daemon, Snapshot, ThreadDiedError
 
@@ -18,7 +20,6 @@ TELL_EVERY = 4  # health goes out with every fourth of them
 JOIN_S = 0.2  # what idle threads may take to end [s]
 
 INTERNAL_ERROR = 70  # EX_SOFTWARE
-SIGINT_EXIT = 130
 
 
 class Ends(Protocol):
@@ -28,16 +29,19 @@ class Ends(Protocol):
 
 
 class Signals:
-    """SIGTERM ends with 0 and SIGINT with 130: at once while things are set up, then in order.
+    """SIGTERM and SIGHUP end with 0 and SIGINT with 130: at once while things are set up, then in order.
 
-    A second signal has its default effect, should the orderly end hang.
+    SIGHUP is what a terminal sends that is closed; under nohup it is ignored. A second signal has its
+    default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
     """
 
     def __init__(self) -> None:
         self.exit_code = 0
         self._caught_one = False
         self._daemon: Ends | None = None
-        for number in (signal.SIGTERM, signal.SIGINT):
+        self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
+        hangup = signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN
+        for number in (signal.SIGTERM, signal.SIGINT, *((signal.SIGHUP,) if hangup else ())):
             signal.signal(number, self._caught)
 
     def ends(self, daemon: Ends) -> None:
@@ -54,11 +58,21 @@ class Signals:
     def _caught(self, number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        _silence(fd for fd in self._terminals if not os.isatty(fd))
         self._caught_one = True
         self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
         if self._daemon is None:
             sys.exit(self.exit_code)
         self._daemon.end()
+
+
+def _silence(gone: Iterable[int]) -> None:
+    """What is written to a terminal that is gone must not fail: the orderly end comes after it."""
+    for fd in gone:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, fd)
+        os.close(nowhere)
 
 
 class Beside(Protocol):
