@@ -25,6 +25,7 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.metrics import Metrics
+from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.session import Session
 from mocapd.types import BodyState, FrameSet, Skeleton
@@ -65,7 +66,9 @@ class Daemon:
         self._session = session
         self._inputs = {camera.source.name: camera for camera in session.cameras}
         self._collector = FrameCollector(self._inputs)
-        self.hub = FrameHub(self._inputs, self._collector)  # who looks at the pictures joins it
+        sizes_px = {name: c.size_px for name, c in self._inputs.items() if any(c.size_px)}
+        guard = SizeGuard(sizes_px, self._collector)
+        self.hub = FrameHub(self._inputs, guard)  # who looks at the pictures joins it
         self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
             CaptureThread(c.source, self.hub, self.died, c.expected_hz) for c in session.cameras

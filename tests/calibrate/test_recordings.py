@@ -21,7 +21,9 @@ def test_every_kind_of_picture_is_read(tmp_path: Path, suffix: str) -> None:
     cv2.imwrite(str(path), picture(77))
     read = read_picture(path)
     assert read.dtype == np.uint8
-    assert np.array_equal(read, cv2.imread(str(path), cv2.IMREAD_COLOR))
+    as_before = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    assert as_before is not None
+    assert np.array_equal(read, as_before)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".tif"])

@@ -10,10 +10,10 @@ from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
 from mocapd.config_sections import Config, OscSection, ZenohSection
 from mocapd.daemon import Daemon
-from mocapd.errors import CameraLost
+from mocapd.errors import CameraLost, ConfigError
 from mocapd.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Frame
+from mocapd.types import Frame, FrameSet, Track
 from tests.capture.films import SIZE_PX, picture
 
 PERIOD_S = 1.0 / 60.0
@@ -21,11 +21,12 @@ PERIOD_S = 1.0 / 60.0
 
 @dataclass(eq=False)
 class FakeCamera:
-    """Sends pictures at 60 Hz. `frozen`: its reads block; `unplugged`: they fail, and so does opening it
+    """Sends pictures of `size_px` at 60 Hz. `frozen`: its reads block; `unplugged`: they fail, and so does opening it
     anew; `other_size`: after that it is there again, but does not fit its calibration."""
 
     name: str
     recorded: bool = False
+    size_px: tuple[int, int] = SIZE_PX
     frozen: threading.Event = field(default_factory=threading.Event)
     unplugged: threading.Event = field(default_factory=threading.Event)
     other_size: threading.Event = field(default_factory=threading.Event)
@@ -46,18 +47,29 @@ class FakeCamera:
         if self._closed.is_set() or self.unplugged.is_set():
             raise CameraLost("was unplugged", self.name)
         self._seq += 1
-        return Frame(self.name, self._seq, monotonic_ns(), picture(self._seq % 256))
+        pixels = picture(self._seq % 256, self.size_px)
+        return Frame(self.name, self._seq, monotonic_ns(), pixels)
 
     def close(self) -> None:
         self._closed.set()
 
 
 def daemon_on(*cameras: FakeCamera, osc_port: int) -> Daemon:
-    """With the canned tracker, sending OSC to this port of 127.0.0.1; the caller enters it."""
+    """With a tracker of its own pose, sending OSC to this port of 127.0.0.1; the caller enters it."""
     config = Config(
         zenoh=ZenohSection(enabled=False),
         osc=OscSection(destinations=(f"127.0.0.1:{osc_port}",)),
         state_dir=Path("/nonexistent"),
     )
-    inputs = tuple(CameraInput(camera, "test") for camera in cameras)
-    return Daemon(config, Session(inputs, None, "", CannedTracker(standard_skeleton(1.75))))
+    inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)
+    return Daemon(config, Session(inputs, None, "", StrictTracker(standard_skeleton(1.75))))
+
+
+class StrictTracker(CannedTracker):
+    """The canned one, which looks at no picture, as particular about sizes as the one that does."""
+
+    def step(self, frames: FrameSet) -> Track:
+        for frame in frames.frames.values():
+            if frame.pixels.shape[1::-1] != SIZE_PX:
+                raise ConfigError("does not fit its calibration", frame.camera)
+        return super().step(frames)

@@ -16,6 +16,7 @@ from mocapd.cli.status_line import status_text
 from mocapd.daemon import Daemon
 from mocapd.health import camera_message
 from mocapd.types import Tracking
+from tests.capture.films import SIZE_PX
 from tests.e2e.fake_cameras import FakeCamera, daemon_on
 
 
@@ -140,6 +141,19 @@ def test_a_camera_back_in_another_size_is_lost_and_the_other_goes_on(game: Game)
         assert not daemon.wait(0.0)
         changed.unplugged.clear()
         changed.other_size.clear()
+        game.hear_until(lambda one: one.cameras == "a,b")
+
+
+def test_a_camera_that_a_setup_opens_in_another_size_takes_no_part_meanwhile(game: Game) -> None:
+    changed, other = FakeCamera("a"), FakeCamera("b")
+    with daemon_on(changed, other, osc_port=game.port) as daemon:
+        game.hear_until(lambda one: one.cameras == "a,b")
+        changed.size_px = (32, 24)
+        game.hear_until(lambda one: one.cameras == "b")
+        newest = len(game.heard)
+        game.hear_until(lambda _: len(game.heard) > newest + 20)
+        assert not daemon.wait(0.0)
+        changed.size_px = SIZE_PX
         game.hear_until(lambda one: one.cameras == "a,b")
 
 
