@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from typing import Any
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
@@ -67,6 +68,12 @@ class BoardSpec:
                 _WHERE,
                 "give the side of one square in metres, as measured with a ruler",
             )
+        if self.dictionary not in dictionaries():
+            raise ConfigError(
+                f"no marker dictionary {brief(self.dictionary)}",
+                _WHERE,
+                "one of " + ", ".join(dictionaries()),
+            )
         if self.kind is BoardKind.CHESSBOARD:
             if not 0.0 <= self.marker_m < LARGEST_SQUARE_M:  # unused, but kept
                 raise ConfigError(
@@ -80,12 +87,6 @@ class BoardSpec:
                 f"a marker of {self.marker_m:g} m in a square of {self.square_m:g} m",
                 _WHERE,
                 "give the side of a marker in metres; it is smaller than the square",
-            )
-        if self.dictionary not in dictionaries():
-            raise ConfigError(
-                f"no marker dictionary {brief(self.dictionary)}",
-                _WHERE,
-                "one of " + ", ".join(dictionaries()),
             )
         known = len(_dictionary(self.dictionary).bytesList)
         if known < self.columns * self.rows // 2:
@@ -126,6 +127,7 @@ def board_size(text: str) -> tuple[int, int]:
         ) from None
 
 
+@cache
 def dictionaries() -> tuple[str, ...]:
     """Names of the marker dictionaries that OpenCV knows, small ones first."""
     names = (name for name in dir(cv2.aruco) if name.startswith("DICT_"))
