@@ -1,5 +1,6 @@
 """The step Cameras with simulated webcams: settling, locking, trouble, and what the person may do."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -211,6 +212,18 @@ def test_who_was_left_out_stays_so_when_the_step_is_shown_again(tmp_path: Path) 
     bench.enter()
     bench.until_done()
     assert [one.id for one in bench.context.draft.cameras] == ["left"]
+
+
+def test_passwords_of_cameras_are_not_shown(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, FakeWebcam("left"))
+    address = "rtsp://admin:hunter2@10.0.0.7/live?token=hunter2"
+    (camera,) = bench.cameras
+    bench.cameras = (replace(camera, source=address),)
+    bench.context.draft = Draft(cameras=bench.cameras)
+    bench.enter()
+    shown = bench.run(0.2)
+    assert "hunter2" not in str(shown)
+    assert "10.0.0.7/live" in str(shown.details)
 
 
 def test_a_camera_gets_a_name(tmp_path: Path) -> None:
