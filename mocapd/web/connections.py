@@ -6,10 +6,10 @@ descriptors. uvicorn itself closes only a connection that is silent after an ans
 """
 
 import asyncio
-from typing import Any
+from typing import Any, cast
 
 import h11
-from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from mocapd.web.access import LET_IN
@@ -106,9 +106,10 @@ class HttpConnection(_Connection, H11Protocol):
     def send_400_response(self, msg: str) -> None:
         """What has come is no HTTP: perhaps the body of a request that is being answered. uvicorn would
         say so in between, and that answer would then be an error of ours."""
-        if self.cycle is not None and not self.cycle.response_complete:
-            self.cycle.disconnected = True
-            self.cycle.message_event.set()
+        cycle = cast(RequestResponseCycle | None, self.cycle)
+        if cycle is not None and not cycle.response_complete:
+            cycle.disconnected = True
+            cycle.message_event.set()
         if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
             super().send_400_response(msg)
         else:

@@ -34,11 +34,6 @@ class AttackedPage:
         """As its requests must name it."""
         return f"127.0.0.1:{self.port}"
 
-    @property
-    def lives(self) -> bool:
-        """Whether the daemon still runs."""
-        return self.process.poll() is None
-
     def answers(self, within_s: float) -> float | None:
         """How long a newcomer with the token waits [s]; None for longer than this."""
         began_s = time.monotonic()
