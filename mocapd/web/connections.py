@@ -21,10 +21,6 @@ LONGEST_HEAD = 16 << 10  # address and headers of a request [bytes]
 REQUEST_S = 5.0  # from its first byte, or from connecting, until a request is whole [s]
 STALLED_S = 20.0  # how long somebody may not read what was sent [s]
 
-# what the library for WebSockets takes; at more it fails an assertion of uvicorn
-_MOST_HEADERS = 100
-_LONGEST_LINE = 8000
-
 
 class _Connection(asyncio.Protocol):
     """What both protocols have in common; the rest of their names is uvicorn's."""
@@ -96,12 +92,11 @@ class HttpConnection(_Connection, H11Protocol):
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
         """From here on another protocol has the transport."""
-        lines = (len(event.target), *(len(name) + len(value) for name, value in event.headers))
-        if event.method != b"GET" or len(lines) > _MOST_HEADERS or max(lines) > _LONGEST_LINE:
-            self.send_400_response("Invalid WebSocket request.")
-            return
         self._end_wait()
-        super().handle_websocket_upgrade(event)
+        if self.flow.write_paused:  # of which the other would not be told
+            self.drop()
+        else:
+            super().handle_websocket_upgrade(event)
 
     def send_400_response(self, msg: str) -> None:
         """What has come is no HTTP: perhaps the body of a request that is being answered. uvicorn would
@@ -137,6 +132,13 @@ class SocketConnection(_Connection, WebSocketsSansIOProtocol):
         """It was a request until now."""
         super().connection_made(transport)
         self.since_s = self.loop.time()
+
+    def data_received(self, data: bytes) -> None:
+        """The first time, the whole request: HTTP permits some that WebSockets do not."""
+        super().data_received(data)
+        if not self.handshake_initiated:  # and uvicorn would wait for ever
+            self.transport.write(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n")
+            self.transport.close()
 
     def handle_ping(self) -> None:
         """Answered unless nobody reads, or the answers would pile up."""

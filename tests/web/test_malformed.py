@@ -100,13 +100,20 @@ def test_an_address_that_is_too_long_is_refused(server: WebServer) -> None:
         assert answer.status_code in (400, 414)  # the former when it comes in several parts
 
 
-def test_a_websocket_that_its_library_would_not_take_is_refused(server: WebServer) -> None:
+def test_a_websocket_that_its_library_would_not_take_is_refused(
+    server: WebServer, caplog: pytest.LogCaptureFixture
+) -> None:
     upgrade = {"connection": "Upgrade", "upgrade": "websocket"}
     many = {f"x-{i}": "y" for i in range(150)}
     for headers in (upgrade | many, upgrade | {"x-long": "y" * 9000}):
         assert get(server, "/live", headers, token=token_of(server)).status_code == 400
     posts = httpx.post(server.url, headers=upgrade, trust_env=False, timeout=PATIENCE_S)
-    assert posts.status_code == 400
+    assert posts.status_code == 405
+    with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as one:
+        one.sendall(b"GET / HTTP/1.1\r\nConnection: upgrade\r\nUpgrade: websocket\r\n")
+        one.sendall(b"Host: x\r\nX-Y: \x01\r\n\r\n")
+        assert one.recv(4096).startswith(b"HTTP/1.1 400")
+    assert "Fatal error" not in caplog.text
 
 
 def test_only_so_many_windows_at_once(server: WebServer) -> None:
