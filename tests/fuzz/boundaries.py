@@ -20,16 +20,21 @@ from tests.fuzz.mutations import JSON_VALUES, TOML_LINES, TOML_VALUES, damaged, 
 from tests.fuzz.row import Attempt, Place, WrongError, named, taken
 
 _SIZE_PX = (40, 30)
-_JSON = b'{"verb": "board", "args": {"columns": 5, "names": ["a", "b"], "deep": {"x": [1.5, null]}}}'
+_JSON = (
+    b'{"verb": "board", "args": {"columns": 5, "names": ["a", "b"], "deep": {"x": [1.5, null]}}}'
+)
 _MSGPACK = b"\x82\xa4verb\xa5board\xa4args\x82\xa7columns\x05\xa5names\x92\xa1a\xa1b"
-_TOML = b'verb = "board"\n[args]\ncolumns = 5\nnames = ["a", "b"]\n[args.deep]\nx = [1.5, {y = 2}]\n'
+_TOML = (
+    b'verb = "board"\n[args]\ncolumns = 5\nnames = ["a", "b"]\n[args.deep]\nx = [1.5, {y = 2}]\n'
+)
 _MOST_BYTES = 1000
 _NUMBERS: tuple[object, ...] = (
     0, -1, 1, 10**18, 10**19, -(10**400), 10**5000, 0.0, -0.0, 1e308, -1e308, 5e-324, math.nan, math.inf, -math.inf, 3.5,
     True, False, None, "", "3", "nan", [], {}, b"3", 1 + 2j, "x" * 10_000,
 )  # fmt: skip
 _DIGITS = (
-    "5", " 5 ", "05", "+5", "-5", "5.0", "5e3", "0x5", "٥", "²", "５", "", "\0", "9" * 18, "9" * 19, "9" * 5000, "1_0", "\ud800",
+    "5", " 5 ", "05", "+5", "-5", "5.0", "5e3", "0x5", "٥", "²", "５", "", "\0", "9" * 18, "9" * 19, "9" * 5000, "1_0",
+    "\ud800",
 )  # fmt: skip
 _PATHS = (
     "", ".", "/", "/dev/zero", "/dev/null", "/dev/full", "/proc/self/mem", "fifo", "fifo/x", "gone", "x" * 300, "x/" * 3000,
@@ -38,9 +43,43 @@ _PATHS = (
 )  # fmt: skip
 _SCHEMES = ("rtsp", "RTSP", "rtsps", "http", "https", "Http", " rtsp", "\trtsp", "\nhttp")
 _USERS = ("admin", "", "a b", "us%40er", "é", "a/b", "a@b")
-_ODD = ("", "@", "/", "#", "?", ":", "%", "[", "]", " ", "\n", "&", "=", ";", "\\", "é", "%40", "://", "*")
+_ODD = (
+    "",
+    "@",
+    "/",
+    "#",
+    "?",
+    ":",
+    "%",
+    "[",
+    "]",
+    " ",
+    "\n",
+    "&",
+    "=",
+    ";",
+    "\\",
+    "é",
+    "%40",
+    "://",
+    "*",
+)
 _HOSTS = ("10.0.0.2", "cam.lan:554", "[::1]:80", "[bad", "", "a b", "10.0.0.2:x", "[fe80::1%eth0]")
-_KEYS = ("password", "PWD", "pass", "user_pass", "token", "access_token", "apikey", "key", "secret", "auth", "sig", "p", "pw")
+_KEYS = (
+    "password",
+    "PWD",
+    "pass",
+    "user_pass",
+    "token",
+    "access_token",
+    "apikey",
+    "key",
+    "secret",
+    "auth",
+    "sig",
+    "p",
+    "pw",
+)
 
 
 def pictures(place: Place) -> Attempt:
@@ -140,7 +179,7 @@ def urls(place: Place) -> Attempt:
         password = f"hunter2{random.choice(_ODD)}{random.choice(_ODD)}SECRET"
         url = f"{random.choice(_SCHEMES)}://{random.choice(_USERS)}:{password}@{random.choice(_HOSTS)}/s"
         if random.random() < 0.3:
-            password = f"hunter2{random.choice(('', '%', ':', '/', '@', '+'))}SECRET"
+            password = f"hunter2{random.choice(('', '%', ':', '/', '+'))}SECRET"
             url = f"{random.choice(_SCHEMES[:6])}://{random.choice(_HOSTS)}/s?a=b&{random.choice(_KEYS)}={password}"
         shown, error = without_password(url), _refusal_of(url)
         for text in (shown, error):

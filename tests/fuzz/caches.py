@@ -12,7 +12,7 @@ from mocapd.sim import film as film_module
 from mocapd.sim.film import Film, load_film
 from mocapd.sim.scenario import scenario_from_dict
 from mocapd.trackers.colour import database_file
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase
+from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, content_hash
 from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
@@ -21,7 +21,7 @@ from tests.sim.small import TABLE, table
 _DATABASE = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
 
 
-class _MadeAnew(Exception):  # noqa: N818  what should happen
+class _MadeAnew(Exception):
     """Instead of making it, which takes seconds."""
 
 
@@ -71,7 +71,7 @@ def databases(place: Place) -> Attempt:
     good = load_or_build(kept, _DATABASE).database
     data, path = (kept / FILE_NAME).read_bytes(), place.folder / FILE_NAME
     wanted = _arrays(good)
-    digest = database_file.content_hash(_DATABASE)  # of code and body, which stay
+    digest = content_hash(_DATABASE)  # of code and body, which stay
 
     def attempt(random: Random, number: int) -> bool:
         # half of them in the header, which is a thousandth of the file

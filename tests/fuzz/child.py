@@ -6,14 +6,13 @@ import gc
 import json
 import os
 import resource
-import sys
 import threading
 import time
 import traceback
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from random import Random
+from types import TracebackType
 
 import mocapd
 from mocapd.errors import MocapdError
@@ -22,9 +21,29 @@ from tests.fuzz.row import Attempt, Place, Row
 
 SLOW_S = 1.0  # that no input may take [s]
 _SURELY_SLOW_S = 3.0  # beyond, it is not for the machine being busy
-_MORE_MEMORY = 5 << 30  # what an input may ask for before it is refused, for the sake of the machine
+_MORE_MEMORY = (
+    5 << 30
+)  # what an input may ask for before it is refused, for the sake of the machine
 _SOURCES = str(Path(mocapd.__file__).parent)
 _SCHEDULED = Path("/proc/self/schedstat")
+
+
+class _Caught:
+    """A context that nothing leaves: whatever was raised in it is `error`, also what nobody should raise."""
+
+    error: BaseException | None = None
+
+    def __enter__(self) -> "_Caught":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> bool:
+        self.error = error
+        return True
 
 
 class Tally(ctypes.Structure):
@@ -49,17 +68,14 @@ def run_row(
 ) -> None:
     """Never returns: the process ends. Unnamed errors are appended to `found`, a line of JSON each."""
     _keep_apart(log)
-    try:
+    with _Caught() as end:
         _run(row, place, seed, numbers, tally, found)
-    except BaseException:
-        traceback.print_exc()
-        os._exit(1)
-    os._exit(0)  # whatever threads the inputs have left
+    if end.error is not None:
+        traceback.print_exception(end.error)
+    os._exit(end.error is not None)  # whatever threads the inputs have left
 
 
-def _run(
-    row: Row, place: Place, seed: int, numbers: range, tally: Tally, found: Path
-) -> None:
+def _run(row: Row, place: Place, seed: int, numbers: range, tally: Tally, found: Path) -> None:
     attempt = row.prepare(place)
     gc.collect()
     before = _forget_peak()
@@ -78,28 +94,25 @@ def _run(
 
 def _one(attempt: Attempt, seed: str, number: int, tally: Tally) -> Mapping[str, str] | None:
     """The unnamed error, if it came to one."""
-    began_s = _own_s()
-    error: BaseException | None = None
-    try:
+    began_s, taken = _own_s(), False
+    with _Caught() as end:
         taken = attempt(Random(seed), number)
-        tally.taken, tally.refused = tally.taken + taken, tally.refused + (not taken)
-    except MocapdError:
-        tally.refused += 1
-    except BaseException as raised:  # also KeyboardInterrupt and SystemExit: nothing may raise them
-        error = raised
-        tally.unnamed += 1
+    unnamed = None if isinstance(end.error, MocapdError) else end.error
+    tally.taken += taken
+    tally.refused += not taken and unnamed is None
+    tally.unnamed += unnamed is not None
     took_s = _own_s() - began_s
     if SLOW_S < took_s < _SURELY_SLOW_S:
         took_s = min(took_s, _again_s(attempt, seed, number))
     if took_s > tally.slowest_s:
         tally.slowest_s, tally.slowest = took_s, number
-    return None if error is None else _described(error)
+    return None if unnamed is None else _described(unnamed)
 
 
 def _again_s(attempt: Attempt, seed: str, number: int) -> float:
     """The machine may have been busy with something else."""
     began_s = _own_s()
-    with suppress(BaseException):
+    with _Caught():
         attempt(Random(seed), number)
     return _own_s() - began_s
 
@@ -129,7 +142,7 @@ def _keep_apart(log: Path) -> None:
     with log.open("ab", buffering=0) as file:
         for descriptor in (1, 2):
             os.dup2(file.fileno(), descriptor)
-    faulthandler.enable(sys.__stderr__)
+    faulthandler.enable(2)
     threading.excepthook = lambda _: None  # a thread that dies is told by who had it
     keep_off()
     size = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()

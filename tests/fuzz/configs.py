@@ -88,7 +88,21 @@ _PIECES = (
     "٣", "²", "-1", "0x10", "1_0", "+1", "9" * 30, "9" * 5000, "x" * 300, "a" * 5000, "rtsp://", "sim:", "usb:", "#cam0",
     "\u2028", "127.0.0.1", "::1", "１２", "/dev/", "./", "*", "'", '"', "\\", "%25",
 )  # fmt: skip
-_SIZES = (*NUMBERS, "3x3", "4x5", "5X7", "20000x20000", " 4 x 5 ", "4x", "x5", "4x5x6", "٤x٥", "²x³", "-4x5", "4.0x5")
+_SIZES = (
+    *NUMBERS,
+    "3x3",
+    "4x5",
+    "5X7",
+    "20000x20000",
+    " 4 x 5 ",
+    "4x",
+    "x5",
+    "4x5x6",
+    "٤x٥",
+    "²x³",
+    "-4x5",
+    "4.0x5",
+)
 
 
 def files(place: Place) -> Attempt:
@@ -226,5 +240,3 @@ def _misspelt(random: Random, text: str) -> str:
         piece = random.choice((*_PIECES, text, ""))
         text = text[:begin] + piece + text[end:]
     return text
-
-

@@ -59,8 +59,12 @@ def damaged_png(random: Random, data: bytes) -> bytes:
     elif kind == 2:
         chunks.insert(random.randint(1, len(chunks)), chunks[at])
     elif kind == 3:
-        name = random.choice((b"PLTE", b"tRNS", b"acTL", b"fcTL", b"fdAT", b"eXIf", b"iCCP", b"zzzz"))
-        chunks.insert(random.randint(1, len(chunks)), (name, random.randbytes(random.randint(0, 30))))
+        name = random.choice(
+            (b"PLTE", b"tRNS", b"acTL", b"fcTL", b"fdAT", b"eXIf", b"iCCP", b"zzzz")
+        )
+        chunks.insert(
+            random.randint(1, len(chunks)), (name, random.randbytes(random.randint(0, 30)))
+        )
     elif kind == 4:
         chunks = [(n, _recompressed(random, d) if n == b"IDAT" else d) for n, d in chunks]
     elif kind == 5:
@@ -89,7 +93,9 @@ def damaged_jpeg(random: Random, data: bytes) -> bytes:
     elif kind < 0.92:
         out[at:at] = b"\xff" * random.choice((1, 3, 2000))
     else:
-        out[at + 1] = random.choice((marker ^ 1, 0xC3, 0xC9, 0xD9, 0xDA, 0x01, random.randrange(256)))
+        out[at + 1] = random.choice(
+            (marker ^ 1, 0xC3, 0xC9, 0xD9, 0xDA, 0x01, random.randrange(256))
+        )
     return bytes(out)
 
 

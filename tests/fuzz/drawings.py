@@ -14,7 +14,18 @@ from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, named, taken
 
 _SIZE_PX = (64, 48)
-_NO_BASE64 = ("é", "\ud800", "====", "A", "", "AAAA\n", "\0", "data:image/png;base64,", "A" * 300_001, "-_-_")
+_NO_BASE64 = (
+    "é",
+    "\ud800",
+    "====",
+    "A",
+    "",
+    "AAAA\n",
+    "\0",
+    "data:image/png;base64,",
+    "A" * 300_001,
+    "-_-_",
+)
 _NO_TEXT: tuple[object, ...] = (None, 0, 1.5, True, [], {}, ["x"], b"x")
 
 

@@ -97,7 +97,9 @@ class PageBench:
         start = next((one for one in said if one["type"] == "http.response.start"), None)
         if start is None:
             return Answer(0, {}, b"")
-        headers = {name.decode("latin-1"): text.decode("latin-1") for name, text in start["headers"]}
+        headers = {
+            name.decode("latin-1"): text.decode("latin-1") for name, text in start["headers"]
+        }
         return Answer(start["status"], headers, b"".join(one.get("body", b"") for one in said))
 
     def talk(self, path: str, messages: Iterable[bytes], cookie: str) -> list[Message]:

@@ -34,18 +34,14 @@ def captures(place: Place) -> Attempt:
     """A capture folder one of whose files is damaged: its tables, pictures and every frame."""
     folder = small_capture.write_capture(place.folder / "capture")
     small_capture.write_stroked(folder / "scribble" / "cam0.png", range(1, 11))
-    files = {
-        path: path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
+    files = {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
     tables = [path for path in files if path.suffix == ".json"]
     others = [path for path in files if path.suffix != ".json"]
 
     def read() -> bool:
         capture = load_folder(folder)
         inputs_of_capture(capture, 1.7)
-        return any([frames.frames for frames in frame_sets(capture)])
+        return len(list(frame_sets(capture))) > 0
 
     assert read()
 

@@ -14,9 +14,7 @@ _SHOWN = 12  # kinds of unnamed errors of a row
 
 def is_good(outcome: Outcome) -> bool:
     """No unnamed error, no slow input, no large one."""
-    return not (
-        outcome.found or outcome.slowest_s > SLOW_S or outcome.more_mb > MOST_MB
-    )
+    return not (outcome.found or outcome.slowest_s > SLOW_S or outcome.more_mb > MOST_MB)
 
 
 def show(outcomes: Sequence[Outcome], seed: int, console: Console) -> None:

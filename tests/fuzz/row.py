@@ -52,9 +52,14 @@ def each_of(cases: Sequence[T], take: Callable[[T], bool]) -> Attempt:
     """Case after case."""
 
     def attempt(_random: Random, number: int) -> bool:
-        return take(cases[number * _STRIDE % len(cases)])
+        return take(one_of(cases, number))
 
     return attempt
+
+
+def one_of(cases: Sequence[T], number: int) -> T:
+    """The case of this number."""
+    return cases[number * _STRIDE % len(cases)]
 
 
 def taken(parse: Callable[[], object]) -> bool:

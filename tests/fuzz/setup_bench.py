@@ -125,9 +125,7 @@ class SetupBench:
 
     def _statuses(self) -> Mapping[str, CaptureStatus]:
         return {
-            name: CaptureStatus(
-                name, CaptureState.LIVE, "", self._seq, 0, 0, 30.0, monotonic_ns()
-            )
+            name: CaptureStatus(name, CaptureState.LIVE, "", self._seq, 0, 0, 30.0, monotonic_ns())
             for name in NAMES
         }
 

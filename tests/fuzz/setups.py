@@ -22,7 +22,18 @@ _MORE_VALUES = (
     '"check"', "[64,48]", "[64.0,48]", '"DICT_4X4_50"', '"DICT_ARUCO_ORIGINAL"', '"\\u00e9\\u00e9=="', '"AAAA"', '"2"',
 )  # fmt: skip
 _VALUES = (*JSON_VALUES, *_MORE_VALUES)
-_VERBS_WRONG = ("", "\0", "é", "__init__", "command", "x" * 10_000, "Go", "go ", "begin", "take_over")
+_VERBS_WRONG = (
+    "",
+    "\0",
+    "é",
+    "__init__",
+    "command",
+    "x" * 10_000,
+    "Go",
+    "go ",
+    "begin",
+    "take_over",
+)
 _PAIRS = ("2", "3", "4", "33", "500", "20000", "1e5")
 
 
@@ -71,8 +82,7 @@ def _cases() -> list[_Case]:
             cases += [
                 _Case(
                     StepName.LENS,
-                    f'{{"verb":"board","args":{{"kind":"{kind}","columns":{columns},"rows":{rows}}}}}'
-                    .encode(),
+                    f'{{"verb":"board","args":{{"kind":"{kind}","columns":{columns},"rows":{rows}}}}}'.encode(),
                 )
                 for rows in _PAIRS
             ]
@@ -114,7 +124,9 @@ def solved_strokes(place: Place) -> Attempt:
             pixels, strokes = _drawing(random)
             size_px = pixels.shape[1], pixels.shape[0]
             text = base64.b64encode(png(strokes)).decode()
-            shirt = None if random.random() < 0.7 else (_scribbled(random, strokes) > 0) * np.uint8(1)
+            shirt = (
+                None if random.random() < 0.7 else (_scribbled(random, strokes) > 0) * np.uint8(1)
+            )
             drawn[name] = Drawn(pixels, decode_strokes(text, size_px, name), shirt)
         found = solve(drawn, random.random() < 0.5, {})
         return any(one.W is not None for one in found.cameras.values())
