@@ -19,6 +19,8 @@ def test_no_input_ends_in_an_unnamed_error(clean_env: dict[str, str], cache_home
             "tests.fuzz",
             "--scale",
             _SCALE,
+            "--jobs",
+            "3",  # some of them wait more than they work
             "--cache",
             str(cache_home / "fuzz"),
         ],

@@ -54,18 +54,19 @@ def files(place: Place) -> Attempt:
     """page.json, as `mocapd calibrate` reads it and the daemon takes it back."""
     answers = _Answers()
     answers.data = _answer(_HEADS[0], _status())
-    path = place.folder / "page.json"
-    announce(path, f"http://127.0.0.1:{answers.port}/?token=abc")
+    asked = place.folder / "page.json"
+    announce(asked, f"http://127.0.0.1:{answers.port}/?token=abc")
+    (path,) = (one for one in place.folder.rglob("*") if one.is_file())
     good = path.read_bytes()
-    assert running(path) is not None
+    assert running(asked) is not None
 
     def attempt(random: Random, number: int) -> bool:
         data = mistyped(random, good, JSON_VALUES)
         if random.random() < 0.1:
             data = b'{"url":"%s","pid":%d}' % (random.choice(_URLS).encode(), os.getpid())
         path.write_bytes(data)
-        found = running(path)
-        withdraw(path)
+        found = running(asked)
+        withdraw(asked)
         return found is not None
 
     return attempt

@@ -21,9 +21,7 @@ from tests.fuzz.row import Attempt, Place, Row
 
 SLOW_S = 1.0  # that no input may take [s]
 _SURELY_SLOW_S = 3.0  # beyond, it is not for the machine being busy
-_MORE_MEMORY = (
-    5 << 30
-)  # what an input may ask for before it is refused, for the sake of the machine
+_MORE_MEMORY = 5 << 30  # that inputs may ask for, for the sake of the machine [bytes]
 _SOURCES = str(Path(mocapd.__file__).parent)
 _SCHEDULED = Path("/proc/self/schedstat")
 

@@ -1,5 +1,7 @@
 """A real wizard with all its steps, over two webcams that are not there, for messages of a page."""
 
+import shutil
+import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import replace
@@ -49,10 +51,12 @@ class CountingWizard(Wizard):
 
 class SetupBench:
     """One setup, from its beginning to `close`. Every step is done in its draft but Colour, so nothing heavy
-    is begun. The cameras show grey, and a new picture before every command."""
+    is begun. The cameras show grey, and a new picture before every command. Its files are in a folder of its
+    own within `folder`."""
 
     def __init__(self, folder: Path, step: StepName = StepName.CAMERAS) -> None:
         self.deaths: list[BaseException] = []
+        self._folder = Path(tempfile.mkdtemp(dir=folder))
         self.hub = FrameHub(NAMES)
         self._seq = 0
         draft = replace(full_draft(), colours={}, personal=False)
@@ -70,8 +74,8 @@ class SetupBench:
             self.hub,
             steps,
             self._statuses,
-            folder,
-            folder,
+            self._folder,
+            self._folder,
             self.deaths.append,
             first=step,
             draft=draft,
@@ -122,6 +126,7 @@ class SetupBench:
         self.wizard.send("wake up")
         self.wizard.stop(1.0)
         self._locks.restore()
+        shutil.rmtree(self._folder, ignore_errors=True)
 
     def _statuses(self) -> Mapping[str, CaptureStatus]:
         return {
