@@ -15,6 +15,7 @@ from mocapd.config_sections import Config
 from mocapd.errors import MocapdError
 from mocapd.health import camera_message, health_message
 from mocapd.mountings import Mountings
+from mocapd.outputs import keys
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_rig import calibration_info
@@ -62,7 +63,9 @@ class Daemon:
         self._sinks: list[Sink] = [self._zenoh] if self._zenoh else []
         if config.osc.enabled:
             self._sinks.append(OscSink(config.osc))
-        self.instance = self._zenoh.instance if self._zenoh else config.instance
+        self.instance = (
+            self._zenoh.instance if self._zenoh else config.instance or keys.default_instance()
+        )
         self._session = session
         self._inputs = {camera.source.name: camera for camera in session.cameras}
         self._collector = FrameCollector(self._inputs)

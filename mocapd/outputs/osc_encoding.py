@@ -16,9 +16,14 @@ Argument = int | float | str
 
 
 def string(text: str) -> bytes:
-    """NUL-terminated UTF-8, padded to a multiple of 4 bytes."""
-    data = text.encode()
+    """NUL-terminated UTF-8, padded to a multiple of 4 bytes. What UTF-8 or OSC cannot hold is `?`."""
+    data = text.replace("\0", "?").encode(errors="replace")
     return data + b"\0" * (4 - len(data) % 4)
+
+
+def shortened(text: str, max_bytes: int) -> str:
+    """The beginning of the text that takes at most so many bytes of UTF-8, without half characters."""
+    return text.encode(errors="replace")[:max_bytes].decode(errors="ignore")
 
 
 def message(address: str, types: str, *arguments: Argument) -> bytes:

@@ -1,7 +1,8 @@
 """The native OSC address space: a skeleton frame as bundles.
 
 Every bundle begins with `/mocapd/v1/frame`; its joints follow as `/mocapd/v1/joint/<VRM name>`.
-A frame that does not fit one datagram is spread over several of nearly equal size.
+A frame that does not fit one datagram is spread over several of nearly equal size. Whatever a
+frame's strings are, one joint and its header fit: longer strings are cut.
 """
 
 import struct
@@ -34,7 +35,12 @@ JOINT_ARGUMENTS = (
     ("lx ly lz lw", "ffff", "rotation relative to the parent bone, w >= 0"),
     ("c", "f", "confidence 0..1"),
 )
-MAX_CAMERAS_LENGTH = 200  # characters of the list of cameras that are sent
+# UTF-8 that is sent of each string [bytes]; with a joint, at most 808 of a datagram's 1472
+MAX_TRACKING_BYTES = 32
+MAX_TRACKER_BYTES = 64
+MAX_CAMERAS_BYTES = 200
+MAX_INSTANCE_BYTES = 256  # 64 characters
+MAX_JOINT_BYTES = 64
 
 _frame_numbers = struct.Struct(">iiiiiIIf")  # the arguments before the strings
 _joint_numbers = struct.Struct(">12f")
@@ -55,17 +61,17 @@ class FrameBundles:
             FRAME,
             FRAME_TYPES,
             *(0, 0, 0, 0, 0, 0, 0, 0.0),
-            frame.tracking,
-            frame.tracker,
-            ",".join(frame.cameras)[:MAX_CAMERAS_LENGTH],
-            frame.instance,
+            osc.shortened(frame.tracking, MAX_TRACKING_BYTES),
+            osc.shortened(frame.tracker, MAX_TRACKER_BYTES),
+            osc.shortened(",".join(frame.cameras), MAX_CAMERAS_BYTES),
+            osc.shortened(frame.instance, MAX_INSTANCE_BYTES),
         )
         header_at = osc.arguments_offset(FRAME, FRAME_TYPES)
         self._bundles: list[tuple[bytearray, int, tuple[int, ...]]] = []
         for names in _runs(tuple(frame.joints), header, limit_bytes):
             data, starts = osc.bundle([header, *map(_joint_message, names)])
             joints_at = tuple(
-                start + osc.arguments_offset(JOINT + name, JOINT_TYPES)
+                start + osc.arguments_offset(_address(name), JOINT_TYPES)
                 for start, name in zip(starts[1:], names, strict=True)
             )
             self._bundles.append((data, starts[0] + header_at, joints_at))
@@ -94,8 +100,12 @@ class FrameBundles:
         return [data for data, _, _ in self._bundles]
 
 
+def _address(joint: str) -> str:
+    return JOINT + osc.shortened(joint, MAX_JOINT_BYTES)
+
+
 def _joint_message(name: str) -> bytes:
-    return osc.message(JOINT + name, JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
+    return osc.message(_address(name), JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
 
 
 def _runs(names: tuple[str, ...], header: bytes, limit_bytes: int) -> list[tuple[str, ...]]:

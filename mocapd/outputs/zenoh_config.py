@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from mocapd.errors import ConfigError
+from mocapd.outputs.zenoh_limits import receive_limits, unicast_limits
+from mocapd.outputs.zenoh_password_file import check_password_file
 
 LOOPBACK = "127.0.0.1"
 PORT = 7447
@@ -66,7 +68,9 @@ class Params:
             self._check_listen(endpoint)
         for name in ("tls_certificate", "tls_private_key", "tls_root_ca", "password_file"):
             path = str(getattr(self, name))
-            _require(not path or Path(path).is_file(), name, path, "a file that exists")
+            _require(not path or _is_file(path), name, path, "a file that exists")
+        if self.password_file:
+            check_password_file(Path(self.password_file))
         _require(
             not self.tls_require_client or bool(self.tls_root_ca),
             "tls_require_client",
@@ -115,6 +119,13 @@ def is_loopback(endpoint: str) -> bool:
         return False  # a name: where it leads is not ours to know
 
 
+def _is_file(path: str) -> bool:
+    try:
+        return Path(path).is_file()
+    except OSError:  # too long, or in a folder that is closed to us
+        return False
+
+
 def _require(holds: bool, key: str, value: object, wanted: str) -> None:
     if not holds:
         raise ConfigError(f"{value!r} does not do", f"zenoh.{key}", f"write {wanted}")
@@ -135,7 +146,8 @@ def session_config(params: Params) -> dict[str, Any]:
         # frames are smaller than what shared memory is used for
         "transport": {
             "shared_memory": {"enabled": False},
-            "link": {"tls": _tls(params)},
+            "unicast": unicast_limits(),
+            "link": {"tls": _tls(params), "rx": receive_limits()},
             "auth": {"usrpwd": {"dictionary_file": params.password_file or None}},
         },
     }

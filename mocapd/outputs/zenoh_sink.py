@@ -1,5 +1,6 @@
 """Skeleton frames on Zenoh: key `mocapd/v1/<instance>/skeleton/<person>`."""
 
+import logging
 from contextlib import ExitStack
 from typing import Any
 
@@ -9,10 +10,14 @@ from mocapd.outputs import keys, wire
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import Message
 from mocapd.outputs.wire import SkeletonFrame
+from mocapd.outputs.zenoh_close import close_soon
 from mocapd.outputs.zenoh_config import Params, listen_endpoints
 from mocapd.outputs.zenoh_listeners import ListenerNames, subscribers
 from mocapd.outputs.zenoh_open import open_session
 from mocapd.outputs.zenoh_state import ZenohState
+from mocapd.outputs.zenoh_warnings import warnings
+
+_log = logging.getLogger(__name__)
 
 
 class ZenohSink:
@@ -38,9 +43,12 @@ class ZenohSink:
 
     def open(self) -> None:
         """Open the session. Raises UnavailableError; a taken port names its holder and the mend."""
+        for text in warnings(self._params):
+            _log.warning("%s", text)
         session = self._opened.enter_context(open_session(self._params))
-        self._state.attach(session)
-        self._opened.callback(self._state.detach)
+        self._state.attach(session, self._opened)
+        # forgetting a publisher speaks to everybody who is connected, so it belongs to the end
+        self._opened.callback(self._publishers.clear)
         self._publishers[0] = self._declare(session, 0)
         # last in and so first out: whoever sees the token finds everything else in place
         self._opened.enter_context(session.liveliness().declare_token(keys.alive(self.instance)))
@@ -98,10 +106,14 @@ class ZenohSink:
         )
 
     def close(self) -> None:
-        """Take back the token, so that clients learn of the end, then everything else."""
+        """Take back the token, so that clients learn of the end, then everything else.
+
+        Within about a second, whatever the clients do.
+        """
         self._session = None
-        self._publishers.clear()
-        self._opened.close()
+        self._publishers = {}
+        self._state.detach()
+        close_soon(self._opened)
 
 
 def _is_heard(publisher: zenoh.Publisher) -> bool:

@@ -26,10 +26,9 @@ class ZenohState:
             for name in schemas.STRUCTS
         }
         self._session: zenoh.Session | None = None
-        self._attached = ExitStack()
 
-    def attach(self, session: zenoh.Session) -> None:
-        """Answer queries on this session, and publish changes there."""
+    def attach(self, session: zenoh.Session, opened: ExitStack) -> None:
+        """Answer queries on this session until `opened` closes, and publish changes there."""
         for family in (
             keys.health(self._instance),
             keys.camera_status(self._instance, keys.ANY),
@@ -39,13 +38,12 @@ class ZenohState:
             # on Zenoh's own thread: the Python thread it would else start keeps a process whose
             # main thread died from ending
             handler = zenoh.handlers.Callback(self._answer_for(family), indirect=False)
-            self._attached.enter_context(session.declare_queryable(family, handler))
+            opened.enter_context(session.declare_queryable(family, handler))
         self._session = session
 
     def detach(self) -> None:
-        """Stop answering; what was set stays known."""
+        """Publish no more changes; what was set stays known."""
         self._session = None
-        self._attached.close()
 
     def set(self, message: Message) -> None:
         """Make this the state of its key; may be called before `attach`."""

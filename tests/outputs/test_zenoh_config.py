@@ -28,13 +28,15 @@ def test_joining_a_router_listens_nowhere() -> None:
 def test_tls_on_a_network(tmp_path: Path) -> None:
     pem = tmp_path / "some.pem"
     pem.write_text("")
+    users = tmp_path / "users"
+    users.write_text("game:secret\n")
     params = Params(
         listen=("tls/0.0.0.0:7447",),
         tls_certificate=str(pem),
         tls_private_key=str(pem),
         tls_root_ca=str(pem),
         tls_require_client=True,
-        password_file=str(pem),
+        password_file=str(users),
     )
     tls = session_config(params)["transport"]["link"]["tls"]
     assert tls["enable_mtls"] is True
