@@ -3,7 +3,7 @@
 import struct
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from pythonosc.osc_bundle import OscBundle
 from pythonosc.osc_message import OscMessage
@@ -16,6 +16,8 @@ from tests.outputs.frames import small_frame, whole_frame
 
 ONE, HALF, QUARTER = b"\x3f\x80\0\0", b"\x3f\x00\0\0", b"\x3e\x80\0\0"
 ZERO = b"\0\0\0\0"
+
+ANY_TEXT = st.text(st.characters())  # also NUL and lone surrogates
 
 GOLDEN_FRAME = b"".join(
     [
@@ -117,6 +119,37 @@ def test_many_long_camera_names_still_fit() -> None:
     cameras = tuple(f"camera-over-the-garage-door-{i}" for i in range(100))
     many = small_frame(joints=frame.joints, cameras=cameras)
     assert all(len(d) <= osc.MAX_DATAGRAM_BYTES for d in FrameBundles(many).filled(many))
+
+
+@given(ANY_TEXT, ANY_TEXT, ANY_TEXT, st.lists(ANY_TEXT), st.lists(ANY_TEXT, unique=True))
+@example("live", "colour", "x" * 1300, ["left"], ["hips"])
+@example("live", "colour", "\U0001f600" * 2000, ["\udcff\0"], ["hips"])
+@example("live" * 999, "colour" * 999, "", ["c" * 9999], ["j" * 9999])
+def test_whatever_a_frame_says_it_fits_its_datagrams(
+    tracking: str, tracker: str, instance: str, cameras: list[str], joints: list[str]
+) -> None:
+    joint = next(iter(small_frame().joints.values()))
+    frame = small_frame(
+        tracking=tracking,
+        tracker=tracker,
+        instance=instance,
+        cameras=tuple(cameras),
+        joints=dict.fromkeys(joints, joint),
+    )
+    datagrams = FrameBundles(frame).filled(frame)
+    assert all(len(datagram) <= osc.MAX_DATAGRAM_BYTES for datagram in datagrams)
+    messages = [decoded(datagram) for datagram in datagrams]
+    assert sum(len(each) - 1 for each in messages) == len(joints)
+    assert all(each[0].params[4] == len(joints) for each in messages)
+    assert all(each[-1].params[-1] == joint.c for each in messages if len(each) > 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "max_bytes", "expected"),
+    [("left", 9, "left"), ("left", 2, "le"), ("äöü", 3, "ä"), ("a\U0001f600", 4, "a")],
+)
+def test_texts_are_shortened_between_characters(text: str, max_bytes: int, expected: str) -> None:
+    assert osc.shortened(text, max_bytes) == expected
 
 
 @given(st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"])))

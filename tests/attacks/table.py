@@ -1,0 +1,11 @@
+"""Every attack by its name. Whoever writes another adds the table of its module here."""
+
+from tests.attacks import frozen_at_the_end, frozen_beside_newcomers, large_messages, silent
+from tests.attacks.scenario import Scenario
+
+SCENARIOS: dict[str, Scenario] = (
+    frozen_at_the_end.SCENARIOS
+    | frozen_beside_newcomers.SCENARIOS
+    | silent.SCENARIOS
+    | large_messages.SCENARIOS
+)
