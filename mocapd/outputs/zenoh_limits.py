@@ -28,7 +28,7 @@ RUNTIME_VARIABLE = "ZENOH_RUNTIME"
 RUNTIME = f"(rx: (worker_threads: {RX_THREADS}))"
 
 # Taking leave of everybody takes some milliseconds, but 10 s when a single one does not read.
-CLOSE_S = 1.0
+CLOSE_S = 0.7
 
 
 def unicast_limits() -> dict[str, Any]:
