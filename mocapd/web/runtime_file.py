@@ -170,10 +170,8 @@ def _believed(path: Path) -> _Said | None:
 
 
 def _write(path: Path, data: bytes) -> None:
-    with whole_file(path) as partial:
-        made = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with os.fdopen(made, "wb") as file:
-            file.write(data)
+    with whole_file(path, private=True) as partial:
+        partial.write_bytes(data)
 
 
 def _remove(path: Path) -> None:

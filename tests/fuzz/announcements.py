@@ -1,4 +1,4 @@
-"""page.json, by which a running page is found, and what answers at its address."""
+"""page-PID.json, by which a running page is found, and what answers at its address."""
 
 import json
 import os
@@ -6,17 +6,26 @@ import socket
 import threading
 from random import Random
 
+from mocapd.web.runtime_file import Place as PagePlace
 from mocapd.web.runtime_file import announce, begin_setup, running, withdraw
 from mocapd.web.status import SetupAnswer, Status
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.network import own_ports
 from tests.fuzz.row import Attempt, Place, named
 
-_URLS = (
-    "http://[bad/", "http://127.0.0.1:x/", "http://127.0.0.1:99999/", "http://127.0.0.1:-1/", "", "x", "file:///etc/passwd",
-    "ftp://127.0.0.1/", "data:,x", "http://", "http:///x", "http://é/", "http://127.0.0.1:1/\\n", "http://a b/", "//x",
-    "http://127.0.0.1:1\\r\\nX: y/", "http://\\u0000/", "gopher://x", "http://user:pw@127.0.0.1:1/",
-)  # fmt: skip
+_TOKENS = (
+    "",
+    "a b",
+    "é",
+    "../..",
+    "a\\r\\nX: y",
+    "\\u0000",
+    "x" * 5000,
+    "?&#",
+    "@h/",
+    "%00",
+    "a_-Z",
+)
 _HEADS = (
     b"HTTP/1.1 200 OK", b"HTTP/1.0 200", b"HTTP/1.1 503 No", b"HTTP/1.1 302 Found\r\nLocation: http://127.0.0.1:1/",
     b"HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd", b"HTTP/1.1 401 No", b"HTTP/9 abc", b"ICY 200 OK", b"",
@@ -51,23 +60,22 @@ class _Answers:
 
 
 def files(place: Place) -> Attempt:
-    """page.json, as `mocapd calibrate` reads it and the daemon takes it back."""
+    """page-PID.json, as `mocapd calibrate` reads it and the daemon takes it back."""
     answers = _Answers()
     answers.data = _answer(_HEADS[0], _status())
-    asked = place.folder / "page.json"
-    announce(asked, f"http://127.0.0.1:{answers.port}/?token=abc")
-    (path,) = (one for one in place.folder.rglob("*") if one.is_file())
+    announce(PagePlace(place.folder, place.folder), answers.port, "abc")
+    (path,) = place.folder.glob("page-*.json")
     good = path.read_bytes()
-    assert running(asked) is not None
+    assert running(place.folder)
 
     def attempt(random: Random, number: int) -> bool:
         data = mistyped(random, good, JSON_VALUES)
         if random.random() < 0.1:
-            data = b'{"url":"%s","pid":%d}' % (random.choice(_URLS).encode(), os.getpid())
+            data = good.replace(b'"abc"', b'"%s"' % random.choice(_TOKENS).encode())
         path.write_bytes(data)
-        found = running(asked)
-        withdraw(asked)
-        return found is not None
+        found = running(place.folder)
+        withdraw(place.folder)
+        return bool(found)
 
     return attempt
 
@@ -75,9 +83,8 @@ def files(place: Place) -> Attempt:
 def answers(place: Place) -> Attempt:
     """What another program may say at the port that was announced."""
     server = _Answers()
-    path = place.folder / "page.json"
+    announce(PagePlace(place.folder, place.folder), server.port, "abc")
     url = f"http://127.0.0.1:{server.port}/?token=abc"
-    announce(path, url)
 
     def attempt(random: Random, number: int) -> bool:
         body = mistyped(random, random.choice((_status(), _refusal())), JSON_VALUES)
@@ -85,7 +92,7 @@ def answers(place: Place) -> Attempt:
         if random.random() < 0.5:
             server.data = damaged(random, _answer(_HEADS[number % 3], body))
         begun = named(lambda: begin_setup(url, "lens"))
-        return running(path) is not None or begun
+        return bool(running(place.folder)) or begun
 
     return attempt
 

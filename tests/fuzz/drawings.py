@@ -26,7 +26,6 @@ _NO_BASE64 = (
     "A" * 300_001,
     "-_-_",
 )
-_NO_TEXT: tuple[object, ...] = (None, 0, 1.5, True, [], {}, ["x"], b"x")
 
 
 def uploads(place: Place) -> Attempt:
@@ -36,15 +35,15 @@ def uploads(place: Place) -> Attempt:
     decode_strokes(base64.b64encode(good).decode(), _SIZE_PX, "cam0")
 
     def attempt(random: Random, number: int) -> bool:
-        text: object = base64.b64encode(damaged_png(random, good)).decode()
+        text = base64.b64encode(damaged_png(random, good)).decode()
         kind = random.random()
         if kind < 0.1:
             text = base64.b64encode(damaged(random, random.choice(others))).decode()
         elif kind < 0.2:
             at = random.randint(0, 80)
-            text = f"{str(text)[:at]}{random.choice(_NO_BASE64)}{str(text)[at:]}"
+            text = f"{text[:at]}{random.choice(_NO_BASE64)}{text[at:]}"
         elif kind < 0.25:
-            text = random.choice((*_NO_TEXT, *_NO_BASE64))
+            text = random.choice(_NO_BASE64)
         return taken(lambda: decode_strokes(text, _SIZE_PX, "cam0"))
 
     return attempt

@@ -21,7 +21,7 @@ from mocapd.errors import CannotCreateError, InputError, MocapdError
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.types import Bytes
-from mocapd.web.links import as_json
+from mocapd.web.shown_json import as_json
 from mocapd.wizard.body_step import BodyStep
 from mocapd.wizard.camera_locks import CameraLocks
 from mocapd.wizard.cameras_step import CamerasStep
