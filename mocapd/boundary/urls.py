@@ -7,7 +7,7 @@ from mocapd.errors import ConfigError
 
 HIDDEN = "***"
 
-_CREDENTIALS = re.compile(r"^([a-z][a-z0-9+.\-]*://)(.*)@", re.IGNORECASE | re.DOTALL)
+_CREDENTIALS = re.compile(r"^([\x00-\x20]*[a-z][a-z0-9+.\-]*://)(.*)@", re.IGNORECASE | re.DOTALL)
 _ADDRESS = re.compile(r"[a-z][a-z0-9+.\-]*://\S+", re.IGNORECASE)
 _SECRET_QUERY = re.compile(
     r"([?&;](?:[\w.\-]*(?:pass|pwd|secret|token|key|auth|credential|sig)[\w.\-]*|pw|p)=)[^&;#]*",
@@ -16,13 +16,15 @@ _SECRET_QUERY = re.compile(
 
 
 def split_url(text: str) -> SplitResult:
-    """The parts of a URL. Raises ConfigError for one that has no parts, such as `rtsp://[bad`."""
+    """The parts of a URL, its secrets hidden. Raises ConfigError for one that has no parts, such as
+    `rtsp://[bad`."""
+    shown = without_password(text)  # first: the errors of a parser repeat what they could not read
     try:
-        parts = urlsplit(text)
+        parts = urlsplit(shown)
         _ = parts.port  # also when it is no number
     except ValueError as error:
         raise ConfigError(
-            f"{without_password(text)!r} is no address: {error}",
+            f"{shown!r} is no address: {error}",
             fix="write it as rtsp://user:password@host:port/path",
         ) from None
     return parts

@@ -1,6 +1,13 @@
 """Every attack by its name. Whoever writes another adds the table of its module here."""
 
-from tests.attacks import frozen_at_the_end, frozen_beside_newcomers, large_messages, silent
+from tests.attacks import (
+    frozen_at_the_end,
+    frozen_beside_newcomers,
+    large_messages,
+    page_connections,
+    page_requests,
+    silent,
+)
 from tests.attacks.scenario import Scenario
 
 SCENARIOS: dict[str, Scenario] = (
@@ -8,4 +15,6 @@ SCENARIOS: dict[str, Scenario] = (
     | frozen_beside_newcomers.SCENARIOS
     | silent.SCENARIOS
     | large_messages.SCENARIOS
+    | page_connections.SCENARIOS
+    | page_requests.SCENARIOS
 )

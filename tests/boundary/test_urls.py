@@ -21,6 +21,7 @@ from mocapd.errors import ConfigError
         ("rtsp://admin:hun/t#e?r2@10.0.0.7/s", "rtsp://admin:***@10.0.0.7/s"),
         ("rtsp://admin:a@b:c@10.0.0.7/s", "rtsp://admin:***@10.0.0.7/s"),
         ("RTSP://admin:hunter2@cam/s", "RTSP://admin:***@cam/s"),
+        ("\nrtsp://admin:hunter2@cam/s", "\nrtsp://admin:***@cam/s"),
         (
             "http://cam/v.mjpg?user=admin&pwd=hunter2&x=1",
             "http://cam/v.mjpg?user=admin&pwd=***&x=1",
@@ -44,9 +45,10 @@ def test_what_is_no_address_is_a_named_error(url: str) -> None:
 
 
 def test_a_bad_address_is_told_without_its_password() -> None:
-    with pytest.raises(ConfigError) as told:
-        split_url("rtsp://admin:hunter2@[bad")
-    assert "hunter2" not in str(told.value)
+    for url in ("rtsp://admin:hunter2@[bad", "rtsp://admin:hunter2?x@cam:port/"):
+        with pytest.raises(ConfigError) as told:
+            split_url(url)
+        assert "hunter2" not in str(told.value)
 
 
 def test_a_masked_address_is_known_as_such() -> None:

@@ -65,7 +65,8 @@ class PageBench:
 
     def let_in(self) -> None:
         """As a browser is that opens the printed address."""
-        answer = self.ask(request("GET", f"/?{TOKEN}={SECRET}"))
+        led = self.ask(request("GET", f"/?{TOKEN}={SECRET}"))
+        answer = self.ask(request("GET", led.headers["location"]))
         given = answer.headers["set-cookie"]
         path = re.search(r"[Pp]ath=([^;]*)", given)
         self.base = path[1].rstrip("/") if path else ""

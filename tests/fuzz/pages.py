@@ -111,9 +111,9 @@ def strangers(place: Place) -> Attempt:
             return False
         if random.random() < 0.4:
             path += random.choice(_PIECES)
-        cookie = page.cookie.replace(
-            SECRET, random.choice(("", "x", SECRET[:-1], SECRET + "x", "é"))
-        )
+        name, _, session = page.cookie.partition("=")
+        wrong = random.choice(("", "x", session[:-1], session + "x", "é", SECRET))
+        cookie = f"{name}={wrong}"
         raw = request(*_method_of(path), path, random.choice((cookie, "")), b"")
         answer = page.ask(damaged(random, raw))
         if 0 < answer.status < 400 or "set-cookie" in answer.headers:
