@@ -108,4 +108,5 @@ class _Lines:
         say(self._headline)
         while not self._over.wait(TELL_EVERY_S):
             what, done, total = self._newest
-            say(f"{what}: {100 * done // max(1, total)} %")
+            spent_s = time.monotonic() - self._began_s
+            say(f"{what}: {100 * done // max(1, total)} %, {spent_s:.0f} s so far")

@@ -85,7 +85,7 @@ def test_what_takes_long_says_so_without_a_terminal(
         bars.begin("preparing: compiling")
         assert err_with(capfd, "preparing: compiling: 0 %").startswith("preparing: compiling\n")
         bars("the tracker", 2, 8)
-        assert "the tracker: 25 %" in err_with(capfd, "the tracker: 25 %\n")
+        assert "the tracker: 25 %" in err_with(capfd, "the tracker: 25 %")
     assert "the tracker: done after" in capfd.readouterr().err
 
 
@@ -96,7 +96,7 @@ def test_in_the_journal_the_lines_have_their_priority(
     monkeypatch.setenv("JOURNAL_STREAM", f"{there.st_dev}:{there.st_ino}")
     with ProgressBars() as bars:
         bars("the tracker", 2, 8)
-        assert "<6>" in err_with(capfd, "<6>the tracker: 25 %\n")
+        assert "<6>" in err_with(capfd, "<6>the tracker: 25 %")
 
 
 def test_what_is_done_at_once_is_not_told(capfd: pytest.CaptureFixture[str]) -> None:
