@@ -111,10 +111,10 @@ def strangers(place: Place) -> Attempt:
             return False
         if random.random() < 0.4:
             path += random.choice(_PIECES)
-        name, _, session = page.cookie.partition("=")
-        wrong = random.choice(("", "x", session[:-1], session + "x", "é", SECRET))
-        cookie = f"{name}={wrong}"
-        raw = request(*_method_of(path), path, random.choice((cookie, "")), b"")
+        name, _, value = page.cookie.partition("=")
+        wrong = random.choice(("", "x", value[:-1], f"{value}x", "é", SECRET[1:], "*"))
+        cookie = random.choice(("", f"{name}={wrong}"))
+        raw = request(*_method_of(path), path, cookie)
         answer = page.ask(damaged(random, raw))
         if 0 < answer.status < 400 or "set-cookie" in answer.headers:
             raise WrongError(f"a stranger was answered {answer.status}")
