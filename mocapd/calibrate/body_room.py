@@ -25,9 +25,9 @@ from mocapd.calibrate.standing import upright
 from mocapd.errors import ConfigError
 from mocapd.geometry.cameras import centre
 from mocapd.trackers.colour.drawing import work_factors
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, stepped
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera, Floats, Rig
 
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
@@ -119,7 +119,7 @@ def _with_rings(
 ) -> tuple[Rig, "RoomReport"]:
     """The same once every camera but the first has been weighed against the rings of the sleeves."""
     first = rig.cameras[0]
-    work = work_factors(rig.cameras, Params().work_width_px)
+    work = work_factors(rig.cameras, FitParams().work_width_px)
     cameras, doubts = [first], {}
     for other, factor in zip(rig.cameras[1:], work[1:], strict=True):
         pairs = ring_pairs(moments, (first, other), (work[0], factor))
@@ -153,7 +153,7 @@ class RoomSolver:
         keyframes: Sequence[Keyframe],
         params: RoomParams,
     ) -> None:
-        self._p, self._tracker = params, Params()
+        self._p, self._tracker = params, FitParams()
         self._body: FreeBody = free_body(model, params.off_sd_m)
         self._work = work_factors(cameras, self._tracker.work_width_px)
         self._n_shape = len(self._body.sd)

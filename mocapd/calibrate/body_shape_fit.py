@@ -18,6 +18,7 @@ from mocapd.calibrate.body_rows import BodyRows, RowGatherer
 from mocapd.clock import seconds
 from mocapd.errors import InputError
 from mocapd.trackers.colour.drawing import work_factors
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import (
     MotionState,
@@ -25,7 +26,6 @@ from mocapd.trackers.colour.motion_state import (
     step_between,
     stepped,
 )
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera, Floats, FrameSet, Track
 
 _SOFTNESS = 255  # of unclassified pixels: less would let the body grow beyond its picture
@@ -84,7 +84,7 @@ def moment_of(
     if body.pose is None or not track.evidence:
         return None
     index = {camera.name: i for i, camera in enumerate(cameras)}
-    work = work_factors(cameras, Params().work_width_px)
+    work = work_factors(cameras, FitParams().work_width_px)
     views = []
     for name, ids in track.evidence.items():
         i = index[name]
@@ -112,7 +112,7 @@ def fit_shape(
 ) -> ShapeFit:
     """The proportions that agree best with all moments. Raises InputError when too few agree."""
     p = params if params is not None else ShapeParams()
-    tracker = Params()
+    tracker = FitParams()
     fitter = Fitter(model, cameras, work_factors(cameras, tracker.work_width_px), tracker)
     gatherer = RowGatherer(fitter, p.radius_px)
     if len(moments) < p.fewest_moments:

@@ -96,10 +96,13 @@ class LightReader:
     ) -> None:
         self._params = p = params if params is not None else Params()
         self._cameras, self._model, self._database = tuple(cameras), model, database
-        factors = work_factors(cameras, p.work_width_px)
-        self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p)
-        self._arms = ArmSearch(self._fitter, p)
-        self._eyes = [Eye(c, f, model, np.eye(3), p) for c, f in zip(cameras, factors, strict=True)]
+        factors = work_factors(cameras, p.fit.work_width_px)
+        self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p.fit)
+        self._arms = ArmSearch(self._fitter, p.limbs)
+        self._eyes = [
+            Eye(c, f, model, np.eye(3), p.segmentation)
+            for c, f in zip(cameras, factors, strict=True)
+        ]
         self._precision = shade_precision(model)
 
     def drawing(self, index: int) -> Drawing:
@@ -198,14 +201,14 @@ class LightReader:
         """The body as the pose database has it, fitted to the ids of the search."""
         p, eye = self._params, self._eyes[index]
         eye.memory.references = (found.W,)
-        sighting = detection.sight(index, eye, self._database, p)
+        sighting = detection.sight(index, eye, self._database, p.neighbours)
         if sighting is None:
             return None
         states = detection.hypotheses(
             [sighting], self._cameras, self._database, np.ones(N_SHAPE), initial_information()
         )
         seen = sighting.found
-        unknown = np.full(seen.ids.shape, int(255 * p.soft_unknown), np.uint8)
+        unknown = np.full(seen.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
         view = View(index, seen.roi, seen.ids, unknown, 0.0)
         asked = [_arms_out(state) for state in states]
         return detection.best_fit(self._fitter, states + asked, [view])
@@ -289,7 +292,9 @@ class LightReader:
         )
 
     def _fitted(self, state: MotionState, views: list[View], turn: int) -> Fit:
-        fit = self._fitter.fit(state, views, _LOOSE_S, self._params.iterations, learn_shape=False)
+        fit = self._fitter.fit(
+            state, views, _LOOSE_S, self._params.fit.iterations, learn_shape=False
+        )
         return self._arms.improve(fit, views, _LOOSE_S, turn, learn_shape=False)[0]
 
     def _classified(self, index: int, fit: Fit) -> View | None:
@@ -297,7 +302,7 @@ class LightReader:
         drawing = self.drawing(index)
         if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
             return None
-        roi = drawing.region(fit.state, 0.0, self._params.doubt_margin_px)
+        roi = drawing.region(fit.state, 0.0, self._params.segmentation.doubt_margin_px)
         if roi is None:
             return None
         predicted = drawing.render(fit.state, 0.0, roi)

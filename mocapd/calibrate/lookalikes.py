@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.trackers.colour.params import Params
+from mocapd.trackers.colour.segmentation_params import SegmentationParams
 from mocapd.types import Bytes, Floats, Ints
 from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.colour_tables import ColourTables
@@ -33,7 +33,7 @@ def lookalikes(
     model: ColourModel,
     W: Floats,
     least_share: float = LEAST_SHARE,
-    params: Params | None = None,
+    params: SegmentationParams | None = None,
 ) -> tuple[Lookalike, ...]:
     """Regions of a picture (H,W,3) BGR beside the wearer that read as a colour of the shirt, largest first.
 
@@ -54,11 +54,11 @@ def lookalikes(
 
 
 def colours_alone(
-    pixels: Bytes, model: ColourModel, W: Floats, params: Params | None = None
+    pixels: Bytes, model: ColourModel, W: Floats, params: SegmentationParams | None = None
 ) -> Bytes:
     """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker reads them without a pose (paper section
     5.2, step 1)."""
-    p = params if params is not None else Params()
+    p = params if params is not None else SegmentationParams()
     tables = ColourTables()
     tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
     tables.refill(tolerant, W, p.first_threshold, p.first_threshold)

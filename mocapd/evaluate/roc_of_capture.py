@@ -81,20 +81,20 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     folder = result.case.folder
     inputs = inputs_of_capture(folder, stature_m)
     params, colours = Params(), colour_model(inputs.model)
-    factors = work_factors(folder.rig.cameras, params.work_width_px)
+    factors = work_factors(folder.rig.cameras, params.fit.work_width_px)
     eyes: dict[str, _Eye] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
         strokes = inputs.white_balance.get(camera.name)
         W = np.eye(3) if strokes is None else white_balance_of(strokes, colours, plain=True)
         labelled = labelled_frames(folder.path, recorded.video)
         eyes[camera.name] = _Eye(i, camera, recorded.video, factors[i], labelled, colours, W)
-    fitter = Fitter(build_model(inputs.stature_m), folder.rig.cameras, factors, params)
+    fitter = Fitter(build_model(inputs.stature_m), folder.rig.cameras, factors, params.fit)
 
     total = no_roc()
     for frames, state in _tracked(result, fitter):
         for name, frame in frames.frames.items():
             eye, dt_s = eyes[name], seconds(frame.t_ns - frames.t_ns)
-            roi = fitter.drawings[eye.index].region(state, dt_s, params.margin_px)
+            roi = fitter.drawings[eye.index].region(state, dt_s, params.segmentation.margin_px)
             if roi is None:
                 continue
             picture, rendered = (

@@ -10,8 +10,8 @@ from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape_fit import ShapeMoment
 from mocapd.geometry.cameras import project
 from mocapd.trackers.colour.drawing import Drawing, work_factors
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.motion_state import MotionState, moved
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes, Camera, Pose
 
 _OUTLINE_BGR, _BONE_BGR, _UNDER_BGR = (138, 240, 93), (255, 216, 79), (0, 0, 0)
@@ -31,7 +31,7 @@ def body_picture(
     view = next((view for view in moment.views if view.index == index), None)
     if view is None:
         return out
-    factor = work_factors([camera], Params().work_width_px)[0]
+    factor = work_factors([camera], FitParams().work_width_px)[0]
     drawing = Drawing(Shaper(model), camera, factor)
     ids = drawing.render(state, view.dt_s, view.roi)
     at = np.array([view.roi[0], view.roi[1]])

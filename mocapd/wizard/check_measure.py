@@ -14,9 +14,9 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry.cameras import to_camera
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.drawing import work_factors
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, initial_information, step_between
-from mocapd.trackers.colour.params import Params
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Track, Tracking
 
 EVERY = 4  # frames: one in so many is measured
@@ -79,7 +79,7 @@ class MeasuredTracker:
         self._tracker, self._rig, self._into = tracker, rig, into
         self._known = np.ones(len(FACTORS)) if factors is None else factors
         self._mean = skeleton_of(mean_shape(stature_m))
-        params = Params()
+        params = FitParams()
         self._work = work_factors(rig.cameras, params.work_width_px)
         self._fitter = Fitter(build_model(stature_m), rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)

@@ -15,9 +15,9 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, to_camera
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, initial_information
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 
@@ -27,7 +27,7 @@ CAMERAS = tuple(
     looking_at(name, np.array(eye_m), np.array([0.0, 1.1, 0.0]), roll_rad=0.02)
     for name, eye_m in (("left", (-1.4, 1.4, 2.3)), ("right", (1.5, 1.3, 2.2)))
 )
-FITTER = Fitter(MODEL, CAMERAS, [2, 2], Params())
+FITTER = Fitter(MODEL, CAMERAS, [2, 2], FitParams())
 
 
 def walking(i: int) -> MotionState:
@@ -106,7 +106,7 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
     factors[N_SHAPE:] += rng.normal(0.0, 0.012, len(free.sd) - N_SHAPE)
-    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], Params()), factors)
+    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = RoomParams(rounds=14, averaged=4, surface_doubt=1e-3)  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
     free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
@@ -153,7 +153,7 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
         .copy()
     )
     cameras = (CAMERAS[0], moved_camera(CAMERAS[1], motion))
-    fitter = Fitter(MODEL, cameras, [2, 2], Params())
+    fitter = Fitter(MODEL, cameras, [2, 2], FitParams())
     assert np.mean(fitter.drawings[1].render(state, 0.0, roi) != by_body) < 1e-3
     rows = RowGatherer(fitter, 10).gather(state, view)
     # the step that the columns ask for leads back, to first order

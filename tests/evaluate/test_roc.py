@@ -19,6 +19,7 @@ from mocapd.evaluate.roc import (
 )
 from mocapd.geometry.rotations import IDENTITY_XYZW, exp
 from mocapd.offline import RecordedTrack
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter
 from mocapd.trackers.colour.motion_state import (
     MotionState,
@@ -26,7 +27,6 @@ from mocapd.trackers.colour.motion_state import (
     moved,
     step_between,
 )
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes
 from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.distance_maps import DistanceMaps
@@ -127,7 +127,7 @@ def test_nothing_counted_adds_nothing() -> None:
 
 @pytest.fixture(scope="module")
 def fitter() -> Fitter:
-    return Fitter(build_model(1.7), ring(2), [2, 2], Params())
+    return Fitter(build_model(1.7), ring(2), [2, 2], FitParams())
 
 
 def random_state(fitter: Fitter, rng: np.random.Generator) -> MotionState:

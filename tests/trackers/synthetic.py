@@ -8,10 +8,10 @@ import numpy as np
 from mocapd.body.model import N_POSE, N_SHAPE, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.key_poses import arm_rotations
 from mocapd.trackers.colour.motion_state import MotionState, initial_information, moved
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats
 from tests.geometry.rigs import looking_at
 
@@ -26,9 +26,11 @@ CAMERAS = tuple(
 FACTOR = 2  # frames of 640x480 are averaged down to 320x240
 
 
-def fitter(n_cameras: int, params: Params | None = None) -> Fitter:
+def fitter(n_cameras: int, params: FitParams | None = None) -> Fitter:
     cameras = CAMERAS[:n_cameras]
-    return Fitter(MODEL, cameras, [FACTOR] * n_cameras, params if params is not None else Params())
+    return Fitter(
+        MODEL, cameras, [FACTOR] * n_cameras, params if params is not None else FitParams()
+    )
 
 
 def standing(left: str = "goalpost", right: str = "side_low", yaw_rad: float = 0.2) -> MotionState:

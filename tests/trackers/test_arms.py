@@ -21,9 +21,9 @@ from mocapd.trackers.colour.arms import (
     confirmed,
     doubtful,
 )
+from mocapd.trackers.colour.fit_params import LimbSearchParams
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats
 from tests.trackers.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
@@ -226,7 +226,7 @@ def test_an_arm_is_confirmed_where_the_pictures_show_it() -> None:
 
 
 def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
-    params = Params()
+    params = LimbSearchParams()
     by, truth = fitter(2), standing("goalpost", "side_low")
     views, search = views_of(by, truth), ArmSearch(by, params)
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
@@ -247,7 +247,7 @@ def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
 
 
 def test_arms_that_agree_are_not_searched() -> None:
-    params = Params()
+    params = LimbSearchParams()
     by, truth = fitter(2), standing()
     views = views_of(by, truth)
     fit = by.fit(truth, views, 1 / 30, 2, learn_shape=False)

@@ -17,9 +17,9 @@ from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.arm_kernels import score_arms
+from mocapd.trackers.colour.fit_params import LimbSearchParams
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
-from mocapd.trackers.colour.params import Params
 from mocapd.types import Floats, Ints
 
 SIDES = ("left", "right")
@@ -163,7 +163,7 @@ def arm_library(size: int, side: str) -> Floats:
 class ArmSearch:
     """Tries other poses of arms that the pictures do not confirm."""
 
-    def __init__(self, fitter: Fitter, params: Params) -> None:
+    def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
         self.fitter, self.params = fitter, params
         self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
         self._library = {side: arm_library(_LIBRARY, side) for side in SIDES}
@@ -214,7 +214,7 @@ def confirmed(side: str, fit: Fit) -> float:
     return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
 
 
-def doubtful(side: str, fit: Fit, params: Params) -> bool:
+def doubtful(side: str, fit: Fit, params: LimbSearchParams) -> bool:
     """Whether too little of an arm is confirmed by the pictures."""
     return confirmed(side, fit) < params.doubtful_arm
 

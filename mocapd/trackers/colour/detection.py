@@ -13,7 +13,6 @@ from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_id_map
 from mocapd.trackers.colour.motion_state import MotionState
-from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.segmentation import Eye, Found
 from mocapd.types import Camera, Floats
 
@@ -34,13 +33,13 @@ class Sighting:
     distances: Floats
 
 
-def sight(index: int, eye: Eye, database: PoseDatabase, params: Params) -> Sighting | None:
-    """Look for the shirt in one camera's present picture."""
+def sight(index: int, eye: Eye, database: PoseDatabase, neighbours: int) -> Sighting | None:
+    """Look for the shirt in one camera's present picture; neighbours: poses asked for."""
     found = eye.find(WINDOWS)
     if found is None:
         return None
     id_map, scale, (cx, cy) = crop_id_map(found.ids)
-    poses, distances = database.nearest(id_map, params.neighbours)
+    poses, distances = database.nearest(id_map, neighbours)
     if len(poses) == 0:
         return None
     work = np.array([cx + found.roi[0], cy + found.roi[1]])

@@ -9,10 +9,11 @@ from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.trackers.colour.arms import SLEEVE_PATCHES
 from mocapd.trackers.colour.drawing import Roi
+from mocapd.trackers.colour.fit_params import TICK_S
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
-from mocapd.trackers.colour.params import TICK_S, Params
 from mocapd.trackers.colour.segmentation import Eye
+from mocapd.trackers.colour.segmentation_params import SegmentationParams
 from mocapd.types import Floats, Frame, FrameSet, Ints
 from mocapd.vision.colour_model import ColourModel
 
@@ -26,7 +27,7 @@ class Eyes:
         fitter: Fitter,
         model: ColourModel,
         white_balance: Mapping[str, Floats],
-        params: Params,
+        params: SegmentationParams,
     ) -> None:
         """white_balance: W (3,3) by camera name, identity where absent."""
         self._fitter, self._params = fitter, params

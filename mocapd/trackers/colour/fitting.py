@@ -21,8 +21,8 @@ from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.trackers.colour.alignment_kernels import spiral
 from mocapd.trackers.colour.camera_rows import CameraRows, Search
 from mocapd.trackers.colour.drawing import Drawing, Roi
+from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.motion_state import MotionState, moved, stepped
-from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.step_kernels import gauss_newton_step
 from mocapd.types import Camera, Floats, Ints
 
@@ -101,7 +101,7 @@ class Fitter:
     """Buffers and constants for fitting one body in one rig; holds no state between calls."""
 
     def __init__(
-        self, model: BodyModel, cameras: Sequence[Camera], factors: Sequence[int], params: Params
+        self, model: BodyModel, cameras: Sequence[Camera], factors: Sequence[int], params: FitParams
     ) -> None:
         """`factors`: by how much each camera's frames are averaged down to work pictures."""
         self.model, self.params = model, params

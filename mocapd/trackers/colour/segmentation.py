@@ -12,13 +12,14 @@ from mocapd.trackers.colour.background_kernels import changed, learn_background
 from mocapd.trackers.colour.background_light import relight_background
 from mocapd.trackers.colour.cell_kernels import CELL, classify, colour_distances
 from mocapd.trackers.colour.drawing import Outline, Roi
+from mocapd.trackers.colour.fit_params import TICK_S
 from mocapd.trackers.colour.locate_kernels import find_shirt, suppress_background
-from mocapd.trackers.colour.params import TICK_S, Params
 from mocapd.trackers.colour.segmentation_kernels import (
     agreement,
     colour_statistics,
     count_colours,
 )
+from mocapd.trackers.colour.segmentation_params import SegmentationParams
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.colour_tables import ColourTables
@@ -68,7 +69,7 @@ class Eye:
     factor: int  # frames are averaged down by
     model: ColourModel
     W: Floats  # of the strokes
-    params: Params
+    params: SegmentationParams
     memory: Memory = field(init=False)
     picture: Bytes = field(init=False)
     _ids: Ids = field(init=False)

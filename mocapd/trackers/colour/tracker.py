@@ -16,6 +16,7 @@ from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.trackers.colour.drawing import work_factors
 from mocapd.trackers.colour.eyes import Eyes
+from mocapd.trackers.colour.fit_params import TICK_S
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import (
     MotionState,
@@ -24,7 +25,7 @@ from mocapd.trackers.colour.motion_state import (
     moved,
     step_between,
 )
-from mocapd.trackers.colour.params import TICK_S, Params
+from mocapd.trackers.colour.params import Params
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
 from mocapd.types import (
     BodyState,
@@ -76,10 +77,10 @@ class ColourTracker:
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
         model = build_model(stature_m)
-        smaller = work_factors(rig.cameras, p.work_width_px)
-        self._fitter = Fitter(model, rig.cameras, smaller, p)
-        self._eyes = Eyes(self._fitter, colour_model, white_balance, p)
-        self._arms = ArmSearch(self._fitter, p)
+        smaller = work_factors(rig.cameras, p.fit.work_width_px)
+        self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
+        self._eyes = Eyes(self._fitter, colour_model, white_balance, p.segmentation)
+        self._arms = ArmSearch(self._fitter, p.limbs)
         self._tracking = TrackingState(tracking)
         self._measured = factors
         self.probe: Callable[[str], None] = _silent
@@ -160,29 +161,29 @@ class ColourTracker:
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
         root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
-        doubted = tuple(s for s in SIDES if doubtful(s, known.fit, p))
+        doubted = tuple(s for s in SIDES if doubtful(s, known.fit, p.limbs))
         views = self._eyes.views(predicted, present, doubted)
         self.probe("classify")
         if not views:
             return known, views
         learning = (
-            p.learn_shape
-            and known.taught_s < p.shape_learning_s
-            and known.fit.match > p.shape_match
+            p.shape.learn
+            and known.taught_s < p.shape.learning_s
+            and known.fit.match > p.shape.least_match
         )
-        fit = fitter.fit(predicted, views, dt_s, p.iterations, learning, rendered=True)
+        fit = fitter.fit(predicted, views, dt_s, p.fit.iterations, learning, rendered=True)
         self.probe("fit")
         before = fit
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
-        self._redraw = fit is not before or any(doubtful(s, before, p) for s in SIDES)
+        self._redraw = fit is not before or any(doubtful(s, before, p.limbs) for s in SIDES)
         self.probe("arms")
         match = fit.match
         # every second pixel was counted
         if match < p.live_match or 2.0 * fit.matched.sum() < p.min_shirt_px:
             return known, views
         state, taught_s = fit.state, known.taught_s
-        if learning and match > p.shape_match:
-            gained = fitter.shape_information(fit.H) * (p.shape_gain * dt_s / TICK_S)
+        if learning and match > p.shape.least_match:
+            gained = fitter.shape_information(fit.H) * (p.shape.gain * dt_s / TICK_S)
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
         velocity = step_between(
@@ -236,7 +237,8 @@ class ColourTracker:
         sightings = [
             s
             for i in present
-            if (s := detection.sight(i, self._eyes.each[i], self._database, p)) is not None
+            if (s := detection.sight(i, self._eyes.each[i], self._database, p.neighbours))
+            is not None
         ]
         states = detection.hypotheses(
             sightings, self.rig.cameras, self._database, self._factors, self._information
@@ -244,7 +246,7 @@ class ColourTracker:
         flat = [
             View(
                 s.index, s.found.roi, s.found.ids,
-                np.full(s.found.ids.shape, int(255 * p.soft_unknown), np.uint8), present[s.index],
+                np.full(s.found.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8), present[s.index],
             )
             for s in sightings
         ]  # fmt: skip
@@ -258,7 +260,7 @@ class ColourTracker:
         views = self._eyes.views(fit.state, present)
         if not views:
             return None
-        fit = self._fitter.fit(fit.state, views, 0.1, p.iterations, learn_shape=False)
+        fit = self._fitter.fit(fit.state, views, 0.1, p.fit.iterations, learn_shape=False)
         fit, _ = self._arms.improve(fit, views, 0.1, self._turn, learn_shape=False)
         return (fit, views) if self._acceptable(fit) else None
 

@@ -1,0 +1,47 @@
+"""Numbers of the solver and of the search for lost arms, with units and reasons."""
+
+from dataclasses import dataclass
+
+TICK_S = 1.0 / 30.0  # a usual frame: what is said per frame is meant for one of this length
+
+
+@dataclass(frozen=True, slots=True)
+class FitParams:
+    """Parameters of the fit; work pixels are those of frames averaged down to `work_width_px`."""
+
+    work_width_px: int = 320
+
+    # alignment
+    iterations: int = 4
+    first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
+    last_radius_px: int = 7
+    fine_iterations: int = (
+        2  # the last ones, at all work pixels; the others at every second each way
+    )
+    edge_stiffness: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
+    row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
+
+    # motion: spread about the prediction over 1/30 s, growing with the square root of time
+    root_sd_m: float = 0.10
+    hips_sd_rad: float = 0.3
+    spine_sd_rad: float = 0.2
+    collar_sd_rad: float = 0.2
+    arm_sd_rad: float = 0.2
+    # at rest, of the left side [rotation vectors, rad]: means over recorded everyday motion (CMU,
+    # HDM05), with about twice its spread so that a raised arm is hardly held back
+    upper_arm_rest_rad: tuple[float, float, float] = (0.13, -0.33, -1.2)
+    upper_arm_sd_rad: float = 1.2
+    elbow_rest_rad: tuple[float, float, float] = (0.0, -0.77, 0.0)
+    elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
+    limit_sd_rad: float = 0.08  # softness of the joint limits
+
+
+@dataclass(frozen=True, slots=True)
+class LimbSearchParams:
+    """When other poses of an arm are tried, and how many."""
+
+    doubtful_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
+    arm_cloud: int = 64  # tries about the present pose
+    arm_library: int = 128  # tries over the whole range, another part each frame
+    arm_fits: int = 1  # of which so many are fitted
+    arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
