@@ -1,5 +1,7 @@
 """Compiled angles of the rotation groups against their limits, with derivatives."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -8,25 +10,36 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+class JointLimits(NamedTuple):
+    """Limits of the G rotation groups of a pose space; axis -1: free (the root).
+
+    lower_rad, upper_rad (G,3): about x y z of the parent bone, twist at `axis`, swing elsewhere.
+    joint (G,): the joint that a group's angle is read from; share (J,): its share of the angle.
+    """
+
+    axis: Ints  # (G,)
+    joint: Ints  # (G,)
+    share: Array  # (J,)
+    lower_rad: Array  # (G,3)
+    upper_rad: Array  # (G,3)
+
+
 @njit(cache=True, nogil=True)
 def limit_residuals(
     local: Array,
-    joint_of_group: Ints,
-    share_of_joint: Array,
-    axis_of_group: Ints,
-    lower: Array,
-    upper: Array,
+    limits: JointLimits,
     residual: Array,
     derivative: Array,
 ) -> None:
     """How far each group is beyond its limits: residual (G,3) [rad], 0 inside.
 
-    local (J,4) xyzw; lower, upper (G,3) [rad] along x y z of the parent bone: the component
-    `axis_of_group` is the twist about the bone, the two others are the swing's rotation vector
-    (rotation = swing * twist, the swing last). derivative (G,3,3): d residual[g, i] / d step[g, k]
-    for the solver's step, a rotation vector in the parent's frame of which each joint of the group
-    takes its share. A group with axis -1 has no limits.
+    local (J,4) xyzw; the limits are along x y z of the parent bone: the component `axis` is the twist
+    about the bone, the two others are the swing's rotation vector (rotation = swing * twist, the swing
+    last). derivative (G,3,3): d residual[g, i] / d step[g, k] for the solver's step, a rotation vector
+    in the parent's frame of which each joint of the group takes its share. A group with axis -1 has no
+    limits.
     """
+    axis_of_group, joint_of_group, share_of_joint, lower, upper = limits
     d = np.empty(4)
     c = np.empty(3)
     dc = np.empty((3, 3))

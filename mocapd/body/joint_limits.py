@@ -17,15 +17,13 @@ Two standard deviations are added, because a person may be looser than the mean.
 range includes what the collar bone gives, as trackers divide the motion between both differently.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from mocapd.body.joint_limit_kernels import limit_residuals
+from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
 from mocapd.body.model import GROUPS
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
-from mocapd.types import Floats, Ints
+from mocapd.types import Floats
 
 X, Y = 0, 1
 
@@ -41,21 +39,6 @@ _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
     # that neutral twist of the upper arm by up to 45 degrees, which tilts the hinge towards z
     "LowerArm": (X, ((-90.0, 90.0), (-155.0, 7.0), (-25.0, 75.0))),
 }
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class JointLimits:
-    """Limits of the G rotation groups of mocapd.body.model; axis -1: free (the root).
-
-    lower_rad, upper_rad (G,3): about x y z of the parent bone, twist at `axis`, swing elsewhere.
-    joint (G,): the joint that a group's angle is read from; share (J,): its share of the angle.
-    """
-
-    axis: Ints  # (G,)
-    joint: Ints  # (G,)
-    share: Floats  # (J,)
-    lower_rad: Floats  # (G,3)
-    upper_rad: Floats  # (G,3)
 
 
 def standard_limits() -> JointLimits:
@@ -90,10 +73,7 @@ def soft_limit(limits: JointLimits, local_xyzw: Floats) -> tuple[float, Floats, 
     """
     G = len(limits.axis)
     residual, derivative = np.zeros((G, 3)), np.zeros((G, 3, 3))
-    limit_residuals(
-        np.asarray(local_xyzw, dtype=float), limits.joint, limits.share,
-        limits.axis, limits.lower_rad, limits.upper_rad, residual, derivative,
-    )  # fmt: skip
+    limit_residuals(np.asarray(local_xyzw, dtype=float), limits, residual, derivative)
     return 0.5 * float((residual**2).sum()), residual, derivative
 
 

@@ -1,10 +1,11 @@
 """The articulated body as flat arrays for the kernels: surface, skin weights, groups, shape derivatives."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
 from mocapd.body.shape import FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS
@@ -57,6 +58,24 @@ class BodyModel:
     group_of_joint: Ints  # (J,), -1: does not move
     share_of_joint: Floats  # (J,)
     joint_of_group: Ints  # (G,) the first joint of each group
+    # the same arrays as the kernels take them
+    articulation: Articulation = field(init=False)
+    skin: SkinArrays = field(init=False)
+    surface: TriangleArrays = field(init=False)
+
+    def __post_init__(self) -> None:
+        made = {
+            "articulation": Articulation(
+                self.parents, self.group_of_joint, self.share_of_joint, self.joint_of_group, self.d_rest
+            ),
+            "skin": SkinArrays(self.bones, self.weights),
+            "surface": TriangleArrays(
+                self.triangles, self.colour, self.patch, self.triangle_bones, self.triangle_weights,
+                self.d_centres, self.sleeves, self.sleeve_start,
+            ),
+        }  # fmt: skip
+        for name, arrays in made.items():
+            object.__setattr__(self, name, arrays)
 
 
 def build_model(stature_m: float) -> BodyModel:

@@ -9,6 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import Articulation, CameraArrays, PosedJoints, SkinArrays
+
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -143,25 +145,22 @@ def forward_kinematics(
 @njit(cache=True, nogil=True, fastmath=True)
 def skin_and_project(
     vertices: Array,
-    bones: NDArray[np.int32],
-    weights: Array,
-    rest: Array,
-    R: Array,
-    joints: Array,
-    cam_R: Array,
-    cam_t: Array,
-    K: Array,
-    dist: Array,
+    skin: SkinArrays,
+    posed: PosedJoints,
+    camera: CameraArrays,
     offset: Array,
     scale: float,
     out_xy: Array,
     out_depth: Array,
 ) -> None:
-    """Linear blend skinning and projection of T-pose vertices (V,3) with bones and weights (V,B).
+    """Linear blend skinning and projection of T-pose vertices (V,3).
 
     out_xy (V,2) are pixels of a region: (pixel - offset) * scale, with pixel centres kept at
     integers when pixels are averaged in blocks; out_depth (V,) [m] along the optical axis.
     """
+    bones, weights = skin
+    rest, R, joints, _ = posed
+    cam_R, cam_t, K, dist = camera
     J = rest.shape[0]
     # camera-from-T-pose of every bone, so that a vertex costs one blend of 3x4 matrices
     M = np.empty((J, 3, 4))
@@ -202,6 +201,25 @@ def skin_and_project(
 
 
 @njit(cache=True, nogil=True)
+def pose_and_project(
+    parents: Ints,
+    root: Array,
+    local: Array,
+    posed: PosedJoints,
+    vertices: Array,
+    skin: SkinArrays,
+    camera: CameraArrays,
+    offset: Array,
+    scale: float,
+    out_xy: Array,
+    out_depth: Array,
+) -> None:
+    """`forward_kinematics` of a body with the joints posed.rest into `posed`, then `skin_and_project`."""
+    forward_kinematics(parents, posed.rest, root, local, posed.R, posed.joints, posed.quats)
+    skin_and_project(vertices, skin, posed, camera, offset, scale, out_xy, out_depth)
+
+
+@njit(cache=True, nogil=True)
 def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) -> None:
     """d posed joints / d factor: out (N,J,3) from d_rest (N,J,3); the root does not move."""
     for n in range(d_rest.shape[0]):
@@ -224,24 +242,21 @@ def surface_row(
     point_weights: Array,
     d_point: Array,
     g: Array,
-    rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
-    d_rest: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
     d_joints: Array,
-    n_shape: int,
     out: Array,
 ) -> None:
-    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + n_shape).
+    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + N), N being 0
+    where the shape does not matter.
 
     p is the surface point whose T-pose position is `point`; g (3,) in the world. The columns of
     rotation group g turn about the axes of the parent bone (geometric Jacobian).
     """
+    parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
+    rest, R, joints, _ = posed
     G = joint_of_group.shape[0]
+    n_shape = out.shape[0] - 3 - 3 * G
     for i in range(3):
         out[i] = g[0] if i == 0 else (g[1] if i == 1 else g[2])
     for k in range(3, 3 + 3 * G + n_shape):

@@ -1,6 +1,6 @@
 """The body model in the wearer's proportions, made again only when those change."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,8 +8,7 @@ from mocapd.body.model import BodyModel, shaped
 from mocapd.types import Floats
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Shaped:
+class Shaped(NamedTuple):
     """T-pose vertices (V,3), joints `rest` (J,3) and centres of the triangles (T,3) [m]."""
 
     vertices: Floats

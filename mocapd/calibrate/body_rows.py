@@ -7,8 +7,8 @@ import numpy as np
 
 from mocapd.body.model import N_POSE
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.alignment_kernels import spiral
-from mocapd.trackers.colour.camera_rows import CameraRows, Search
+from mocapd.trackers.colour.alignment_kernels import ComparedPictures, spiral
+from mocapd.trackers.colour.camera_rows import CameraRows, search_within
 from mocapd.trackers.colour.fitting import Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState, moved
 from mocapd.types import Camera, Floats
@@ -46,7 +46,7 @@ class RowGatherer:
     def __init__(self, fitter: Fitter, radius_px: int) -> None:
         """radius_px: work px within which a colour is looked for."""
         self.fitter = fitter
-        self._search = Search(
+        self._search = search_within(
             spiral(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
             stiffness=fitter.params.edge_stiffness,
         )  # fmt: skip
@@ -58,11 +58,11 @@ class RowGatherer:
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
         drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
         rows.gather(
-            drawing, body, drawn, (view.ids, view.softness), self._search, n_shape,
-            fitter.params.row_weight,
+            drawing, body, ComparedPictures(*drawn, view.ids, view.softness), self._search,
+            n_shape, fitter.params.row_weight,
         )  # fmt: skip
         H, b = rows.system(N_POSE + n_shape)
-        at_m = drawing.joints[0].copy()
+        at_m = drawing.posed.joints[0].copy()
         return BodyRows(
             view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost
         )

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import PosedJoints, camera_arrays
 from mocapd.body.model import GROUPS, N_POSE, N_SHAPE, build_model, shaped
 from mocapd.body.posing_kernels import (
     difference,
@@ -37,6 +38,10 @@ def kinematics(rest: Floats, root: Floats, local: Floats) -> tuple[Floats, Float
     R, joints, turned = np.zeros((N_JOINTS, 3, 3)), np.zeros((N_JOINTS, 3)), np.zeros((N_JOINTS, 4))
     forward_kinematics(MODEL.parents, rest, root, local, R, joints, turned)
     return R, joints, turned
+
+
+def posed_joints(rest: Floats, root: Floats, local: Floats) -> PosedJoints:
+    return PosedJoints(rest, *kinematics(rest, root, local))
 
 
 def moved(root: Floats, local: Floats, step: Floats) -> tuple[Floats, Floats]:
@@ -83,15 +88,14 @@ def test_kinematics_equals_the_plain_path(seed: int) -> None:
 def test_skinning_and_projection_equal_the_plain_path(seed: int) -> None:
     root, local = random_root(seed), random_local(seed)
     body = skeleton()
-    R, joints, _ = kinematics(body.rest_m, root, local)
+    posed = posed_joints(body.rest_m, root, local)
     surface = mean_surface(STATURE_M)
     used = np.unique(surface.triangles[surface.part != LEGS])
-    world = posed_vertices(surface, body, pose_of(body, root, local), joints)[used]
+    world = posed_vertices(surface, body, pose_of(body, root, local), posed.joints)[used]
     camera, offset, scale = ring(3)[seed % 3], np.array([37.0, -14.0]), 0.5
     xy, depth = np.empty((len(used), 2)), np.empty(len(used))
     skin_and_project(
-        MODEL.vertices_m, MODEL.bones, MODEL.weights, MODEL.rest_m, R, joints,
-        camera.R, camera.t_m, camera.K, camera.dist, offset, scale, xy, depth,
+        MODEL.vertices_m, MODEL.skin, posed, camera_arrays(camera), offset, scale, xy, depth,
     )  # fmt: skip
     # block k of a picture averaged down by two covers pixels 2k and 2k + 1: its centre is 2k + 0.5
     wanted = (project(camera, world) - offset + 0.5) * scale - 0.5
@@ -103,12 +107,11 @@ def test_points_behind_the_camera_are_marked() -> None:
     here = ring(1)[0]
     behind = Camera("back", here.size_px, here.K, here.dist, here.R, here.t_m - [0.0, 0.0, 9.0])
     body = skeleton()
-    R, joints, _ = kinematics(body.rest_m, body.rest_m[0], random_local(0, 0.0))
+    posed = posed_joints(body.rest_m, body.rest_m[0], random_local(0, 0.0))
     n = len(MODEL.vertices_m)
     xy, depth = np.zeros((n, 2)), np.zeros(n)
     skin_and_project(
-        MODEL.vertices_m, MODEL.bones, MODEL.weights, MODEL.rest_m, R, joints,
-        behind.R, behind.t_m, behind.K, behind.dist, np.zeros(2), 1.0, xy, depth,
+        MODEL.vertices_m, MODEL.skin, posed, camera_arrays(behind), np.zeros(2), 1.0, xy, depth,
     )  # fmt: skip
     assert (depth < 0).all()
     assert np.isfinite(xy).all()
@@ -181,9 +184,9 @@ def test_surface_row_equals_central_differences(seed: int) -> None:
     root, local = random_root(seed), random_local(seed)
     factors = 1.0 + 0.1 * rng.uniform(-1.0, 1.0, N_SHAPE)
     vertices, rest = shaped(MODEL, factors)
-    R, joints, _ = kinematics(rest, root, local)
+    posed = posed_joints(rest, root, local)
     d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
-    joint_shape_derivatives(MODEL.parents, MODEL.d_rest, R, d_joints)
+    joint_shape_derivatives(MODEL.parents, MODEL.d_rest, posed.R, d_joints)
     for t in rng.integers(0, len(MODEL.triangles), 12):
         g = rng.normal(size=3)
         g /= np.linalg.norm(g)
@@ -191,9 +194,7 @@ def test_surface_row_equals_central_differences(seed: int) -> None:
         row = np.full(N_POSE + N_SHAPE, np.nan)
         surface_row(
             vertices[corners].mean(axis=0), MODEL.triangle_bones[t], MODEL.triangle_weights[t],
-            MODEL.d_vertices[:, corners].mean(axis=1), g, rest, MODEL.parents,
-            MODEL.joint_of_group, MODEL.group_of_joint, MODEL.share_of_joint, R, joints,
-            MODEL.d_rest, d_joints, N_SHAPE, row,
+            MODEL.d_vertices[:, corners].mean(axis=1), g, MODEL.articulation, posed, d_joints, row,
         )  # fmt: skip
         wanted = np.empty_like(row)
         for k in range(len(row)):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import PosedJoints, camera_arrays
 from mocapd.body.model import N_POSE, BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
 from mocapd.body.skeleton import N_JOINTS
@@ -21,9 +22,7 @@ class Posed:
     """A body drawn into a small picture (h,w), with what the kernel wants to know of its pose."""
 
     vertices: Floats
-    rest: Floats
-    R: Floats
-    joints: Floats
+    joints: PosedJoints
     xy: Floats
     ids: Bytes
     triangle_at: NDArray[np.int32]
@@ -36,14 +35,14 @@ def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> 
     forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, turned)
     xy, depth = np.empty((len(vertices), 2)), np.empty(len(vertices))
     skin_and_project(
-        vertices, model.bones, model.weights, rest, R, joints,
-        camera.R, camera.t_m, camera.K, camera.dist, np.zeros(2), 1.0 / factor, xy, depth,
+        vertices, model.skin, PosedJoints(rest, R, joints, turned), camera_arrays(camera),
+        np.zeros(2), 1.0 / factor, xy, depth,
     )  # fmt: skip
     h, w = camera.size_px[1] // factor, camera.size_px[0] // factor
     triangle_at, ids = np.empty((h, w), np.int32), np.empty((h, w), np.uint8)
     rasterise(xy, depth, model.triangles, np.empty((h, w), np.float32), triangle_at)
     label_triangles(triangle_at, model.colour, ids)
-    return Posed(vertices, rest, R, joints, xy, ids, triangle_at)
+    return Posed(vertices, PosedJoints(rest, R, joints, turned), xy, ids, triangle_at)
 
 
 @dataclass(slots=True, eq=False)

@@ -5,12 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import PinholeArrays
 from mocapd.body.model import N_POSE, N_SHAPE
-from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.alignment_kernels import accumulate, colours_in_reach, spiral
+from mocapd.trackers.colour.alignment_kernels import (
+    AlignmentSums,
+    ComparedPictures,
+    Search,
+    accumulate,
+    colours_in_reach,
+    spiral,
+)
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.types import Bytes
@@ -54,17 +61,15 @@ def accumulated(
 ) -> Sums:
     out = Sums.zero(N_POSE + n_shape)
     d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
-    joint_shape_derivatives(MODEL.parents, MODEL.d_rest, drawn.R, d_joints)
     camera, offsets = CAMERAS[0], spiral(20)
     within = int(((offsets.astype(int) ** 2).sum(axis=1) <= (RADIUS_PX / grid_px) ** 2).sum())
+    fx, fy = (float(grid_px * camera.K[i, i] / COARSE) for i in (0, 1))
     out.cost = accumulate(
-        drawn.ids, drawn.triangle_at, image_ids, softness, offsets, within, grid_px, RADIUS_PX,
-        ROBUST_PX, phase, every, stiffness, drawn.xy, MODEL.triangles, MODEL.sleeves,
-        MODEL.sleeve_start, MODEL.patch, Shaper(MODEL)(state.factors).centres, MODEL.d_centres,
-        MODEL.triangle_bones, MODEL.triangle_weights, drawn.rest, MODEL.d_rest, MODEL.parents, MODEL.joint_of_group,
-        MODEL.group_of_joint, MODEL.share_of_joint, drawn.R, drawn.joints, d_joints, n_shape,
-        camera.R, camera.t_m, grid_px * camera.K[0, 0] / COARSE, grid_px * camera.K[1, 1] / COARSE, WEIGHT,
-        out.H, out.b, out.visible, out.matched, out.unexplained,
+        ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, softness),
+        Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, stiffness),
+        drawn.xy, MODEL.surface, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
+        drawn.joints, d_joints, PinholeArrays(camera.R, camera.t_m, fx, fy), WEIGHT,
+        AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained),
     )  # fmt: skip
     return out
 

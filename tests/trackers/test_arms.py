@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import camera_arrays
 from mocapd.body.joint_limits import standard_limits, swing_twist
 from mocapd.body.model import shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project, rays
-from mocapd.trackers.colour.arm_kernels import score_arms
+from mocapd.trackers.colour.arm_kernels import ArmSamples, score_arms
 from mocapd.trackers.colour.arms import (
     SIDES,
     ArmSearch,
@@ -158,9 +159,12 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     out = np.zeros(len(hypotheses))
     score_arms(
-        hypotheses, arm.chain, MODEL.parents, MODEL.rest_m, base.R, base.joints, base.quats,
-        corners.mean(axis=1), normals / area[:, None], arm.link, arm.weights, arm.colour, area,
-        camera.R, camera.t_m, camera.K, camera.dist,
+        hypotheses,
+        ArmSamples(
+            arm.chain, corners.mean(axis=1), normals / area[:, None], area, arm.colour, arm.link,
+            arm.weights,
+        ),
+        MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
         base.zbuffer, view.ids, view.softness, out,
     )  # fmt: skip

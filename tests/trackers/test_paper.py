@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import camera_arrays, pinhole_arrays
 from mocapd.body.model import N_POSE, build_model
 from mocapd.body.posing_kernels import retract
 from mocapd.body.shirt import standard_shirt
@@ -19,6 +20,7 @@ from mocapd.trackers.colour.paper.drawing import (
     Grid,
     Posture,
     draw,
+    posed_joints,
     posed_points,
     posture,
     triangle_points,
@@ -153,10 +155,8 @@ def test_centroid_derivative_equals_differences() -> None:
     wanted[0] = False
     J = np.empty((21, 2, N_POSE))
     centroid_rows(
-        seen.samples, MODEL.patch, wanted, seen.count, points, MODEL.triangle_bones,
-        MODEL.triangle_weights, MODEL.rest_m, MODEL.parents, MODEL.joint_of_group,
-        MODEL.group_of_joint, MODEL.share_of_joint, body.R, body.joints_m, c.R, c.t_m,
-        c.K[0, 0], c.K[1, 1], J,
+        seen.samples, wanted, seen.count, points, MODEL.surface, MODEL.articulation,
+        posed_joints(MODEL, body), pinhole_arrays(camera_arrays(c), 1.0), J,
     )  # fmt: skip
 
     def centroids(at: Posture) -> Floats:

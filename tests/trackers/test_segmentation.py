@@ -7,7 +7,15 @@ from mocapd.body.shirt import standard_shirt
 from mocapd.trackers.colour import appearance as looks
 from mocapd.trackers.colour.background_kernels import changed, learn_background
 from mocapd.trackers.colour.background_light import relight_background
-from mocapd.trackers.colour.cell_kernels import CELL, FAR, bin_of, classify, colour_distances
+from mocapd.trackers.colour.cell_kernels import (
+    CELL,
+    FAR,
+    ClassifierWeights,
+    LearnedPixels,
+    bin_of,
+    classify,
+    colour_distances,
+)
 from mocapd.trackers.colour.segmentation_kernels import (
     agreement,
     colour_statistics,
@@ -140,8 +148,8 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     ]
     ids, softness = np.empty((h, w), np.uint8), np.empty((h, w), np.uint8)
     classify(
-        picture, *at, distance, affine(), 0.05, 3.0, mean, age, TOLERANCE, 1.5,
-        counts[0], counts[1], 1.2, 0.25, 0.5, ids, softness,
+        picture, *at, distance, affine(), LearnedPixels(mean, age, *counts),
+        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5), ids, softness,
     )  # fmt: skip
     costs, background = naive_classify(
         picture, at, distance, 0.05, 3.0, mean, age, (counts[0], counts[1]), (1.5, 1.2)
@@ -165,10 +173,12 @@ def test_the_prior_tells_two_patches_of_one_look_apart() -> None:
     colour_distances(predicted, *NOBODY, 3, np.ones(10, np.int64), distance)
     got, softness = np.empty_like(ids), np.empty_like(ids)
     no_count = np.zeros(1 << 15, np.float32)
+    learned = LearnedPixels(
+        np.zeros((20, 40, 3), np.float32), np.zeros((20, 40), np.uint8), no_count, no_count
+    )
     classify(
-        picture, 0, 0, distance, affine(), 0.05, 3.0, np.zeros((20, 40, 3), np.float32),
-        np.zeros((20, 40), np.uint8), TOLERANCE, 1.5, no_count, no_count, 1.5, 0.25, 0.5,
-        got, softness,
+        picture, 0, 0, distance, affine(), learned,
+        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5), got, softness,
     )  # fmt: skip
     assert (got[6:14, 5:9] == 6).mean() > 0.9
     assert not got[:, 26:].any()

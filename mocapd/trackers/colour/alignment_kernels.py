@@ -6,15 +6,55 @@ Each pixel that disagrees gives one row: the way to go (a direction in the pictu
 its derivative by pose and body shape, through the surface point seen there.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import surface_row
+from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
+from mocapd.body.posing_kernels import joint_shape_derivatives, surface_row
+from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+class Search(NamedTuple):
+    """Where colours are looked for: offsets (N,2) within radius_px [work px] on a grid of grid_px;
+    robust_px: where a residual has lost half of its weight. `every` 1: at all pixels of the grid; 2:
+    at one colour of its checkerboard, given by `phase`. stiffness: weight of edges in place."""
+
+    offsets: NDArray[np.int32]
+    radius_px: float
+    robust_px: float
+    grid_px: float
+    every: int
+    phase: int
+    stiffness: float
+
+
+class ComparedPictures(NamedTuple):
+    """The body as drawn (ids, and the triangle at each pixel) and the picture as classified: ids, and
+    softness 0..255, the weight of a rendered pixel over an unclassified one (255 for sure background,
+    less where something may hide the shirt). All (h,w), on the grid of the search."""
+
+    model_ids: Bytes
+    triangle_at: NDArray[np.int32]
+    image_ids: Bytes
+    softness: Bytes
+
+
+class AlignmentSums(NamedTuple):
+    """H (P,P), b (P,); visible, matched (21,): rendered pixels and those whose colour the picture has
+    there, per patch; unexplained (21,): per patch, picture pixels drawn to it; in units of two work px."""
+
+    H: Array
+    b: Array
+    visible: Array
+    matched: Array
+    unexplained: Array
 
 
 def spiral(radius_px: int) -> NDArray[np.int32]:
@@ -102,58 +142,40 @@ def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]
 
 @njit(cache=True, nogil=True, fastmath=True)
 def accumulate(
-    model_ids: NDArray[np.uint8],
-    triangle_at: NDArray[np.int32],
-    image_ids: NDArray[np.uint8],
-    softness: NDArray[np.uint8],
-    offsets: NDArray[np.int32],
-    n_offsets: int,
-    grid_px: float,
-    radius_px: float,
-    robust_px: float,
-    phase: int,
-    every: int,
-    stiffness: float,
+    pictures: ComparedPictures,
+    search: Search,
     xy: Array,
-    triangles: NDArray[np.int32],
-    sleeves: Ints,
-    sleeve_start: Ints,
-    patch: NDArray[np.uint8],
+    surface: TriangleArrays,
     centres: Array,
-    d_centres: Array,
-    triangle_bones: NDArray[np.int32],
-    triangle_weights: Array,
-    rest: Array,
-    d_rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
     d_joints: Array,
-    n_shape: int,
-    cam_R: Array,
-    cam_t: Array,
-    fx: float,
-    fy: float,
+    camera: PinholeArrays,
     weight: float,
-    H: Array,
-    b: Array,
-    visible: Array,
-    matched: Array,
-    unexplained: Array,
+    sums: AlignmentSums,
 ) -> float:
-    """Add this camera's rows to H (P,P) and b (P,); return the summed robust cost.
+    """Fill the sums with this camera's rows; return the summed robust cost.
 
-    The four pictures (h,w) are grids of `grid_px` work px; lengths, fx and fy are in work px.
-    softness: weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for sure
-    background, less where something may hide the shirt). visible, matched (21,): rendered pixels
-    and those whose colour the picture has there, per patch; unexplained (21,): per patch, picture
-    pixels drawn to it; all in units of two work px. `every` 1: all pixels of the grid are looked
-    at; 2: one colour of its checkerboard, given by `phase`. offsets[:n_offsets] are those within
-    radius_px.
+    xy (V,2): the vertices as drawn [px of the pictures]; centres (T,3) of the triangles in the T-pose;
+    weight: of a pixel's row. d_joints (N,J,3) is scratch. H has columns for the pose alone, or for pose
+    and shape.
     """
+    model_ids, triangle_at, image_ids, softness = pictures
+    offsets, radius_px, robust_px, grid_px, every, phase, stiffness = search
+    triangles, _, patch, triangle_bones, triangle_weights, d_centres, sleeves, sleeve_start = (
+        surface
+    )
+    rest, R, joints, _ = posed
+    cam_R, cam_t, fx, fy = camera
+    H, b, visible, matched, unexplained = sums
+    H[:] = 0.0
+    b[:] = 0.0
+    visible[:] = 0.0
+    matched[:] = 0.0
+    unexplained[:] = 0.0
+    if b.shape[0] > 3 + 3 * articulation.joint_of_group.shape[0]:
+        joint_shape_derivatives(articulation.parents, articulation.d_rest, R, d_joints)
+    n_offsets = offsets.shape[0]
     h, w = model_ids.shape
     P = H.shape[0]
     row = np.empty(P)
@@ -264,16 +286,9 @@ def accumulate(
                     triangle_weights[t],
                     d_centres[:, t],
                     g,
-                    rest,
-                    parents,
-                    joint_of_group,
-                    group_of_joint,
-                    share_of_joint,
-                    R,
-                    joints,
-                    d_rest,
+                    articulation,
+                    posed,
                     d_joints,
-                    n_shape,
                     row,
                 )
                 scale = np.sqrt(row_weight)

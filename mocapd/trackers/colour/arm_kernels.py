@@ -1,33 +1,37 @@
 """Score many poses of one arm against the classified pictures, the rest of the body staying where it is."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import CameraArrays, PosedJoints
 from mocapd.body.posing_kernels import quat_matrix, quat_multiply
 
 Array = NDArray[np.float64]
 
 
+class ArmSamples(NamedTuple):
+    """Samples of one arm's surface in the T-pose: middles and normals (S,3), area (S,) [m^2], colour
+    (S,); link (S,2): their two bones as places in `chain` (4,), the arm's joints, and weights (S,2)."""
+
+    chain: NDArray[np.int64]
+    points: Array
+    normals: Array
+    area: Array
+    colour: NDArray[np.uint8]
+    link: NDArray[np.int64]
+    weights: Array
+
+
 @njit(cache=True, nogil=True)
 def score_arms(
     hypotheses: Array,
-    chain: NDArray[np.int64],
+    samples: ArmSamples,
     parents: NDArray[np.int64],
-    rest: Array,
-    R: Array,
-    joints: Array,
-    quats: Array,
-    points: Array,
-    normals: Array,
-    link: NDArray[np.int64],
-    weights: Array,
-    colour: NDArray[np.uint8],
-    area: Array,
-    cam_R: Array,
-    cam_t: Array,
-    K: Array,
-    dist: Array,
+    posed: PosedJoints,
+    camera: CameraArrays,
     offset: Array,
     scale: float,
     base_z: NDArray[np.float32],
@@ -38,11 +42,12 @@ def score_arms(
     """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2].
 
     hypotheses (N,3,4): local rotations of collar, upper arm and forearm; the hand keeps straight.
-    R, joints, quats: the posed body, of which the collar's parent is used. points, normals (S,3):
-    samples of the arm's surface in the T-pose; link (S,2): their two bones as places in `chain`,
-    weights (S,2). A sample counts when it faces the camera and base_z, the depth of the body without
-    this arm, does not hide it.
+    posed: the body, of which the collar's parent is used. A sample counts when it faces the camera
+    and base_z, the depth of the body without this arm, does not hide it.
     """
+    chain, points, normals, area, colour, link, weights = samples
+    rest, R, joints, quats = posed
+    cam_R, cam_t, K, dist = camera
     h, w = image_ids.shape
     n_chain = chain.shape[0]
     G = np.empty((n_chain, 4))

@@ -16,7 +16,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.arm_kernels import score_arms
+from mocapd.trackers.colour.arm_kernels import ArmSamples, score_arms
 from mocapd.trackers.colour.fit_params import LimbSearchParams
 from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
@@ -118,15 +118,14 @@ def best_arm_poses(
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1)
     normals /= area[:, None]
+    samples = ArmSamples(arm.chain, points, normals, area, arm.colour, arm.link, arm.weights)
     scores = np.zeros(len(hypotheses))
     for view in views:
         drawing = fitter.drawings[view.index]
         base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
-        camera, factor = drawing.camera, drawing.factor
+        factor = drawing.factor
         score_arms(
-            hypotheses, arm.chain, model.parents, body.rest, base.R, base.joints, base.quats,
-            points, normals, arm.link, arm.weights, arm.colour, area,
-            camera.R, camera.t_m, camera.K, camera.dist,
+            hypotheses, samples, model.parents, base.posed, drawing.projection,
             np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,
             base.zbuffer, view.ids, view.softness, scores,
         )  # fmt: skip

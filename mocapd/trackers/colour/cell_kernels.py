@@ -1,5 +1,7 @@
 """Pose-assisted classification (paper section 5.2, step 3) in cells of 4 x 4 work pixels."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -9,6 +11,32 @@ from mocapd.vision.raster_kernels import triangle_middle
 CELL = 4  # px: all pixels of a cell share the distances to the predicted colours
 FAR = 255  # distance of a colour that is nowhere near
 _LANES = CELL * CELL
+
+
+class LearnedPixels(NamedTuple):
+    """The static background, mean (H,W,3) BGR 0..255 and how often it was seen (H,W), and how often
+    each colour bin was seen on the shirt and on other things (32768,)."""
+
+    mean: NDArray[np.float32]
+    age: NDArray[np.uint8]
+    shirt_count: NDArray[np.float32]
+    other_count: NDArray[np.float32]
+
+
+class ClassifierWeights(NamedTuple):
+    """prior: standard deviations per work px away from a colour's place; threshold [standard
+    deviations]. tolerance: largest channel difference to the background, 0..1; a pixel that looks
+    like it pays background_penalty, one whose colour is rather seen on other things than on the
+    shirt up to other_penalty. soft_unclassified, soft_unknown: softness 0..1 of an unclassified
+    pixel before a background that is known and that is not."""
+
+    prior: float
+    threshold: float
+    tolerance: float
+    background_penalty: float
+    other_penalty: float
+    soft_unclassified: float
+    soft_unknown: float
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -103,37 +131,28 @@ def classify(
     y0: int,
     distance: NDArray[np.uint8],
     affine: NDArray[np.float32],
-    prior: float,
-    threshold: float,
-    mean: NDArray[np.float32],
-    age: NDArray[np.uint8],
-    tolerance: float,
-    background_penalty: float,
-    shirt_count: NDArray[np.float32],
-    other_count: NDArray[np.float32],
-    other_penalty: float,
-    soft_unclassified: float,
-    soft_unknown: float,
+    learned: LearnedPixels,
+    weights: ClassifierWeights,
     ids: NDArray[np.uint8],
     softness: NDArray[np.uint8],
 ) -> None:
     """Fill ids and softness (h,w) of the region at x0, y0 of picture (H,W,3) BGR.
 
-    distance (h4,w4,10): of `colour_distances`; prior: standard deviations per work px. affine
-    (10,3,4): whitened distance of colour k is |A (b,g,r,1)|. A pixel that looks like the static
-    background pays `background_penalty`; one whose colour is rather seen on other things than on
-    the shirt pays up to `other_penalty` (counts per colour bin). softness: how firmly an
-    unclassified pixel denies the shirt, 255 where background is seen, and out of reach of every colour.
+    distance (h4,w4,10): of `colour_distances`. affine (10,3,4): whitened distance of colour k is
+    |A (b,g,r,1)|. softness: how firmly an unclassified pixel denies the shirt, 255 where background
+    is seen, and out of reach of every colour.
     """
+    mean, age, shirt_count, other_count = learned
     h, w = ids.shape
     h4, w4, _ = distance.shape
     sure = np.uint8(255)
-    soft, unknown = np.uint8(255 * soft_unclassified), np.uint8(255 * soft_unknown)
-    tol = np.float32(tolerance * 255.0)
-    step = np.float32(prior)
-    top = np.float32(threshold)
-    behind = np.float32(background_penalty)
-    elsewhere = np.float32(other_penalty)
+    soft = np.uint8(255 * weights.soft_unclassified)
+    unknown = np.uint8(255 * weights.soft_unknown)
+    tol = np.float32(weights.tolerance * 255.0)
+    step = np.float32(weights.prior)
+    top = np.float32(weights.threshold)
+    behind = np.float32(weights.background_penalty)
+    elsewhere = np.float32(weights.other_penalty)
     # a cell's pixels side by side, so that the compiler makes vector instructions of the loops
     b, g, r = (
         np.empty(_LANES, np.float32),

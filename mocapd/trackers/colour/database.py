@@ -181,8 +181,8 @@ def render(
 
     def draw(part: slice) -> None:
         render_poses(
-            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], model.vertices_m, model.bones,
-            model.weights, model.triangles, model.colour, is_shirt, model.rest_m, model.parents,
+            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], model.vertices_m,
+            model.rest_m, model.skin, model.surface, is_shirt, model.parents,
             params.focal_px, params.distance_m,
             out.packed_maps[part], out.root_m[part], out.side_rad[part],
         )  # fmt: skip

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays
 from mocapd.body.model import BodyModel
-from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
+from mocapd.body.posing_kernels import forward_kinematics, pose_and_project
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.trackers.colour.motion_state import MotionState, moved
@@ -36,9 +37,7 @@ class PartialRender:
 
     ids: NDArray[np.uint8]
     zbuffer: NDArray[np.float32]
-    R: Floats
-    joints: Floats
-    quats: Floats
+    posed: PosedJoints
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,9 +58,14 @@ class Drawing:
         """factor: by how much the camera's frames are averaged down to work pictures."""
         self.model: BodyModel = shaper.model
         self.camera, self.factor, self._shaper = camera, factor, shaper
-        self.R = np.zeros((N_JOINTS, 3, 3))
-        self.joints = np.zeros((N_JOINTS, 3))
-        self._quats = np.zeros((N_JOINTS, 4))
+        self.projection = camera_arrays(camera)
+        self.pinhole = pinhole_arrays(self.projection, factor)
+        self.posed = PosedJoints(
+            self.model.rest_m,
+            np.zeros((N_JOINTS, 3, 3)),
+            np.zeros((N_JOINTS, 3)),
+            np.zeros((N_JOINTS, 4)),
+        )
         self.xy = np.empty((len(self.model.vertices_m), 2))
         self._depth = np.empty(len(self.model.vertices_m))
         self._zbuffer = np.empty(_MAX_WORK_PX, np.float32)
@@ -107,7 +111,7 @@ class Drawing:
         zbuffer = self._raster(
             self.xy, m.triangles[triangles], m.colour[triangles], ids, triangle_at
         )
-        return PartialRender(ids, zbuffer, self.R, self.joints, self._quats)
+        return PartialRender(ids, zbuffer, self.posed)
 
     def draw(
         self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi
@@ -137,10 +141,11 @@ class Drawing:
         return np.ascontiguousarray(ids[::2, ::2]), np.ascontiguousarray(triangle_at[::2, ::2])
 
     def pose(self, root_m: Floats, local_xyzw: Floats, rest: Floats) -> None:
-        """Pose the joints (`R`, `joints`) without drawing."""
-        forward_kinematics(
-            self.model.parents, rest, root_m, local_xyzw, self.R, self.joints, self._quats
-        )
+        """Pose the joints (`posed`) without drawing."""
+        if self.posed.rest is not rest:
+            self.posed = self.posed._replace(rest=rest)
+        _, R, joints, quats = self.posed
+        forward_kinematics(self.model.parents, rest, root_m, local_xyzw, R, joints, quats)
 
     def _raster(
         self,
@@ -157,11 +162,11 @@ class Drawing:
         return zbuffer
 
     def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
-        m, camera, factor = self.model, self.camera, self.factor
-        self.pose(root_m, local_xyzw, body.rest)
-        skin_and_project(
-            body.vertices, m.bones, m.weights, body.rest, self.R, self.joints,
-            camera.R, camera.t_m, camera.K, camera.dist,
+        factor, m = self.factor, self.model
+        if self.posed.rest is not body.rest:
+            self.posed = self.posed._replace(rest=body.rest)
+        pose_and_project(
+            m.parents, root_m, local_xyzw, self.posed, body.vertices, m.skin, self.projection,
             np.array([float(roi[0] * factor), float(roi[1] * factor)]), 1.0 / factor,
             self.xy, self._depth,
         )  # fmt: skip

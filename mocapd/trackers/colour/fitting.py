@@ -18,12 +18,12 @@ from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.rotations import IDENTITY_XYZW
-from mocapd.trackers.colour.alignment_kernels import spiral
-from mocapd.trackers.colour.camera_rows import CameraRows, Search
+from mocapd.trackers.colour.alignment_kernels import ComparedPictures, Search, spiral
+from mocapd.trackers.colour.camera_rows import CameraRows, search_within
 from mocapd.trackers.colour.drawing import Drawing, Roi
 from mocapd.trackers.colour.fit_params import FitParams
 from mocapd.trackers.colour.motion_state import MotionState, moved, stepped
-from mocapd.trackers.colour.step_kernels import gauss_newton_step
+from mocapd.trackers.colour.step_kernels import PosePriors, gauss_newton_step
 from mocapd.types import Camera, Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
@@ -130,15 +130,17 @@ class Fitter:
                 "leftLowerArm": p.elbow_sd_rad, "rightLowerArm": p.elbow_sd_rad,
             }, 1.0) ** 2,
         ])  # fmt: skip
-        self._rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
+        rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
         for side, mirror in (("left", 1.0), ("right", -1.0)):
             for bone, (x, y, z) in (
                 ("UpperArm", p.upper_arm_rest_rad),
                 ("LowerArm", p.elbow_rest_rad),
             ):
                 vector = np.array([x, mirror * y, mirror * z])
-                self._rest[INDEX[side + bone]] = rotations.exp(vector)
-        self._limits = standard_limits()
+                rest[INDEX[side + bone]] = rotations.exp(vector)
+        self._priors = PosePriors(
+            rest, self._rest_information, standard_limits(), 1.0 / p.limit_sd_rad**2
+        )
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:
         """Joint centres (J,3) and global rotations (J,4) of a state."""
@@ -172,7 +174,6 @@ class Fitter:
         P = N_POSE + n_shape
         prior = 1.0 / (self._prediction_sd**2 * max(dt_s * 30.0, 0.5))
         fine = p.fine_iterations if fine is None else fine
-        q, limit_information = self._limits, 1.0 / p.limit_sd_rad**2
         H = np.zeros((P, P))
         coarse = [_coarse(view) for view in views]
         for iteration in range(iterations):
@@ -195,9 +196,7 @@ class Fitter:
                 b += mine[1]
             step = gauss_newton_step(
                 H, b, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                prior, self._rest, self._rest_information, m.joint_of_group, m.share_of_joint,
-                q.joint, q.share, q.axis, q.lower_rad, q.upper_rad, limit_information,
-                prediction.factors - state.factors, prediction.information,
+                prior, self._priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
             root, local = stepped(m, state.root_m, state.local_xyzw, step[:N_POSE])
             factors = state.factors
@@ -226,15 +225,15 @@ class Fitter:
             drawn = drawing.last_coarse(view.roi) if coarse else drawing.last(view.roi)
             drawing.pose(root, local, one.body.rest)
         rows.gather(
-            drawing, one.body, drawn, (view.ids, view.softness), one.search, one.n_shape,
-            self.params.row_weight,
+            drawing, one.body, ComparedPictures(*drawn, view.ids, view.softness), one.search,
+            one.n_shape, self.params.row_weight,
         )  # fmt: skip
 
     def _search(self, radius_px: float, fine: bool, phase: int) -> Search:
         """Half of all pixels, or, not `fine`, a quarter: every second each way."""
         grid_px = 1.0 if fine else 2.0
         n = np.searchsorted(self._spiral_r2, (radius_px / grid_px) ** 2, side="right")
-        return Search(
+        return search_within(
             self._spiral[:n], radius_px, grid_px,
             every=2 if fine else 1, phase=phase, stiffness=self.params.edge_stiffness if fine else 0.0,
         )  # fmt: skip

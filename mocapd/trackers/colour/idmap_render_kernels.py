@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays, TriangleArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
 from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_window, pack, resample
 from mocapd.vision.raster_kernels import label_triangles, rasterise
@@ -19,12 +20,10 @@ def render_poses(
     local_xyzw: NDArray[np.float32],
     camera_from_root_xyzw: NDArray[np.float32],
     vertices: Array,
-    bones: NDArray[np.int32],
-    weights: Array,
-    triangles: NDArray[np.int32],
-    colour: Bytes,
-    is_shirt: NDArray[np.bool_],
     rest: Array,
+    skin: SkinArrays,
+    surface: TriangleArrays,
+    is_shirt: NDArray[np.bool_],
     parents: NDArray[np.int64],
     focal_px: float,
     distance_m: float,
@@ -36,9 +35,9 @@ def render_poses(
 
     root_m (N,3): the hips joint relative to the ray through the crop's centre, its depth as third
     coordinate; side_rad (N,): the crop's side [px] over the focal length.
-    vertices (V,3), bones and weights (V,B), triangles (T,3) and colour (T,) of the body's model;
-    is_shirt (V,): the vertices whose box the canvas is fitted to.
+    vertices (V,3) and rest (J,3) of the body's model; is_shirt (V,): the vertices whose box the canvas is fitted to.
     """
+    triangles, colour = surface.corners, surface.colour
     J, V = rest.shape[0], vertices.shape[0]
     R, joints, turned = np.empty((J, 3, 3)), np.empty((J, 3)), np.empty((J, 4))
     local = np.empty((J, 4))
@@ -50,6 +49,8 @@ def render_poses(
     K = np.array([[focal_px, 0.0, 0.0], [0.0, focal_px, 0.0], [0.0, 0.0, 1.0]])
     identity, no_lens, zero = np.eye(3), np.zeros(5), np.zeros(2)
     t, root = np.zeros(3), np.zeros(3)
+    posed = PosedJoints(rest, R, joints, turned)
+    camera = CameraArrays(identity, t, K, no_lens)
     for n in range(local_xyzw.shape[0]):
         local[:] = local_xyzw[n]
         quat_multiply(camera_from_root_xyzw[n].astype(np.float64), local[0].copy(), local[0])
@@ -57,9 +58,7 @@ def render_poses(
         for i in range(3):  # joint 3 is the upper chest
             t[i] = -0.5 * (joints[0, i] + joints[3, i])
         t[2] += distance_m
-        skin_and_project(
-            vertices, bones, weights, rest, R, joints, identity, t, K, no_lens, zero, 1.0, xy, depth
-        )
+        skin_and_project(vertices, skin, posed, camera, zero, 1.0, xy, depth)
         x0 = y0 = 1e9
         x1 = y1 = -1e9
         for v in range(V):

@@ -10,7 +10,13 @@ from mocapd.trackers.colour import appearance as looks
 from mocapd.trackers.colour.appearance import Appearance
 from mocapd.trackers.colour.background_kernels import changed, learn_background
 from mocapd.trackers.colour.background_light import relight_background
-from mocapd.trackers.colour.cell_kernels import CELL, classify, colour_distances
+from mocapd.trackers.colour.cell_kernels import (
+    CELL,
+    ClassifierWeights,
+    LearnedPixels,
+    classify,
+    colour_distances,
+)
 from mocapd.trackers.colour.drawing import Outline, Roi
 from mocapd.trackers.colour.fit_params import TICK_S
 from mocapd.trackers.colour.locate_kernels import find_shirt, suppress_background
@@ -169,10 +175,15 @@ class Eye:
             appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
         )
         classify(
-            self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance), prior,
-            p.threshold, memory.background_mean, memory.background_age, p.background_tolerance,
-            p.background_penalty, memory.shirt_count, memory.other_count, p.other_penalty,
-            p.soft_unclassified, p.soft_unknown, ids, softness,
+            self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance),
+            LearnedPixels(
+                memory.background_mean, memory.background_age, memory.shirt_count, memory.other_count
+            ),
+            ClassifierWeights(
+                prior, p.threshold, p.background_tolerance, p.background_penalty, p.other_penalty,
+                p.soft_unclassified, p.soft_unknown,
+            ),
+            ids, softness,
         )  # fmt: skip
         return ids, softness
 

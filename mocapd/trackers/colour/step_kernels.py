@@ -1,14 +1,25 @@
 """One Gauss-Newton step of the pose: evidence, motion prior, rest prior, joint limits and shape prior."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limit_kernels import limit_residuals
+from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
 from mocapd.body.posing_kernels import difference
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+
+
+class PosePriors(NamedTuple):
+    """What holds a pose beside the evidence: rest_information (P,) to rest_local (J,4), and
+    limit_information to within the joint limits."""
+
+    rest_local: Array
+    rest_information: Array
+    limits: JointLimits
+    limit_information: float
 
 
 @njit(cache=True, nogil=True)
@@ -19,43 +30,35 @@ def gauss_newton_step(
     local: Array,
     start_root: Array,
     start_local: Array,
-    prior: Array,
-    rest_local: Array,
-    rest_information: Array,
-    joint_of_group: Ints,
-    share_of_joint: Array,
-    limit_joint: Ints,
-    limit_share: Array,
-    limit_axis: Ints,
-    lower: Array,
-    upper: Array,
-    limit_information: float,
+    motion_information: Array,
+    priors: PosePriors,
     shape_offset: Array,
     shape_information: Array,
 ) -> Array:
     """The step (P,) that solves the normal equations of all terms at the pose root (3,), local (J,4).
 
-    H (P,P), b (P,) of the evidence, left as they are. prior (N_POSE,): information that holds the
-    pose to start_root, start_local; rest_information (N_POSE,) holds it to rest_local; groups
-    beyond their limits are pulled back with limit_information; shape_offset (P - N_POSE,) from the
-    factors to what is known of them, with shape_information.
+    H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
+    motion_information (as many as those) holds the pose to start_root, start_local; shape_offset:
+    from the factors to what is known of them, with shape_information.
     """
-    n_pose = prior.shape[0]
+    rest_local, rest_information, limits, limit_information = priors
+    joint_of_group, share_of_joint = limits.joint, limits.share
+    n_pose = motion_information.shape[0]
     P = b.shape[0]
     A = H.copy()
     g = b.copy()
     away = np.empty(n_pose)
     difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
-        A[p, p] += prior[p] + rest_information[p]
-        g[p] += prior[p] * away[p]
+        A[p, p] += motion_information[p] + rest_information[p]
+        g[p] += motion_information[p] * away[p]
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
         g[p] += rest_information[p] * away[p]
     G = joint_of_group.shape[0]
     excess = np.zeros((G, 3))
     slope = np.zeros((G, 3, 3))
-    limit_residuals(local, limit_joint, limit_share, limit_axis, lower, upper, excess, slope)
+    limit_residuals(local, limits, excess, slope)
     for group in range(G):
         first = 3 + 3 * group
         for i in range(3):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import camera_arrays, pinhole_arrays
 from mocapd.body.model import N_POSE, BodyModel
 from mocapd.body.posing_kernels import difference, retract
 from mocapd.trackers.colour.paper.covariances import Covariances
@@ -14,6 +15,7 @@ from mocapd.trackers.colour.paper.drawing import (
     Grid,
     Posture,
     draw,
+    posed_joints,
     posture,
     triangle_points,
 )
@@ -89,13 +91,11 @@ class CentroidSolver:
         self, body: Posture, drawing: Drawing, target: Target, wanted: NDArray[np.bool_]
     ) -> tuple[Floats, Floats]:
         """Jacobian (P,2,N_POSE) and residual (P,2) [px] of the wanted patches."""
-        model, camera = self.model, target.camera
+        model, camera = self.model, pinhole_arrays(camera_arrays(target.camera), 1.0)
         J = np.empty((21, 2, N_POSE))
         centroid_rows(
-            drawing.samples, model.patch, wanted, drawing.count, self._points, model.triangle_bones,
-            model.triangle_weights, model.rest_m, model.parents, model.joint_of_group,
-            model.group_of_joint, model.share_of_joint, body.R, body.joints_m,
-            camera.R, camera.t_m, camera.K[0, 0], camera.K[1, 1], J,
+            drawing.samples, wanted, drawing.count, self._points, model.surface,
+            model.articulation, posed_joints(model, body), camera, J,
         )  # fmt: skip
         residual = target.grid.to_pixels(drawing.centroid[wanted]) - target.centroid_px[wanted]
         return J[wanted], residual

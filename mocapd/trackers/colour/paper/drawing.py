@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import PosedJoints, camera_arrays
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.skeleton import N_JOINTS
@@ -59,6 +60,11 @@ def posture(model: BodyModel, root_m: Floats, local_xyzw: Floats) -> Posture:
     return Posture(root_m, local_xyzw, R, joints, turned)
 
 
+def posed_joints(model: BodyModel, body: Posture) -> PosedJoints:
+    """A posture as the kernels take it."""
+    return PosedJoints(model.rest_m, body.R, body.joints_m, body.turned_xyzw)
+
+
 def project_body(
     model: BodyModel, body: Posture, camera: Camera, grid: Grid
 ) -> tuple[Floats, Floats]:
@@ -67,8 +73,8 @@ def project_body(
     # the kernel averages blocks of pixels; here a sample is one pixel
     offset = np.array([grid.x0, grid.y0]) + 0.5 - 0.5 * grid.stride
     skin_and_project(
-        model.vertices_m, model.bones, model.weights, model.rest_m, body.R, body.joints_m,
-        camera.R, camera.t_m, camera.K, camera.dist, offset, 1.0 / grid.stride, xy, depth,
+        model.vertices_m, model.skin, posed_joints(model, body), camera_arrays(camera), offset,
+        1.0 / grid.stride, xy, depth,
     )  # fmt: skip
     return xy, depth
 

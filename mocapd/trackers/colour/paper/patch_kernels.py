@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.body.posing_kernels import surface_row
 
 Array = NDArray[np.float64]
@@ -94,23 +95,13 @@ def inner_ids(triangle_at: Int32, colour: Bytes, out: Bytes) -> None:
 @njit(cache=True, nogil=True)
 def centroid_rows(
     samples: NDArray[np.int64],
-    patch: Bytes,
     wanted: NDArray[np.bool_],
     count: Array,
     points: Array,
-    bones: Int32,
-    weights: Array,
-    rest: Array,
-    parents: NDArray[np.int64],
-    joint_of_group: NDArray[np.int64],
-    group_of_joint: NDArray[np.int64],
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
-    cam_R: Array,
-    cam_t: Array,
-    fx: float,
-    fy: float,
+    surface: TriangleArrays,
+    articulation: Articulation,
+    posed: PosedJoints,
+    camera: PinholeArrays,
     out: Array,
 ) -> None:
     """d centroid [px] / d pose step of the wanted patches: out (21, 2, 3 + 3 G).
@@ -118,11 +109,14 @@ def centroid_rows(
     The centroid is taken as the mean over the samples seen of each triangle's centre, with the set of
     samples held fixed and the lens' distortion left out of the derivative.
     """
+    _, _, patch, bones, weights, _, _, _ = surface
+    rest, R, joints, _ = posed
+    cam_R, cam_t, fx, fy = camera
     columns = out.shape[2]
     row = np.empty(columns)
     g = np.empty(3)
-    world, camera = np.empty(3), np.empty(3)
-    no_shape, no_rest = np.empty((0, 3)), np.empty((0, rest.shape[0], 3))
+    world, seen = np.empty(3), np.empty(3)
+    no_shape, no_joints = np.empty((0, 3)), np.empty((0, rest.shape[0], 3))
     out[:] = 0.0
     for t in range(samples.shape[0]):
         p = patch[t]
@@ -137,18 +131,17 @@ def centroid_rows(
                     value += R[j, i, k] * (points[t, k] - rest[j, k])
                 world[i] += w * value
         for i in range(3):
-            camera[i] = cam_t[i]
+            seen[i] = cam_t[i]
             for k in range(3):
-                camera[i] += cam_R[i, k] * world[k]
-        z = max(camera[2], 0.1)
+                seen[i] += cam_R[i, k] * world[k]
+        z = max(seen[2], 0.1)
         share = samples[t] / count[p]
         for axis in range(2):
             f = fx if axis == 0 else fy
             for k in range(3):
-                g[k] = f / z * (cam_R[axis, k] - camera[axis] / z * cam_R[2, k])
+                g[k] = f / z * (cam_R[axis, k] - seen[axis] / z * cam_R[2, k])
             surface_row(
-                points[t], bones[t], weights[t], no_shape, g, rest, parents, joint_of_group,
-                group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
+                points[t], bones[t], weights[t], no_shape, g, articulation, posed, no_joints, row,
             )  # fmt: skip
             for k in range(columns):
                 out[p, axis, k] += share * row[k]

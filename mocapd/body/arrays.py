@@ -1,0 +1,83 @@
+"""What the kernels take: named tuples of arrays, made once and passed as one argument.
+
+All arrays are C-contiguous and writable, so that each kernel is compiled for one set of types.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.types import Bytes, Camera, Floats, Ints
+
+Int32s = NDArray[np.int32]
+
+
+class Articulation(NamedTuple):
+    """How joints hang on each other and move together; J joints, G rotation groups, N shape factors."""
+
+    parents: Ints  # (J,)
+    group_of_joint: Ints  # (J,), -1: does not move
+    share_of_joint: Floats  # (J,)
+    joint_of_group: Ints  # (G,) the first joint of each group
+    d_rest: Floats  # (N,J,3)
+
+
+class SkinArrays(NamedTuple):
+    """Which bones carry each vertex."""
+
+    bones: Int32s  # (V,B)
+    weights: Floats  # (V,B)
+
+
+class TriangleArrays(NamedTuple):
+    """The triangles of the surface; bones and weights are those of the triangle's centre."""
+
+    corners: Int32s  # (T,3)
+    colour: Bytes  # (T,) 0..10
+    patch: Bytes  # (T,) 0..20
+    bones: Int32s  # (T,B)
+    weights: Floats  # (T,B)
+    d_centres: Floats  # (N,T,3)
+    sleeves: Ints  # (S,) the triangles of both sleeves, by colour
+    sleeve_start: Ints  # (12,) first place in `sleeves` of each colour 0..10, and the end
+
+
+class PosedJoints(NamedTuple):
+    """A pose of one body: T-pose joints [m], global rotations, joint centres in the world [m]."""
+
+    rest: Floats  # (J,3)
+    R: Floats  # (J,3,3)
+    joints: Floats  # (J,3)
+    quats: Floats  # (J,4)
+
+
+class CameraArrays(NamedTuple):
+    """camera_from_world R (3,3), t (3,) [m]; K (3,3) [px], dist (5,)."""
+
+    R: Floats
+    t: Floats
+    K: Floats
+    dist: Floats
+
+
+class PinholeArrays(NamedTuple):
+    """camera_from_world R (3,3), t (3,) [m], and the focal lengths in px of the picture at hand."""
+
+    R: Floats
+    t: Floats
+    fx: float
+    fy: float
+
+
+def camera_arrays(camera: Camera) -> CameraArrays:
+    """Copies of what a camera's kernels need."""
+    return CameraArrays(
+        *(np.array(a, dtype=np.float64, order="C") for a in (camera.R, camera.t_m, camera.K, camera.dist))
+    )  # fmt: skip
+
+
+def pinhole_arrays(camera: CameraArrays, factor: float) -> PinholeArrays:
+    """The same without the lens' distortion, for pictures averaged down by `factor`."""
+    fx, fy = float(camera.K[0, 0]) / factor, float(camera.K[1, 1]) / factor
+    return PinholeArrays(camera.R, camera.t, fx, fy)
