@@ -1,9 +1,11 @@
-"""How far the joints of an upper body go, and a soft limit for solvers.
+"""How far the joints of a body go, and a soft limit for solvers.
 
 Angles are taken from the T-pose (palms down, the pit of the elbow forwards) in the frame of the
 parent bone, split into a twist about the bone and a swing. Positive senses, left side (the right is
 its mirror image): about x inward rotation and pronation, about -y forwards, about z upwards. Spine:
-about x flexion, about y a turn to the left, about z a lean to the right.
+about x flexion, about y a turn to the left, about z a lean to the right; the neck alike. Left leg, which
+hangs along -y: thigh about -x forwards, about z outwards (abduction), about y outward rotation; knee about
+x flexion; foot about -x toes up (dorsiflexion), about y toes outwards, about z eversion.
 
 Sources, degrees, adult men unless said otherwise:
 - Boone & Azen 1979 (J. Bone Joint Surg. 61-A:756): shoulder horizontal flexion 141 and extension 45,
@@ -13,19 +15,28 @@ Sources, degrees, adult men unless said otherwise:
   the shoulder crosses the body by about 30 beyond hanging (adduction 45 to 50 with the arm in front).
 - Ludewig et al. 2009 (J. Bone Joint Surg. 91-A:378) and Kapandji, Physiology of the Joints vol. 1:
   the collar bone rises 30 to 45, sinks 5 to 10, goes 25 forwards and 25 backwards, turns about 30.
+- Boone & Azen 1979, men from 20 on: hip flexion 121, extension 12, abduction 41, adduction 26, rotation 44
+  both ways; knee flexion 141; ankle plantar flexion 54, dorsiflexion 12; foot inversion 36, eversion 19
+  (standard deviations 4 to 6). Roaas & Andersson 1982 (Acta Orthop. Scand. 53:205) agree within 10, with
+  adduction 30 and a dorsiflexion of 15. AAOS 1965: hip extension 30, abduction and rotation 45, knee
+  hyperextension 10. With the body's weight on the foot dorsiflexion goes to 45 (a deep squat, a lunge:
+  Bennell et al. 1998, Aust. J. Physiother. 44:175). The bent knee turns by 30 to 40 (Kapandji, vol. 2).
+- Youdas et al. 1992 (Phys. Ther. 72:770): neck at 20 to 29 years, flexion 55 to 65, extension 75 to 85,
+  rotation 70 to 75, lateral bending 40 to 48 (standard deviations 6 to 13).
 Two standard deviations are added, because a person may be looser than the mean. The upper arm's
 range includes what the collar bone gives, as trackers divide the motion between both differently.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
-from mocapd.body.model import GROUPS
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-X, Y = 0, 1
+X, Y, Z = 0, 1, 2
 
 # left side: twist axis, then (least, greatest) about x, y, z [deg]
 _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
@@ -38,15 +49,21 @@ _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
     # flexion is about -y when the pit of the elbow looks forwards in the T-pose; skeletons differ in
     # that neutral twist of the upper arm by up to 45 degrees, which tilts the hinge towards z
     "LowerArm": (X, ((-90.0, 90.0), (-155.0, 7.0), (-25.0, 75.0))),
+    "neck": (Y, ((-95.0, 75.0), (-88.0, 88.0), (-58.0, 58.0))),
+    # a leg that is lifted to the side turns outwards, and its swing has a part about z beyond 45
+    "UpperLeg": (Y, ((-135.0, 30.0), (-55.0, 60.0), (-35.0, 60.0))),
+    # as at the elbow, the neutral twist of the thigh differs between skeletons
+    "LowerLeg": (Y, ((-10.0, 155.0), (-35.0, 45.0), (-12.0, 12.0))),
+    "Foot": (Z, ((-45.0, 66.0), (-25.0, 30.0), (-45.0, 30.0))),
 }
 
 
-def standard_limits() -> JointLimits:
-    """The limits of an adult, in the order of GROUPS."""
-    axis = np.full(len(GROUPS), -1)
+def limits_of(groups: Sequence[tuple[str, ...]]) -> JointLimits:
+    """The limits of an adult for these rotation groups; those of no known name are free."""
+    axis = np.full(len(groups), -1)
     share = np.ones(len(INDEX))
-    lower, upper = np.full((len(GROUPS), 3), -np.inf), np.full((len(GROUPS), 3), np.inf)
-    for g, names in enumerate(GROUPS):
+    lower, upper = np.full((len(groups), 3), -np.inf), np.full((len(groups), 3), np.inf)
+    for g, names in enumerate(groups):
         for name in names:
             share[INDEX[name]] = 1.0 / len(names)
         first = names[0]
@@ -61,7 +78,7 @@ def standard_limits() -> JointLimits:
                 np.array([high[0], -low[1], -low[2]]),
             )
         lower[g], upper[g] = low, high
-    joint = np.array([INDEX[names[0]] for names in GROUPS])
+    joint = np.array([INDEX[names[0]] for names in groups])
     return JointLimits(axis, joint, share, lower, upper)
 
 

@@ -6,37 +6,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
-from mocapd.body.shape import FACTORS, BodyShape, mean_shape, skeleton_of
+from mocapd.body.pose_space import PoseSpace, upper_body
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.shirt import standard_shirt
-from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS
-from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM, mean_surface, shape_derivatives
+from mocapd.body.skeleton import PARENTS
+from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM
+from mocapd.body.surface_building import build_surface, build_whole_surface, shape_derivatives
 from mocapd.types import Floats, Ints
 
 _BONES = 4  # skin weights kept per point
-
-# Rotation groups: the joints that move, and the share of the group's bend that each takes.
-GROUPS: tuple[tuple[str, ...], ...] = (
-    ("hips",),
-    ("spine", "chest", "upperChest"),
-    ("leftShoulder",),
-    ("leftUpperArm",),
-    ("leftLowerArm",),
-    ("rightShoulder",),
-    ("rightUpperArm",),
-    ("rightLowerArm",),
-)
-N_GROUPS = len(GROUPS)
-N_POSE = 3 + 3 * N_GROUPS
-N_SHAPE = len(FACTORS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyModel:
     """Mean body of one stature. V vertices, T triangles, B bones per point, N shape factors.
 
-    Triangles of the legs are left out: the shirt's tracker never sees their labels.
+    In a space that is not whole the triangles of the legs are left out: the shirt's tracker never sees
+    their labels.
     """
 
+    space: PoseSpace
     stature_m: float
     vertices_m: Floats  # (V,3)
     bones: NDArray[np.int32]  # (V,B)
@@ -44,7 +33,7 @@ class BodyModel:
     triangles: NDArray[np.int32]  # (T,3)
     colour: NDArray[np.uint8]  # (T,) 0..10
     patch: NDArray[np.uint8]  # (T,) 0..20
-    part: NDArray[np.uint8]  # (T,) TORSO, LEFT_ARM, RIGHT_ARM or HEAD of body.surface
+    part: NDArray[np.uint8]  # (T,) a part of body.surface
     triangle_bones: NDArray[np.int32]  # (T,B), of the triangle's centre
     triangle_weights: Floats  # (T,B)
     rest_m: Floats  # (J,3)
@@ -77,11 +66,24 @@ class BodyModel:
         for name, arrays in made.items():
             object.__setattr__(self, name, arrays)
 
+    @property
+    def n_pose(self) -> int:
+        """How many numbers a pose has."""
+        return self.space.n_pose
 
-def build_model(stature_m: float) -> BodyModel:
-    """The model of the mean body of this stature."""
-    surface = mean_surface(stature_m)
-    d_vertices, d_rest = shape_derivatives(stature_m)
+    @property
+    def n_shape(self) -> int:
+        """How many shape factors this model has: those of its space, or more."""
+        return len(self.d_rest)
+
+
+def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
+    """The model of the mean body of this stature; space: `upper_body` unless another is given."""
+    space = space if space is not None else upper_body()
+    build = build_whole_surface if space.whole else build_surface
+    mean = BodyShape(stature_m, np.ones(space.n_shape))
+    surface = build(mean)
+    d_vertices, d_rest = shape_derivatives(stature_m, build, space.n_shape)
     keep = surface.part != LEGS
     triangles = surface.triangles[keep]
     used = np.unique(triangles)
@@ -90,17 +92,12 @@ def build_model(stature_m: float) -> BodyModel:
     triangles = renumber[triangles].astype(np.int32)
     bones, weights = _strongest(surface.weights[used])
     triangle_bones, triangle_weights = _strongest(surface.weights[used][triangles].mean(axis=1))
-    group_of_joint = np.full(N_JOINTS, -1, dtype=np.int64)
-    share = np.zeros(N_JOINTS)
-    for g, names in enumerate(GROUPS):
-        for name in names:
-            group_of_joint[INDEX[name]] = g
-            share[INDEX[name]] = 1.0 / len(names)
     colour = standard_shirt().colour_of_patch[surface.patch[keep]]
     part = surface.part[keep]
     of_arms = np.flatnonzero(((part == LEFT_ARM) | (part == RIGHT_ARM)) & (colour > 0))
     sleeves = of_arms[np.argsort(colour[of_arms], kind="stable")]
     return BodyModel(
+        space=space,
         stature_m=stature_m,
         vertices_m=surface.vertices_m[used],
         bones=bones,
@@ -111,7 +108,7 @@ def build_model(stature_m: float) -> BodyModel:
         part=part,
         triangle_bones=triangle_bones,
         triangle_weights=triangle_weights,
-        rest_m=skeleton_of(mean_shape(stature_m)).rest_m,
+        rest_m=skeleton_of(mean).rest_m,
         d_vertices=np.ascontiguousarray(d_vertices[:, used]),
         d_rest=d_rest,
         sleeves=sleeves,
@@ -119,9 +116,9 @@ def build_model(stature_m: float) -> BodyModel:
         centres_m=surface.vertices_m[used][triangles].mean(axis=1),
         d_centres=np.ascontiguousarray(d_vertices[:, used][:, triangles].mean(axis=2)),
         parents=PARENTS,
-        group_of_joint=group_of_joint,
-        share_of_joint=share,
-        joint_of_group=np.array([INDEX[names[0]] for names in GROUPS]),
+        group_of_joint=space.group_of_joint,
+        share_of_joint=space.share_of_joint,
+        joint_of_group=space.joint_of_group,
     )
 
 

@@ -18,16 +18,23 @@ FACTORS = (
     "arm_girth",
 )
 N_FACTORS = len(FACTORS)
+# of head and legs; a shape that leaves them out has 1.0 for each
+LOWER_FACTORS = ("thigh_length", "shank_length", "hip_width", "leg_girth", "head_size")
+WHOLE_FACTORS = FACTORS + LOWER_FACTORS
 
 # Spread of each factor over adults of one stature: lengths from the spread of the joint centres in
 # calib/body_proportions.json; breadths, depths and girths from ANSUR II (2012) coefficients of
 # variation at fixed stature, which clothes widen.
 FACTOR_SD = np.array([0.04, 0.05, 0.02, 0.07, 0.12, 0.14, 0.18])
+# Thigh and shank: the sd of the joints' heights in the same file is 0.05 and 0.03 of their lengths, and
+# the leg's length varies by 0.04 at fixed stature (ANSUR II, crotch height). Hips: hip breadth. Girth:
+# circumferences of thigh (0.09) and calf (0.08), widened by trousers. Head: its length and breadth.
+LOWER_FACTOR_SD = np.array([0.05, 0.04, 0.06, 0.15, 0.04])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyShape:
-    """stature_m [m] and factors (N_FACTORS,), 1.0 being the mean body; order as in FACTORS."""
+    """stature_m [m] and factors (N,), 1.0 being the mean body: those of FACTORS, or of WHOLE_FACTORS."""
 
     stature_m: float
     factors: Floats
@@ -37,8 +44,18 @@ class BodyShape:
             raise ConfigError(
                 f"a stature of {self.stature_m} m", "stature_m", "give metres, 0.8 to 2.5"
             )
-        if self.factors.shape != (N_FACTORS,) or not (self.factors > 0.3).all():
-            raise ConfigError(f"wanted {N_FACTORS} factors above 0.3", "body shape", "check them")
+        sizes = ((N_FACTORS,), (len(WHOLE_FACTORS),))
+        if self.factors.shape not in sizes or not (self.factors > 0.3).all():
+            raise ConfigError(
+                f"wanted {N_FACTORS} or {len(WHOLE_FACTORS)} factors above 0.3",
+                "body shape",
+                "check them",
+            )
+
+    def factor(self, name: str) -> float:
+        """One factor by its name in WHOLE_FACTORS."""
+        i = WHOLE_FACTORS.index(name)
+        return float(self.factors[i]) if i < len(self.factors) else 1.0
 
 
 def mean_shape(stature_m: float) -> BodyShape:
@@ -47,7 +64,7 @@ def mean_shape(stature_m: float) -> BodyShape:
 
 
 def skeleton_of(shape: BodyShape) -> Skeleton:
-    """The T-pose skeleton of a body shape, feet on the floor at the mean height of the hips."""
+    """The T-pose skeleton of a body shape, feet on the floor; longer legs raise all that is above."""
     torso, shoulders, upper_arm, forearm = shape.factors[:4]
     rest = mean_proportions() * shape.stature_m
     hips_y = rest[0, 1]
@@ -61,6 +78,19 @@ def skeleton_of(shape: BodyShape) -> Skeleton:
         out[[collar, arm], 0] = rest[[collar, arm], 0] * shoulders
         out[elbow] = out[arm] + (rest[elbow] - rest[arm]) * upper_arm
         out[wrist] = out[elbow] + (rest[wrist] - rest[elbow]) * forearm
+    # added to what is there, so that factors of 1.0 change no bit
+    head, neck = INDEX["head"], INDEX["neck"]
+    out[head] += (shape.factor("head_size") - 1.0) * (rest[head] - rest[neck])
+    for side in ("left", "right"):
+        hip, knee, foot, toes = (
+            INDEX[side + bone] for bone in ("UpperLeg", "LowerLeg", "Foot", "Toes")
+        )
+        longer = (shape.factor("thigh_length") - 1.0) * (rest[knee] - rest[hip])
+        out[[knee, foot, toes]] += longer
+        lower = (shape.factor("shank_length") - 1.0) * (rest[foot] - rest[knee])
+        out[[foot, toes]] += lower
+        out[[hip, knee, foot, toes], 0] += (shape.factor("hip_width") - 1.0) * rest[hip, 0]
+    out[:, 1] -= longer[1] + lower[1]
     return Skeleton(NAMES, PARENTS, out)
 
 

@@ -25,7 +25,7 @@ class Shaper:
         self._shaped = Shaped(model.vertices_m, model.rest_m, model.centres_m)
 
     def __call__(self, factors: Floats) -> Shaped:
-        """The body with these factors (N_SHAPE,). The arrays are not to be written to."""
+        """The body with these factors (n_shape,). The arrays are not to be written to."""
         if self._factors is None or not np.array_equal(factors, self._factors):
             m = self.model
             vertices, rest = shaped(m, factors)

@@ -1,7 +1,8 @@
-"""The shirt's standard: which colour each of the twenty patches has."""
+"""The shirt's standard: its twenty patches by name, and which colour each has."""
 
 import json
 from dataclasses import dataclass
+from enum import IntEnum
 from functools import cache
 
 import numpy as np
@@ -10,7 +11,41 @@ from numpy.typing import NDArray
 from mocapd.assets import asset_path
 
 N_COLOURS = 10
-N_PATCHES = 20
+
+
+class ShirtPatch(IntEnum):
+    """Patches as `Surface.patch` numbers them; names are those of the standard's file."""
+
+    NONE = 0
+    TORSO_FRONT_UPPER_LEFT = 1
+    TORSO_FRONT_UPPER_RIGHT = 2
+    TORSO_FRONT_LOWER_LEFT = 3
+    TORSO_FRONT_LOWER_RIGHT = 4
+    TORSO_BACK_UPPER_LEFT = 5
+    TORSO_BACK_UPPER_RIGHT = 6
+    TORSO_BACK_LOWER_LEFT = 7
+    TORSO_BACK_LOWER_RIGHT = 8
+    LEFT_SHOULDER = 9
+    LEFT_UPPER_ARM_FRONT = 10
+    LEFT_UPPER_ARM_BACK = 11
+    LEFT_FOREARM_FRONT = 12
+    LEFT_FOREARM_BACK = 13
+    LEFT_CUFF = 14
+    RIGHT_SHOULDER = 15
+    RIGHT_UPPER_ARM_FRONT = 16
+    RIGHT_UPPER_ARM_BACK = 17
+    RIGHT_FOREARM_FRONT = 18
+    RIGHT_FOREARM_BACK = 19
+    RIGHT_CUFF = 20
+
+
+N_PATCHES = len(ShirtPatch) - 1
+N_LABELS = N_PATCHES + 1  # counts per patch have a place for what is no shirt, too
+TORSO_PATCHES = tuple(patch for patch in ShirtPatch if patch.name.startswith("TORSO"))
+SLEEVE_PATCHES = {
+    "left": slice(ShirtPatch.LEFT_SHOULDER, ShirtPatch.LEFT_CUFF + 1),
+    "right": slice(ShirtPatch.RIGHT_SHOULDER, ShirtPatch.RIGHT_CUFF + 1),
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE, BodyModel, build_model
+from mocapd.body.model import BodyModel, build_model
 from mocapd.calibrate.body_rows import (
     N_CAMERA,
     BodyRows,
@@ -63,7 +63,7 @@ class RoomReport:
 
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
     colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
-    the first; match: share of the drawn shirt that the pictures confirm; factors (N_SHAPE,): the
+    the first; match: share of the drawn shirt that the pictures confirm; factors (n_shape,): the
     wearer's proportions; doubts: by camera but the first.
     """
 
@@ -165,7 +165,7 @@ class RoomSolver:
             seen = views(keyframe, self._work)
             fits = [
                 fitter.fit(s, seen, params.loose_s, 8, learn_shape=False)
-                for s in starts(keyframe, cameras, model, np.ones(N_SHAPE))
+                for s in starts(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)
             scene.states.append(replace(best.state, factors=scene.factors))
@@ -221,22 +221,23 @@ class RoomSolver:
     def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> "_Evidence":
         """What all keyframes say together. Raises ConfigError when too few agree with the body."""
         p = self._p
+        n = self._body.model.n_pose
         out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
         tolerable = p.tolerated_cost * float(np.median([_cost(frame) for frame in rows]))
         for frame, seen in zip(rows, self._views, strict=True):
             if _match(frame) < p.least_match or _cost(frame) > tolerable:
                 out.follows.append(None)
                 continue
-            Hpp, bp = np.diag(self._pose_information()), np.zeros(N_POSE)
-            Hps, Hss = np.zeros((N_POSE, self._n)), np.zeros((self._n, self._n))
+            Hpp, bp = np.diag(self._pose_information()), np.zeros(n)
+            Hps, Hss = np.zeros((n, self._n)), np.zeros((self._n, self._n))
             bs = np.zeros(self._n)
             for row, view in zip(frame, seen, strict=True):
                 J = self._columns(row, view.index)
-                Hpp += row.H[:N_POSE, :N_POSE]
-                Hps += row.H[:N_POSE] @ J
+                Hpp += row.H[:n, :n]
+                Hps += row.H[:n] @ J
                 Hss += J.T @ row.H @ J
                 bs += J.T @ row.b
-                bp += row.b[:N_POSE]
+                bp += row.b[:n]
             back: Floats = np.asarray(np.linalg.solve(Hpp, Hps), dtype=np.float64)
             own: Floats = np.asarray(np.linalg.solve(Hpp, bp), dtype=np.float64)
             out.H += Hss - Hps.T @ back
@@ -286,14 +287,15 @@ class RoomSolver:
             scene.states[k] = replace(state, root_m=root, local_xyzw=local, factors=scene.factors)
 
     def _pose_information(self) -> Floats:
-        information = np.full(N_POSE, 1.0 / self._p.joint_sd_rad**2)
+        information = np.full(self._body.model.n_pose, 1.0 / self._p.joint_sd_rad**2)
         information[:6] = 1e-3  # root and hips are free
         return information
 
     def _columns(self, row: BodyRows, camera: int) -> Floats:
         """(P, n): how the row's pose and shape columns make up those of shape and cameras."""
-        J = np.zeros((N_POSE + self._n_shape, self._n))
-        J[N_POSE:, : self._n_shape] = np.eye(self._n_shape)
+        n_pose = self._body.model.n_pose
+        J = np.zeros((n_pose + self._n_shape, self._n))
+        J[n_pose:, : self._n_shape] = np.eye(self._n_shape)
         if camera > 0:
             k = self._n_shape + N_CAMERA * (camera - 1)
             J[:N_CAMERA, k : k + N_CAMERA] = camera_columns(row.at_m).T
@@ -326,7 +328,7 @@ class RoomSolver:
                 c.name: float(np.linalg.norm(centre(c) - first)) for c in scene.cameras[1:]
             },
             match=matched / max(visible, 1.0),
-            factors=scene.factors[:N_SHAPE],
+            factors=scene.factors[: self._body.model.space.n_shape],
             doubts=doubts,
         )
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.alignment_kernels import ComparedPictures, spiral
 from mocapd.trackers.colour.camera_rows import CameraRows, search_within
@@ -53,15 +52,15 @@ class RowGatherer:
 
     def gather(self, state: MotionState, view: View) -> BodyRows:
         """The rows of one camera, at every pixel."""
-        fitter, n_shape = self.fitter, len(self.fitter.model.d_rest)
-        rows = CameraRows(n_shape)
+        fitter, n_shape = self.fitter, self.fitter.model.n_shape
+        rows = CameraRows(fitter.model)
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
         drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
         rows.gather(
             drawing, body, ComparedPictures(*drawn, view.ids, view.softness), self._search,
             n_shape, fitter.params.row_weight,
         )  # fmt: skip
-        H, b = rows.system(N_POSE + n_shape)
+        H, b = rows.system(fitter.model.n_pose + n_shape)
         at_m = drawing.posed.joints[0].copy()
         return BodyRows(
             view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost

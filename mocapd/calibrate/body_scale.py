@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.model import N_SHAPE, BodyModel, shaped
+from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.shape import FACTOR_SD
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.body_shape_fit import ShapeFit
 from mocapd.trackers.colour.motion_state import MotionState
@@ -40,7 +39,8 @@ class ScaleTrouble:
 
 def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
     """One common factor of all proportions: what is left of each is what people differ by."""
-    spread = np.diag(FACTOR_SD**2) + np.linalg.inv(fit.information + 1e-3 * np.eye(N_SHAPE))
+    information = fit.information + 1e-3 * np.eye(len(fit.factors))
+    spread = np.diag(model.space.factor_sd**2) + np.linalg.inv(information)
     weight = np.linalg.inv(spread)
     bones = float(weight.sum(axis=0) @ fit.seen / weight.sum())
     height = float("nan")

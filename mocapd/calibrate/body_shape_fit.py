@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE, BodyModel
-from mocapd.body.shape import FACTOR_SD
+from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.calibrate.body_rows import BodyRows, RowGatherer
 from mocapd.clock import seconds
@@ -60,7 +59,7 @@ class ShapeMoment:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeFit:
-    """factors (N_SHAPE,) of `body.shape`. seen (N_SHAPE,) and information (N_SHAPE,N_SHAPE): what the
+    """factors (N,) of `body.shape`. seen (N,) and information (N,N): what the
     pictures alone say, without what is known of people; match: share of the drawn shirt that they
     confirm; states: every moment's pose in this shape; counted: which of them were believed."""
 
@@ -93,13 +92,17 @@ def moment_of(
         softness = np.full(ids.shape, _SOFTNESS, np.uint8)
         views.append(View(i, (x0, y0, x1, y1), ids, softness, late_s))
     local = local_from_global(standard_skeleton(model.stature_m), body.pose.quats_xyzw)
-    velocity = np.zeros(N_POSE)
+    velocity = np.zeros(model.n_pose)
     if before is not None:
         dt_s = max(seconds(body.t_ns - before.t_ns), 1e-3)
         last = before.state.root_m, before.state.local_xyzw
         velocity = step_between(model, (body.pose.root_m, local), last) / dt_s
     state = MotionState(
-        body.pose.root_m.copy(), local, velocity, np.ones(N_SHAPE), initial_information()
+        body.pose.root_m.copy(),
+        local,
+        velocity,
+        np.ones(model.n_shape),
+        initial_information(model.space),
     )
     return ShapeMoment(body.t_ns, state, tuple(views))
 
@@ -130,7 +133,7 @@ def fit_shape(
         ]
         # before the first steps a wearer of odd proportions agrees with no picture well
         counted = _counted(rows, p, p.least_match if i == p.rounds else 0.0)
-        evidence = _Evidence(rows, counted, p)
+        evidence = _Evidence(rows, counted, model, p)
         if i == p.rounds:
             break
         step = evidence.step(factors)
@@ -144,7 +147,7 @@ def fit_shape(
             factors = np.mean(kept[-p.averaged :], axis=0)
     return ShapeFit(
         factors,
-        factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(N_SHAPE), evidence.b),
+        factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(model.n_shape), evidence.b),
         evidence.H,
         float(np.mean([_match(rows[k]) for k in counted])),
         tuple(states),
@@ -159,28 +162,34 @@ class _Evidence:
     """What all moments together say of the shape: H (N,N), b (N,) without the poses."""
 
     def __init__(
-        self, rows: Sequence[Sequence[BodyRows]], counted: Sequence[int], p: ShapeParams
+        self,
+        rows: Sequence[Sequence[BodyRows]],
+        counted: Sequence[int],
+        model: BodyModel,
+        p: ShapeParams,
     ) -> None:
-        self.H, self.b = np.zeros((N_SHAPE, N_SHAPE)), np.zeros(N_SHAPE)
+        n, n_shape = model.n_pose, model.n_shape
+        self.H, self.b = np.zeros((n_shape, n_shape)), np.zeros(n_shape)
+        self._prior = 1.0 / model.space.factor_sd**2
         self.follows: list[_Follow | None] = [None] * len(rows)
-        held = np.full(N_POSE, 1.0 / p.joint_sd_rad**2)
+        held = np.full(n, 1.0 / p.joint_sd_rad**2)
         held[:6] = 1e-3  # root and hips are free
         for k in counted:
             H = np.sum([row.H for row in rows[k]], axis=0)
             b = np.sum([row.b for row in rows[k]], axis=0)
-            Hpp = H[:N_POSE, :N_POSE] + np.diag(held)
-            Hps = H[:N_POSE, N_POSE:]
+            Hpp = H[:n, :n] + np.diag(held)
+            Hps = H[:n, n:]
             back: Floats = np.asarray(np.linalg.solve(Hpp, Hps), dtype=np.float64)
-            own: Floats = np.asarray(np.linalg.solve(Hpp, b[:N_POSE]), dtype=np.float64)
-            self.H += H[N_POSE:, N_POSE:] - Hps.T @ back
-            self.b += b[N_POSE:] - Hps.T @ own
+            own: Floats = np.asarray(np.linalg.solve(Hpp, b[:n]), dtype=np.float64)
+            self.H += H[n:, n:] - Hps.T @ back
+            self.b += b[n:] - Hps.T @ own
             self.follows[k] = back, own
         gain = min(1.0, p.independent_moments / len(counted))
         self.H, self.b = self.H * gain, self.b * gain
 
     def step(self, factors: Floats) -> Floats:
         """Towards what is seen and what people are like."""
-        prior = 1.0 / FACTOR_SD**2
+        prior = self._prior
         step: Floats = np.asarray(
             np.linalg.solve(self.H + np.diag(prior), self.b - prior * (factors - 1.0)),
             dtype=np.float64,

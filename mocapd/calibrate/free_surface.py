@@ -1,6 +1,6 @@
 """A body whose surface may be off from the mean body's by a few centimetres, here and there.
 
-The seven factors of `body.shape` cannot make a real body in real cloth. What they miss is of the same
+The factors of `body.shape` cannot make a real body in real cloth. What they miss is of the same
 size in every picture, so that no number of pictures averages it out, and where a camera stands would
 have to explain it. Here it gets unknowns of its own: smooth displacements, alike on both sides of the
 body, that move with the bones.
@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.model import BodyModel
-from mocapd.body.shape import FACTOR_SD
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM, TORSO
 from mocapd.types import Floats
@@ -53,7 +52,7 @@ def free_body(model: BodyModel, off_sd_m: float) -> FreeBody:
             d_rest=np.concatenate([model.d_rest, joints]),
             d_centres=np.ascontiguousarray(d_vertices[:, model.triangles].mean(axis=2)),
         ),
-        np.concatenate([FACTOR_SD, np.full(len(surface), off_sd_m)]),
+        np.concatenate([model.space.factor_sd, np.full(len(surface), off_sd_m)]),
     )
 
 

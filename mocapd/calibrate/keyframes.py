@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, BodyModel
+from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.calibrate.patch_tracks import MARKS, Moment, Sighting
 from mocapd.clock import seconds
@@ -87,7 +87,7 @@ def starts(
         out.append(
             MotionState(
                 joints[0] + shift, _local(sighting, camera, model), velocity, factors.copy(),
-                initial_information(),
+                initial_information(model.space),
             )
         )  # fmt: skip
     return out
@@ -100,10 +100,10 @@ def _local(sighting: Sighting, camera: Camera, model: BodyModel) -> Floats:
 
 
 def _velocity(keyframe: Keyframe, camera: Camera, model: BodyModel) -> Floats:
-    """Of the pose (N_POSE,) per second, as the first camera saw it."""
+    """Of the pose (n_pose,) per second, as the first camera saw it."""
     now, before = keyframe.sightings[min(keyframe.sightings)], keyframe.before
     if before is None:
-        return np.zeros(N_POSE)
+        return np.zeros(model.n_pose)
     dt_s = max(seconds(now.t_ns - before.t_ns), 1e-3)
     a, b = (
         ((s.joints_m[0] - camera.t_m) @ camera.R, _local(s, camera, model)) for s in (now, before)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_SHAPE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.light_hypotheses import light_hypotheses
 from mocapd.errors import InputError
@@ -204,8 +204,14 @@ class LightReader:
         sighting = detection.sight(index, eye, self._database, p.neighbours)
         if sighting is None:
             return None
+        model = self._fitter.model
         states = detection.hypotheses(
-            [sighting], self._cameras, self._database, np.ones(N_SHAPE), initial_information()
+            [sighting],
+            self._cameras,
+            self._database,
+            np.ones(model.n_shape),
+            initial_information(model.space),
+            model.n_pose,
         )
         seen = sighting.found
         unknown = np.full(seen.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)

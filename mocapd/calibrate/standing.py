@@ -22,7 +22,7 @@ def upright(rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floa
     """The rig in the world of someone who stood and walked in it.
 
     Up is the middle direction of the spine, once moments of bending are left out; the floor is where
-    the feet of a body with these proportions (N_SHAPE,) are when it stands straight; the origin is
+    the feet of a body with these proportions (n_shape,) are when it stands straight; the origin is
     where the person stood first, facing +Z. Raises ConfigError when nobody was placed in it.
     """
     body = _bodies(rig, moments)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt import N_LABELS, standard_shirt
 from mocapd.types import Bytes, Floats
 from mocapd.vision.white_balance import frobenius_distance
 
@@ -27,7 +27,7 @@ def score_by_labels(strokes: Bytes, patch: Bytes, W: Floats, W_user: Floats) -> 
     """Score strokes (H,W) 0..10 against exact patch indices (H,W) 0..20."""
     truth = standard_shirt().colour_of_patch[patch]
     area = right_area = 0
-    for index in range(1, 21):
+    for index in range(1, N_LABELS):
         here = patch == index
         n = int(here.sum())
         if n < _LEAST_PX:

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, joint_positions
-from mocapd.body.surface import HEAD, LEGS, SHIRT, TROUSERS, Surface, build_surface
+from mocapd.body.surface import HEAD, LEGS, SHIRT, TROUSERS, Surface
+from mocapd.body.surface_building import build_surface
 from mocapd.geometry import rotations
 from mocapd.sim.colour import linear_from_srgb
 from mocapd.sim.figure_kernels import skin_vertices

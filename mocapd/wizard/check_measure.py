@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.shape import FACTORS, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.body_rows import RowGatherer
@@ -115,12 +115,14 @@ class MeasuredTracker:
         lengths = _lengths(self.skeleton) / _lengths(self._mean)
         factors = self._known.copy()
         factors[1:4] = np.clip(lengths, 0.5, 2.0)
-        velocity = np.zeros(N_POSE)
+        model = self._fitter.model
+        velocity = np.zeros(model.n_pose)
         if self._last is not None and 0 < body.t_ns - self._last[0] < nanoseconds(_STALE_S):
             dt_s = seconds(body.t_ns - self._last[0])
-            model = self._fitter.model
             velocity = step_between(model, (body.pose.root_m, local), self._last[1:]) / dt_s
-        state = MotionState(body.pose.root_m, local, velocity, factors, initial_information())
+        state = MotionState(
+            body.pose.root_m, local, velocity, factors, initial_information(model.space)
+        )
         spine = body.joints_m[INDEX["neck"]] - body.joints_m[INDEX["hips"]]
         return Measure(
             body.t_ns,

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from mocapd.body.model import GROUPS, N_SHAPE, build_model, shape_of, shaped
+from mocapd.body.model import build_model, shape_of, shaped
 from mocapd.body.shape import skeleton_of
 from mocapd.body.shirt import N_COLOURS, standard_shirt
 from mocapd.body.skeleton import INDEX
-from mocapd.body.surface import LEGS, build_surface, mean_surface
+from mocapd.body.surface import LEGS
+from mocapd.body.surface_building import build_surface, mean_surface
 
 STATURE_M = 1.66
 MODEL = build_model(STATURE_M)
@@ -40,15 +41,15 @@ def test_a_shaped_body_is_the_body_built_of_that_shape() -> None:
     used = np.unique(surface.triangles[surface.part != LEGS])
     np.testing.assert_allclose(vertices, surface.vertices_m[used], atol=1e-9)
     np.testing.assert_allclose(rest, skeleton_of(shape).rest_m, atol=1e-9)
-    np.testing.assert_array_equal(shaped(MODEL, np.ones(N_SHAPE))[0], MODEL.vertices_m)
+    np.testing.assert_array_equal(shaped(MODEL, np.ones(MODEL.n_shape))[0], MODEL.vertices_m)
 
 
 def test_every_moving_joint_belongs_to_one_group() -> None:
-    for g, names in enumerate(GROUPS):
+    for g, names in enumerate(MODEL.space.groups):
         assert MODEL.joint_of_group[g] == INDEX[names[0]]
         joints = [INDEX[name] for name in names]
         assert (MODEL.group_of_joint[joints] == g).all()
         np.testing.assert_allclose(MODEL.share_of_joint[joints].sum(), 1.0)
-    named = {name for names in GROUPS for name in names}
+    named = {name for names in MODEL.space.groups for name in names}
     still = [INDEX[name] for name in INDEX if name not in named]
     assert (MODEL.group_of_joint[still] == -1).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import PosedJoints, camera_arrays
-from mocapd.body.model import GROUPS, N_POSE, N_SHAPE, build_model, shaped
+from mocapd.body.model import build_model, shaped
 from mocapd.body.posing_kernels import (
     difference,
     forward_kinematics,
@@ -17,7 +17,8 @@ from mocapd.body.posing_kernels import (
     surface_row,
 )
 from mocapd.body.skeleton import INDEX, N_JOINTS, NAMES, PARENTS, joint_positions
-from mocapd.body.surface import LEGS, mean_surface, posed_vertices
+from mocapd.body.surface import LEGS, posed_vertices
+from mocapd.body.surface_building import mean_surface
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project, to_camera
 from mocapd.types import Camera, Floats, Skeleton
@@ -30,7 +31,7 @@ SEEDS = range(4)
 
 
 def skeleton(factors: Floats | None = None) -> Skeleton:
-    rest = shaped(MODEL, np.ones(N_SHAPE) if factors is None else factors)[1]
+    rest = shaped(MODEL, np.ones(MODEL.n_shape) if factors is None else factors)[1]
     return Skeleton(NAMES, PARENTS, rest)
 
 
@@ -75,7 +76,7 @@ def test_quaternion_kernels_equal_the_geometry_module() -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_kinematics_equals_the_plain_path(seed: int) -> None:
-    body = skeleton(1.0 + 0.1 * np.random.default_rng(seed).uniform(-1, 1, N_SHAPE))
+    body = skeleton(1.0 + 0.1 * np.random.default_rng(seed).uniform(-1, 1, MODEL.n_shape))
     root, local = random_root(seed), random_local(seed)
     R, joints, turned = kinematics(body.rest_m, root, local)
     pose = pose_of(body, root, local)
@@ -123,20 +124,20 @@ def test_points_behind_the_camera_are_marked() -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_difference_undoes_retract(seed: int) -> None:
     """Rotations stay under pi: there the logarithm has one value."""
-    step = np.random.default_rng(seed).uniform(-1.0, 1.0, N_POSE) * 1.7
+    step = np.random.default_rng(seed).uniform(-1.0, 1.0, MODEL.n_pose) * 1.7
     root, local = random_root(seed), random_local(seed)
     there = moved(root, local, step)
-    back = np.empty(N_POSE)
+    back = np.empty(MODEL.n_pose)
     difference(*there, root, local, MODEL.joint_of_group, MODEL.share_of_joint, back)
     np.testing.assert_allclose(back, step, atol=1e-12)
 
 
 def test_retract_in_place_and_by_nothing() -> None:
     root, local = random_root(0), random_local(0)
-    there = moved(root, local, np.zeros(N_POSE))
+    there = moved(root, local, np.zeros(MODEL.n_pose))
     np.testing.assert_array_equal(there[0], root)
     np.testing.assert_allclose(there[1], local, atol=1e-15)
-    step = np.full(N_POSE, 0.2)
+    step = np.full(MODEL.n_pose, 0.2)
     wanted = moved(root, local, step)
     retract(root, local, step, MODEL.group_of_joint, MODEL.share_of_joint, root, local)
     np.testing.assert_array_equal(root, wanted[0])
@@ -145,8 +146,8 @@ def test_retract_in_place_and_by_nothing() -> None:
 
 def test_a_group_turns_in_its_parent_s_frame_and_shares_its_bend() -> None:
     root, local = random_root(1), random_local(1)
-    for g, names in enumerate(GROUPS):
-        step = np.zeros(N_POSE)
+    for g, names in enumerate(MODEL.space.groups):
+        step = np.zeros(MODEL.n_pose)
         step[3 + 3 * g : 6 + 3 * g] = turn = np.array([0.3, -0.2, 0.5])
         _, there = moved(root, local, step)
         for name, j in INDEX.items():
@@ -182,16 +183,16 @@ def point_m(t: int, root: Floats, local: Floats, factors: Floats) -> Floats:
 def test_surface_row_equals_central_differences(seed: int) -> None:
     rng = np.random.default_rng(seed)
     root, local = random_root(seed), random_local(seed)
-    factors = 1.0 + 0.1 * rng.uniform(-1.0, 1.0, N_SHAPE)
+    factors = 1.0 + 0.1 * rng.uniform(-1.0, 1.0, MODEL.n_shape)
     vertices, rest = shaped(MODEL, factors)
     posed = posed_joints(rest, root, local)
-    d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
+    d_joints = np.zeros((MODEL.n_shape, N_JOINTS, 3))
     joint_shape_derivatives(MODEL.parents, MODEL.d_rest, posed.R, d_joints)
     for t in rng.integers(0, len(MODEL.triangles), 12):
         g = rng.normal(size=3)
         g /= np.linalg.norm(g)
         corners = MODEL.triangles[t]
-        row = np.full(N_POSE + N_SHAPE, np.nan)
+        row = np.full(MODEL.n_pose + MODEL.n_shape, np.nan)
         surface_row(
             vertices[corners].mean(axis=0), MODEL.triangle_bones[t], MODEL.triangle_weights[t],
             MODEL.d_vertices[:, corners].mean(axis=1), g, MODEL.articulation, posed, d_joints, row,
@@ -202,8 +203,8 @@ def test_surface_row_equals_central_differences(seed: int) -> None:
             for h in (-STEP, STEP):
                 step = np.zeros(len(row))
                 step[k] = h
-                there = moved(root, local, step[:N_POSE])
-                ends.append(point_m(t, *there, factors + step[N_POSE:]))
+                there = moved(root, local, step[: MODEL.n_pose])
+                ends.append(point_m(t, *there, factors + step[MODEL.n_pose :]))
             wanted[k] = g @ (ends[1] - ends[0]) / (2 * STEP)
         np.testing.assert_allclose(row, wanted, atol=TOLERANCE)
         assert np.abs(row).max() > 1e-2
@@ -214,10 +215,10 @@ def test_joint_shape_derivatives_equal_differences(seed: int) -> None:
     """Joints are linear in the factors while the rotations stay: differences are exact."""
     root, local = random_root(seed), random_local(seed)
     R, joints, _ = kinematics(MODEL.rest_m, root, local)
-    out = np.zeros((N_SHAPE, N_JOINTS, 3))
+    out = np.zeros((MODEL.n_shape, N_JOINTS, 3))
     joint_shape_derivatives(MODEL.parents, MODEL.d_rest, R, out)
-    for n in range(N_SHAPE):
-        factors = np.ones(N_SHAPE)
+    for n in range(MODEL.n_shape):
+        factors = np.ones(MODEL.n_shape)
         factors[n] += 0.1
         there = kinematics(shaped(MODEL, factors)[1], root, local)[1]
         np.testing.assert_allclose(out[n], (there - joints) / 0.1, atol=1e-12)

@@ -5,7 +5,14 @@ import json
 import numpy as np
 
 from mocapd.assets import asset_path
-from mocapd.body.shirt import N_COLOURS, N_PATCHES, standard_shirt
+from mocapd.body.shirt import (
+    N_COLOURS,
+    N_PATCHES,
+    SLEEVE_PATCHES,
+    TORSO_PATCHES,
+    ShirtPatch,
+    standard_shirt,
+)
 
 
 def test_it_says_what_the_file_says() -> None:
@@ -21,6 +28,16 @@ def test_it_says_what_the_file_says() -> None:
     for colour in data["colours"]:
         assert shirt.colour_names[colour["id"] - 1] == colour["name"]
         assert shirt.srgb[colour["id"] - 1].tolist() == colour["srgb"]
+
+
+def test_patches_have_the_standard_s_names() -> None:
+    names = standard_shirt().patch_names
+    assert [patch.name.lower() for patch in ShirtPatch if patch] == list(names)
+    covered = [
+        *TORSO_PATCHES,
+        *(p for side in SLEEVE_PATCHES.values() for p in list(ShirtPatch)[side]),
+    ]
+    assert covered == [patch for patch in ShirtPatch if patch]
 
 
 def test_every_colour_is_on_two_patches() -> None:

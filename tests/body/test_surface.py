@@ -17,10 +17,8 @@ from mocapd.body.surface import (
     SHIRT,
     SKIN,
     TORSO,
-    build_surface,
-    mean_surface,
-    shape_derivatives,
 )
+from mocapd.body.surface_building import build_surface, mean_surface, shape_derivatives
 from mocapd.types import Floats, Ints
 
 STATURE_M = 1.72

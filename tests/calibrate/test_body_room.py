@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.model import N_POSE, N_SHAPE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.body_room import RoomParams, room_from_body
 from mocapd.calibrate.body_rows import RowGatherer, camera_columns, moved_camera
@@ -43,7 +43,13 @@ def walking(i: int) -> MotionState:
             np.array([0.0, -sign * 0.5 * (1 + np.sin(1.7 * a)), 0.0])
         )
     root = np.array([0.3 * np.sin(0.5 * i), 0.93, 0.3 * np.cos(0.37 * i) - 0.3])
-    return MotionState(root, local, np.zeros(N_POSE), np.ones(N_SHAPE), initial_information())
+    return MotionState(
+        root,
+        local,
+        np.zeros(MODEL.n_pose),
+        np.ones(MODEL.n_shape),
+        initial_information(MODEL.space),
+    )
 
 
 def moments(
@@ -105,7 +111,7 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     free = free_body(MODEL, 0.02)
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
-    factors[N_SHAPE:] += rng.normal(0.0, 0.012, len(free.sd) - N_SHAPE)
+    factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
     seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = RoomParams(rounds=14, averaged=4, surface_doubt=1e-3)  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
@@ -123,7 +129,7 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
 def test_the_surface_is_off_alike_on_both_sides() -> None:
     """What moves a point of the left side moves one of the right side by the mirrored way."""
     free = free_body(MODEL, 0.02)
-    ways = free.model.d_vertices[N_SHAPE:]
+    ways = free.model.d_vertices[MODEL.n_shape :]
     mirror = np.array([-1.0, 1.0, 1.0])
     at = MODEL.vertices_m
     apart_m = np.linalg.norm(at[:, None] * mirror - at[None], axis=2)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.body.model import N_SHAPE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.evaluate.retraced import proportions, states
@@ -134,10 +134,12 @@ def random_state(fitter: Fitter, rng: np.random.Generator) -> MotionState:
     group = fitter.model.group_of_joint
     local = exp(rng.normal(0.0, 0.3, (N_JOINTS, 3)))[fitter.model.joint_of_group[group]]
     local[group < 0] = IDENTITY_XYZW
-    factors = np.ones(N_SHAPE)
+    factors = np.ones(fitter.model.n_shape)
     factors[:4] += rng.normal(0.0, 0.05, 4)  # the lengths: all that joints can tell
     root = np.array([0.1, 0.95, -0.2])
-    return MotionState(root, local, np.zeros(27), factors, initial_information())
+    return MotionState(
+        root, local, np.zeros(fitter.model.n_pose), factors, initial_information(fitter.model.space)
+    )
 
 
 def test_a_recorded_pose_becomes_the_state_it_was(fitter: Fitter) -> None:

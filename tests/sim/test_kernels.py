@@ -6,7 +6,8 @@ import pytest
 
 from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.body.skeleton import global_from_local, joint_positions
-from mocapd.body.surface import build_surface, posed_vertices
+from mocapd.body.surface import posed_vertices
+from mocapd.body.surface_building import build_surface
 from mocapd.geometry import rotations
 from mocapd.sim.figure import build_figure
 from mocapd.sim.figure_kernels import light_vertices, skin_vertices, vertex_normals

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapd.assets import asset_path
-from mocapd.body.joint_limits import soft_limit, standard_limits
+from mocapd.body.joint_limits import soft_limit
+from mocapd.body.pose_space import upper_body
 from mocapd.body.skeleton import INDEX, PARENTS, joint_positions, local_from_global
 from mocapd.geometry.cameras import project
 from mocapd.sim.scenario import load_scenario
@@ -100,7 +101,7 @@ def test_cameras_look_at_their_target_with_y_down() -> None:
 @pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono"])
 def test_shipped_motions_stay_within_the_limits_of_joints(name: str) -> None:
     s = load_scenario(asset_path(f"scenarios/{name}.toml"))
-    world, limits = World(s), standard_limits()
+    world, limits = World(s), upper_body().limits
     for t in np.arange(0.0, s.loop_s, 0.2):
         local = local_from_global(world.skeleton, world.pose(float(t)).quats_xyzw)
         _, excess_rad, _ = soft_limit(limits, local)

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import PosedJoints, camera_arrays
-from mocapd.body.model import N_POSE, BodyModel, shaped
+from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
+from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.motion_state import MotionState
@@ -58,7 +59,13 @@ class Sums:
 
     @classmethod
     def zero(cls, size: int) -> "Sums":
-        return cls(np.zeros((size, size)), np.zeros(size), np.zeros(21), np.zeros(21), np.zeros(21))
+        return cls(
+            np.zeros((size, size)),
+            np.zeros(size),
+            np.zeros(N_LABELS),
+            np.zeros(N_LABELS),
+            np.zeros(N_LABELS),
+        )
 
 
 def accumulate(
@@ -80,7 +87,7 @@ def accumulate(
 ) -> Sums:
     """Rows of every disagreeing pixel, and of edges in place; `every` 2: of one colour of the
     checkerboard. Lengths are in work px, of which a pixel of these pictures has `grid_px`."""
-    size = N_POSE + n_shape
+    size = model.n_pose + n_shape
     out = Sums.zero(size)
     slopes = grid_px * _slopes(model, state, camera, factor, size)
     units = every * grid_px**2 / 2.0
@@ -187,11 +194,11 @@ def _centres_px(
 ) -> Floats:
     root, local = np.empty(3), np.empty((N_JOINTS, 4))
     retract(
-        state.root_m, state.local_xyzw, step[:N_POSE],
+        state.root_m, state.local_xyzw, step[:model.n_pose],
         model.group_of_joint, model.share_of_joint, root, local,
     )  # fmt: skip
     factors = state.factors.copy()
-    factors[: len(step) - N_POSE] += step[N_POSE:]
+    factors[: len(step) - model.n_pose] += step[model.n_pose :]
     vertices, rest = shaped(model, factors)
     R, joints, turned = np.zeros((N_JOINTS, 3, 3)), np.zeros((N_JOINTS, 3)), np.zeros((N_JOINTS, 4))
     forward_kinematics(model.parents, rest, root, local, R, joints, turned)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.fit_params import FitParams
@@ -44,14 +44,14 @@ def standing(left: str = "goalpost", right: str = "side_low", yaw_rad: float = 0
     return MotionState(
         np.array([0.05, 0.98, -0.1]),
         local,
-        np.zeros(N_POSE),
-        np.ones(N_SHAPE),
-        initial_information(),
+        np.zeros(MODEL.n_pose),
+        np.ones(MODEL.n_shape),
+        initial_information(MODEL.space),
     )
 
 
 def stepped(of: Fitter, state: MotionState, step: Floats) -> MotionState:
-    """The state moved by a pose step (N_POSE,)."""
+    """The state moved by a pose step (n_pose,)."""
     root, local = moved(of.model, replace(state, velocity=step), 1.0)
     return replace(state, root_m=root, local_xyzw=local)
 

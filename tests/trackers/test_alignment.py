@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import PinholeArrays
-from mocapd.body.model import N_POSE, N_SHAPE
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
@@ -59,8 +58,8 @@ def accumulated(
     n_shape: int = 0,
     grid_px: float = 1.0,
 ) -> Sums:
-    out = Sums.zero(N_POSE + n_shape)
-    d_joints = np.zeros((N_SHAPE, N_JOINTS, 3))
+    out = Sums.zero(MODEL.n_pose + n_shape)
+    d_joints = np.zeros((MODEL.n_shape, N_JOINTS, 3))
     camera, offsets = CAMERAS[0], spiral(20)
     within = int(((offsets.astype(int) ** 2).sum(axis=1) <= (RADIUS_PX / grid_px) ** 2).sum())
     fx, fy = (float(grid_px * camera.K[i, i] / COARSE) for i in (0, 1))
@@ -77,10 +76,10 @@ def accumulated(
 @pytest.mark.parametrize(
     ("phase", "every", "stiffness", "n_shape", "grid_px"),
     [
-        (0, 2, 1.0, N_SHAPE, 1.0),
+        (0, 2, 1.0, MODEL.n_shape, 1.0),
         (1, 2, 0.0, 0, 1.0),
         (0, 1, 0.0, 0, 2.0),
-        (1, 2, 0.5, N_SHAPE, 1.0),
+        (1, 2, 0.5, MODEL.n_shape, 1.0),
     ],
 )
 def test_accumulate_equals_the_naive_twin(
@@ -90,8 +89,8 @@ def test_accumulate_equals_the_naive_twin(
     better, against rows of tens of px per radian or metre, hundreds of them added up."""
     rng = np.random.default_rng(phase)
     truth, camera = standing(), CAMERAS[0]
-    factors = 1.0 + rng.uniform(-0.05, 0.05, N_SHAPE)
-    state = replace(stepped(fitter(1), truth, rng.normal(0.0, 0.08, N_POSE)), factors=factors)
+    factors = 1.0 + rng.uniform(-0.05, 0.05, MODEL.n_shape)
+    state = replace(stepped(fitter(1), truth, rng.normal(0.0, 0.08, MODEL.n_pose)), factors=factors)
     image_ids = posed(MODEL, truth, camera, COARSE).ids
     wrong = rng.random(image_ids.shape) < 0.1
     image_ids[wrong] = rng.integers(0, 11, wrong.sum())
@@ -134,7 +133,7 @@ def test_perfect_agreement_asks_for_no_step() -> None:
     state = standing()
     drawn = posed(MODEL, state, CAMERAS[0], COARSE)
     sure = np.full(drawn.ids.shape, 255, np.uint8)
-    got = accumulated(state, drawn, drawn.ids.copy(), sure, n_shape=N_SHAPE)
+    got = accumulated(state, drawn, drawn.ids.copy(), sure, n_shape=MODEL.n_shape)
     assert got.cost == 0.0
     assert not got.b.any()
     assert not got.unexplained.any()
@@ -171,7 +170,7 @@ def errors(by: Fitter, got: MotionState, truth: MotionState) -> tuple[float, flo
 def beside(by: Fitter, truth: MotionState, seed: int) -> MotionState:
     """A few centimetres and degrees away, as a prediction is."""
     rng = np.random.default_rng(seed)
-    step = np.concatenate([rng.normal(0.0, 0.03, 3), rng.normal(0.0, 0.08, N_POSE - 3)])
+    step = np.concatenate([rng.normal(0.0, 0.03, 3), rng.normal(0.0, 0.08, MODEL.n_pose - 3)])
     return stepped(by, truth, step)
 
 
@@ -234,7 +233,7 @@ def test_missing_and_wrong_pixels_do_not_matter_much() -> None:
 def test_each_camera_is_fitted_at_its_own_instant() -> None:
     """A body that moves, seen by free-running cameras: the pose is that of the asked instant."""
     by = fitter(2)
-    velocity = np.zeros(N_POSE)
+    velocity = np.zeros(MODEL.n_pose)
     velocity[0] = 4.0  # m/s to the side: 6 cm between the cameras
     truth = replace(standing(), velocity=velocity)
     views = views_of(by, truth, dts_s=(0.0, 0.016))
@@ -247,9 +246,9 @@ def test_each_camera_is_fitted_at_its_own_instant() -> None:
 
 def test_proportions_are_learned() -> None:
     by = fitter(3)
-    wide = replace(standing("side_low", "side_high"), factors=np.ones(N_SHAPE))
+    wide = replace(standing("side_low", "side_high"), factors=np.ones(MODEL.n_shape))
     wide.factors[4], wide.factors[3] = 1.15, 1.1  # torso width, forearms
-    views, state = views_of(by, wide), replace(wide, factors=np.ones(N_SHAPE))
+    views, state = views_of(by, wide), replace(wide, factors=np.ones(MODEL.n_shape))
     for _ in range(4):
         state = by.fit(state, views, TICK_S, 5, learn_shape=True).state
     assert abs(state.factors[4] - 1.15) < 0.05

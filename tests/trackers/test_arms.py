@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import camera_arrays
-from mocapd.body.joint_limits import standard_limits, swing_twist
+from mocapd.body.joint_limits import swing_twist
 from mocapd.body.model import shaped
+from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project, rays
 from mocapd.trackers.colour.arm_kernels import ArmSamples, score_arms
 from mocapd.trackers.colour.arms import (
-    SIDES,
     ArmSearch,
     arm_library,
     arm_of,
@@ -82,7 +82,10 @@ def test_candidates_hold_the_mirror_images_in_depth(side: str) -> None:
 def test_every_camera_adds_its_own_mirror_images_and_the_rest_follow() -> None:
     by, state = fitter(2), standing()
     arm, views = arm_of(MODEL, "left"), views_of(by, state)
-    cloud, library = np.random.default_rng(0).normal(0, 0.5, (5, 6)), arm_library(7, "left")
+    cloud, library = (
+        np.random.default_rng(0).normal(0, 0.5, (5, 6)),
+        arm_library(MODEL.space, 7, "left"),
+    )
     found = candidates(by, state, arm, views, cloud, library)
     assert len(found) == 1 + 2 * 3 + 5 + 7
     np.testing.assert_allclose(np.linalg.norm(found, axis=2), 1.0, atol=1e-9)
@@ -96,9 +99,9 @@ def test_every_camera_adds_its_own_mirror_images_and_the_rest_follow() -> None:
 
 @pytest.mark.parametrize("side", SIDES)
 def test_the_library_fills_the_joint_limits(side: str) -> None:
-    library, limits = arm_library(500, side), standard_limits()
-    first = 3 if side == "left" else 6
-    for place, group in ((1, first), (2, first + 1)):
+    library, limits = arm_library(MODEL.space, 500, side), MODEL.space.limits
+    for place in (1, 2):
+        group = MODEL.space.group(side + BONES[place])
         assert limits.joint[group] == INDEX[side + BONES[place]]
         angles = swing_twist(library[:, place], int(limits.axis[group]))
         low, high = limits.lower_rad[group], limits.upper_rad[group]
@@ -189,7 +192,7 @@ def test_scores_equal_the_naive_twin(side: str) -> None:
 @pytest.mark.parametrize("pose", ["goalpost", "forward_low", "hand_on_hip", "raised"])
 def test_the_true_arm_scores_above_the_library(side: str, pose: str) -> None:
     by, truth = fitter(2), standing(pose, pose)
-    views, library = views_of(by, truth), arm_library(400, side)
+    views, library = views_of(by, truth), arm_library(MODEL.space, 400, side)
     mine = truth.local_xyzw[[INDEX[side + bone] for bone in BONES]]
     hypotheses = np.concatenate([library, mine[None]])
     total = sum(scores(by, truth, view, side, hypotheses) for view in views)
@@ -200,7 +203,7 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
-    tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(600, "left"))
+    tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
     best = best_arm_poses(by, wrong, arm, views, tries, 3)
     assert 1 <= len(best) <= 3
     hand = arm_joints(by, truth, "left")[2]

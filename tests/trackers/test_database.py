@@ -11,8 +11,8 @@ from typing import NoReturn
 import numpy as np
 import pytest
 
-from mocapd.body.joint_limits import standard_limits, swing_twist
-from mocapd.body.model import GROUPS
+from mocapd.body.joint_limits import swing_twist
+from mocapd.body.pose_space import upper_body
 from mocapd.errors import CannotCreateError
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project
@@ -114,10 +114,10 @@ def test_camera_from_view_points_the_axis_at_the_pixel() -> None:
 
 def test_poses_stay_within_the_joint_limits() -> None:
     poses = poses_from_cube(random_cube(2000, 1), SamplingParams())
-    limits = standard_limits()
+    limits = upper_body().limits
     slack = np.radians(SamplingParams().limit_slack_deg + 0.1)
     assert len(poses) > 1700
-    for g in range(len(GROUPS)):
+    for g in range(len(upper_body().groups)):
         if limits.axis[g] < 0:
             continue
         q = poses.local_xyzw[:, limits.joint[g]].astype(float)

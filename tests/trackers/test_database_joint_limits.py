@@ -5,14 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.body.joint_limits import from_swing_twist, soft_limit, standard_limits, swing_twist
-from mocapd.body.model import GROUPS, build_model
+from mocapd.body.joint_limits import from_swing_twist, soft_limit, swing_twist
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import upper_body
 from mocapd.body.posing_kernels import retract
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-LIMITS = standard_limits()
+SPACE = upper_body()
+LIMITS, GROUPS = SPACE.limits, SPACE.groups
 
 
 def random_local(seed: int, size_rad: float = 2.2) -> Floats:
@@ -89,7 +91,7 @@ def test_swing_twist_round_trip() -> None:
 
 
 def test_left_and_right_are_mirror_images() -> None:
-    left, right = (GROUPS.index((side + "UpperArm",)) for side in ("left", "right"))
+    left, right = (SPACE.group(side + "UpperArm") for side in ("left", "right"))
     mirror = np.array([1.0, -1.0, -1.0])
     for a, b in ((LIMITS.lower_rad, LIMITS.upper_rad), (LIMITS.upper_rad, LIMITS.lower_rad)):
         np.testing.assert_allclose(a[right, 1:], mirror[1:] * b[left, 1:])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import camera_arrays, pinhole_arrays
-from mocapd.body.model import N_POSE, build_model
+from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import retract
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt import N_LABELS, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project
@@ -118,10 +118,14 @@ def arm_error_m(tracked: Floats, body: Posture) -> float:
 
 def test_patches_of_a_drawing_equal_numpy_twin() -> None:
     seen = draw(MODEL, standing(), RIG.cameras[0], Grid(100, 50, 200, 180, 2))
-    samples, count, centroid = np.empty(len(MODEL.triangles), int), np.empty(21), np.empty((21, 2))
+    samples, count, centroid = (
+        np.empty(len(MODEL.triangles), int),
+        np.empty(N_LABELS),
+        np.empty((N_LABELS, 2)),
+    )
     rendered_patches(seen.triangle_at, MODEL.patch, samples, count, centroid)
     patch_at = np.where(seen.triangle_at >= 0, MODEL.patch[seen.triangle_at], 255)
-    for p in range(21):
+    for p in range(N_LABELS):
         y, x = np.nonzero(patch_at == p)
         assert count[p] == len(x)
         if len(x):
@@ -140,7 +144,7 @@ def test_a_colour_is_given_to_the_nearer_of_its_two_patches() -> None:
     ids[4:7, 1:5], ids[4:7, 15:19] = 4, 4
     nearest = np.full((10, 10, 20, 2), -1, np.int16)
     nearest[3, :, :10], nearest[3, :, 10:] = (5, 2), (5, 17)
-    count, centroid = np.empty(21), np.empty((21, 2))
+    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
     classified_patches(ids, nearest, triangle_at, patch, count, centroid)
     assert count[a] == count[b] == 12
     assert centroid[a].tolist() == [2.5, 5.0]
@@ -153,7 +157,7 @@ def test_centroid_derivative_equals_differences() -> None:
     seen = draw(MODEL, body, c, Grid(0, 0, 320, 240, 2))
     wanted = seen.count >= 20
     wanted[0] = False
-    J = np.empty((21, 2, N_POSE))
+    J = np.empty((N_LABELS, 2, MODEL.n_pose))
     centroid_rows(
         seen.samples, wanted, seen.count, points, MODEL.surface, MODEL.articulation,
         posed_joints(MODEL, body), pinhole_arrays(camera_arrays(c), 1.0), J,
@@ -161,16 +165,16 @@ def test_centroid_derivative_equals_differences() -> None:
 
     def centroids(at: Posture) -> Floats:
         xy = project(c, posed_points(MODEL, at, points))
-        out = np.zeros((21, 2))
+        out = np.zeros((N_LABELS, 2))
         for p in np.flatnonzero(wanted):
             here = MODEL.patch == p
             out[p] = np.average(xy[here], axis=0, weights=seen.samples[here])
         return out
 
-    for k in range(N_POSE):
+    for k in range(MODEL.n_pose):
         ends = []
         for h in (-1e-5, 1e-5):
-            step = np.zeros(N_POSE)
+            step = np.zeros(MODEL.n_pose)
             step[k] = h
             ends.append(centroids(_moved(body, step)))
         slope = (ends[1] - ends[0]) / 2e-5
@@ -212,7 +216,7 @@ def test_placement_finds_the_root_from_a_rough_guess() -> None:
 def test_solver_moves_the_pose_to_where_the_patches_are_seen() -> None:
     true = standing()
     rng = np.random.default_rng(0)
-    spread = np.concatenate([np.full(3, 0.03), np.full(N_POSE - 3, 0.12)])
+    spread = np.concatenate([np.full(3, 0.03), np.full(MODEL.n_pose - 3, 0.12)])
     start = _moved(true, rng.normal(0.0, spread))
     grid = Grid(0, 0, 320, 240, 2)
     targets = []

@@ -11,8 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limits import from_swing_twist, standard_limits
+from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES, PoseSpace
+from mocapd.body.shirt import SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.geometry import rotations
@@ -22,8 +24,6 @@ from mocapd.trackers.colour.fitting import Fit, Fitter, View
 from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.types import Floats, Ints
 
-SIDES = ("left", "right")
-SLEEVE_PATCHES = {"left": slice(9, 15), "right": slice(15, 21)}  # of the shirt, 1..20
 _LIBRARY = 2048
 _IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
 
@@ -45,7 +45,7 @@ class Arm:
 def arm_of(model: BodyModel, side: str) -> Arm:
     """Cut one arm out of the body model; every third triangle of its sleeve is a sample."""
     mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
-    chain = np.array([INDEX[side + bone] for bone in ("Shoulder", "UpperArm", "LowerArm", "Hand")])
+    chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_arm"].joints])
     sample = np.flatnonzero(mine & (model.colour > 0))[::3]
     bones, weights = model.triangle_bones[sample, :2], model.triangle_weights[sample, :2]
     place = np.zeros(int(model.parents.size), dtype=np.int64)
@@ -146,15 +146,15 @@ def best_arm_poses(
     return out
 
 
-def arm_library(size: int, side: str) -> Floats:
+def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
     """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
-    limits = standard_limits()
-    first = 3 if side == "left" else 6  # rotation groups of body.model: upper arm, forearm
+    limits = space.limits
+    upper, fore = space.group(side + "UpperArm"), space.group(side + "LowerArm")
     u = _halton(size)
     out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
-    for place, group, span in ((1, first, slice(0, 3)), (2, first + 1, slice(3, 6))):
-        lower, upper = limits.lower_rad[group], limits.upper_rad[group]
-        angles = lower + (upper - lower) * u[:, span]
+    for place, group, span in ((1, upper, slice(0, 3)), (2, fore, slice(3, 6))):
+        low, high = limits.lower_rad[group], limits.upper_rad[group]
+        angles = low + (high - low) * u[:, span]
         out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
     return out
 
@@ -165,7 +165,7 @@ class ArmSearch:
     def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
         self.fitter, self.params = fitter, params
         self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
-        self._library = {side: arm_library(_LIBRARY, side) for side in SIDES}
+        self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
         u = _halton(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])

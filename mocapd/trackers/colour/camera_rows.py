@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.model import N_POSE, N_SHAPE
+from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
+from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.trackers.colour.alignment_kernels import (
     AlignmentSums,
@@ -33,12 +34,11 @@ def search_within(
 class CameraRows:
     """One camera's share of the normal equations: H (P,P), b (P,), counts (21,) per patch, cost."""
 
-    def __init__(self, n_shape: int = N_SHAPE) -> None:
-        """n_shape: how many factors the body's shape has."""
-        P = N_POSE + n_shape
+    def __init__(self, model: BodyModel) -> None:
+        P = model.n_pose + model.n_shape
         self._H, self._b = np.zeros(P * P), np.zeros(P)
-        self.visible, self.matched, self.unexplained = np.zeros(21), np.zeros(21), np.zeros(21)
-        self._d_joints = np.zeros((n_shape, N_JOINTS, 3))
+        self.visible, self.matched, self.unexplained = (np.zeros(N_LABELS) for _ in range(3))
+        self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))
         self.cost = 0.0
 
     def gather(
@@ -55,7 +55,7 @@ class CameraRows:
         n_shape: how many shape factors are columns after those of the pose. weight: of a pixel's row.
         """
         m = drawing.model
-        H, b = self.system(N_POSE + n_shape)
+        H, b = self.system(m.n_pose + n_shape)
         self.cost = accumulate(
             pictures, search, drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy,
             m.surface, body.centres, m.articulation, drawing.posed, self._d_joints, drawing.pinhole, weight,

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from mocapd.body.shirt import N_PATCHES
+from mocapd.body.pose_space import SIDES
+from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.trackers.colour.fitting import Fit
 from mocapd.trackers.tracking_state import FADE_S
@@ -12,22 +13,35 @@ _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a j
 _ONE_CAMERA = 0.7  # one view knows directions, not depth
 _BELOW = 0.5  # what the shirt tells of head and legs
 
-_TORSO = tuple(range(1, 9))
-_SEEN_BY: dict[str, tuple[int, ...]] = {
-    "hips": (3, 4, 7, 8), "spine": _TORSO, "chest": _TORSO, "upperChest": (1, 2, 5, 6),
-    "neck": (1, 2, 5, 6), "leftShoulder": (1, 5, 9), "rightShoulder": (2, 6, 15),
-    "leftUpperArm": (9, 10, 11), "leftLowerArm": (10, 11, 12, 13), "leftHand": (12, 13, 14),
-    "rightUpperArm": (15, 16, 17), "rightLowerArm": (16, 17, 18, 19), "rightHand": (18, 19, 20),
-}  # fmt: skip
+_UPPER_TORSO = tuple(patch for patch in TORSO_PATCHES if "UPPER" in patch.name)
+_LOWER_TORSO = tuple(patch for patch in TORSO_PATCHES if "LOWER" in patch.name)
+
+
+def _seen_by() -> dict[str, tuple[ShirtPatch, ...]]:
+    """The patches that show each joint."""
+    out = {
+        "hips": _LOWER_TORSO, "spine": TORSO_PATCHES, "chest": TORSO_PATCHES,
+        "upperChest": _UPPER_TORSO, "neck": _UPPER_TORSO,
+    }  # fmt: skip
+    for side in SIDES:
+        sleeve = tuple(ShirtPatch)[SLEEVE_PATCHES[side]]
+        torso = tuple(p for p in _UPPER_TORSO if p.name.endswith(side.upper()))
+        out[side + "Shoulder"] = (*torso, sleeve[0])
+        out[side + "UpperArm"] = sleeve[:3]  # shoulder, upper arm
+        out[side + "LowerArm"] = sleeve[1:5]  # upper arm, forearm
+        out[side + "Hand"] = sleeve[3:]  # forearm, cuff
+    return out
+
+
 _FOLLOWS = {
     "head": "neck",
-    **{f"{side}{bone}": "hips" for side in ("left", "right") for bone in ("UpperLeg", "LowerLeg", "Foot", "Toes")},
+    **{f"{side}{bone}": "hips" for side in SIDES for bone in ("UpperLeg", "LowerLeg", "Foot", "Toes")},
 }  # fmt: skip
 
 
 def _patches_of_joints() -> Floats:
-    out = np.zeros((N_JOINTS, N_PATCHES + 1))
-    for name, patches in _SEEN_BY.items():
+    out = np.zeros((N_JOINTS, N_LABELS))
+    for name, patches in _seen_by().items():
         out[INDEX[name], list(patches)] = 1.0
     return out
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.model import N_POSE
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
@@ -54,8 +53,12 @@ def hypotheses(
     database: PoseDatabase,
     factors: Floats,
     information: Floats,
+    n_pose: int,
 ) -> list[MotionState]:
-    """A state per neighbour of every sighting, placed by triangulation where two cameras agree."""
+    """A state per neighbour of every sighting, placed by triangulation where two cameras agree.
+
+    n_pose: how many numbers a pose of the body has.
+    """
     place: Floats | None = None
     if len(sightings) > 1:
         seen = [cameras[s.index] for s in sightings]
@@ -81,7 +84,7 @@ def hypotheses(
             local = database.local_xyzw[one[0]].astype(float)
             turned = rotations.multiply(view, database.camera_from_root_xyzw[one[0]].astype(float))
             local[0] = rotations.canonical(rotations.multiply(to_world, turned))
-            out.append(MotionState(root, local, np.zeros(N_POSE), factors, information))
+            out.append(MotionState(root, local, np.zeros(n_pose), factors, information))
     return out
 
 

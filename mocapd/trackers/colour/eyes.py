@@ -4,10 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt import SLEEVE_PATCHES, standard_shirt
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
-from mocapd.trackers.colour.arms import SLEEVE_PATCHES
 from mocapd.trackers.colour.drawing import Roi
 from mocapd.trackers.colour.fit_params import TICK_S
 from mocapd.trackers.colour.fitting import Fit, Fitter, View

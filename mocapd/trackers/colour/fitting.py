@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limits import standard_limits
-from mocapd.body.model import GROUPS, N_POSE, N_SHAPE, BodyModel
+from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt import standard_shirt
@@ -93,10 +92,6 @@ def _coarse(view: View) -> View:
     )
 
 
-def _group_values(values: dict[str, tuple[float, float, float]], default: float) -> Floats:
-    return np.array([values.get(names[0], (default,) * 3) for names in GROUPS]).ravel()
-
-
 class Fitter:
     """Buffers and constants for fitting one body in one rig; holds no state between calls."""
 
@@ -107,13 +102,13 @@ class Fitter:
         self.model, self.params = model, params
         self.shaper = Shaper(model)
         self.drawings = [Drawing(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)]
-        self._rows = [CameraRows() for _ in cameras]
+        self._rows = [CameraRows(model) for _ in cameras]
         self._spiral = spiral(params.first_radius_px)
         self._spiral_r2 = (self._spiral**2).sum(axis=1)
         p = params
         self._prediction_sd = np.concatenate([
             np.full(3, p.root_sd_m),
-            _group_values({
+            model.space.by_group({
                 "hips": (p.hips_sd_rad,) * 3, "spine": (p.spine_sd_rad,) * 3,
                 "leftShoulder": (p.collar_sd_rad,) * 3, "rightShoulder": (p.collar_sd_rad,) * 3,
                 "leftUpperArm": (p.arm_sd_rad,) * 3, "rightUpperArm": (p.arm_sd_rad,) * 3,
@@ -122,7 +117,7 @@ class Fitter:
         # where a joint is drawn to when nothing is seen of it
         self._rest_information = np.concatenate([
             np.zeros(3),
-            1.0 / _group_values({
+            1.0 / model.space.by_group({
                 "hips": (1e3, 1e3, 1e3), "spine": (0.5, 0.5, 0.4),
                 "leftShoulder": (0.2, 0.2, 0.2), "rightShoulder": (0.2, 0.2, 0.2),
                 "leftUpperArm": (p.upper_arm_sd_rad,) * 3, "rightUpperArm": (p.upper_arm_sd_rad,) * 3,
@@ -139,7 +134,7 @@ class Fitter:
                 vector = np.array([x, mirror * y, mirror * z])
                 rest[INDEX[side + bone]] = rotations.exp(vector)
         self._priors = PosePriors(
-            rest, self._rest_information, standard_limits(), 1.0 / p.limit_sd_rad**2
+            rest, self._rest_information, model.space.limits, 1.0 / p.limit_sd_rad**2
         )
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:
@@ -170,8 +165,8 @@ class Fitter:
         """
         p, m = self.params, self.model
         state = prediction
-        n_shape = N_SHAPE if learn_shape else 0
-        P = N_POSE + n_shape
+        n_shape = m.n_shape if learn_shape else 0
+        P = m.n_pose + n_shape
         prior = 1.0 / (self._prediction_sd**2 * max(dt_s * 30.0, 0.5))
         fine = p.fine_iterations if fine is None else fine
         H = np.zeros((P, P))
@@ -198,10 +193,10 @@ class Fitter:
                 H, b, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 prior, self._priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
-            root, local = stepped(m, state.root_m, state.local_xyzw, step[:N_POSE])
+            root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
             factors = state.factors
             if learn_shape:
-                factors = np.clip(factors + step[N_POSE:], 0.6, 1.6)
+                factors = np.clip(factors + step[m.n_pose :], 0.6, 1.6)
             state = replace(state, root_m=root, local_xyzw=local, factors=factors)
         rows = [self._rows[view.index] for view in views]
         return Fit(
@@ -239,7 +234,8 @@ class Fitter:
         )  # fmt: skip
 
     def shape_information(self, H: Floats) -> Floats:
-        """What the evidence says of the shape factors when the pose is free: Schur complement (N_SHAPE,N_SHAPE)."""
-        Hpp = H[:N_POSE, :N_POSE] + np.diag(self._rest_information + 1e-3)
-        Hps = H[:N_POSE, N_POSE:]
-        return H[N_POSE:, N_POSE:] - Hps.T @ np.linalg.solve(Hpp, Hps)
+        """What the evidence says of the shape factors when the pose is free: Schur complement (n_shape,n_shape)."""
+        n = self.model.n_pose
+        Hpp = H[:n, :n] + np.diag(self._rest_information + 1e-3)
+        Hps = H[:n, n:]
+        return H[n:, n:] - Hps.T @ np.linalg.solve(Hpp, Hps)

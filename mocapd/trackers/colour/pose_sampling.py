@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limits import from_swing_twist, standard_limits, swing_twist
+from mocapd.body.joint_limits import from_swing_twist, swing_twist
+from mocapd.body.pose_space import upper_body
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.key_poses import ARMS, TORSOS, arm_rotations
@@ -183,7 +184,7 @@ def _blend(q_xyzw: Floats, weights: Floats) -> Floats:
 
 def _beyond_limits(local_xyzw: Floats, slack_rad: float) -> NDArray[np.bool_]:
     """Whether a joint is bent farther than an adult's goes: (N,)."""
-    limits = standard_limits()
+    limits = upper_body().limits
     out = np.zeros(len(local_xyzw), dtype=bool)
     for g in np.flatnonzero(limits.axis >= 0):
         j = limits.joint[g]

@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import N_POSE, N_SHAPE, build_model, shape_of
+from mocapd.body.model import build_model, shape_of
+from mocapd.body.pose_space import SIDES
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
 from mocapd.trackers.colour import detection
-from mocapd.trackers.colour.arms import SIDES, ArmSearch, confirmed, doubtful
+from mocapd.trackers.colour.arms import ArmSearch, confirmed, doubtful
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.trackers.colour.drawing import work_factors
@@ -40,7 +41,6 @@ from mocapd.types import (
 from mocapd.vision.colour_model import ColourModel
 
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
-_ARM_STEPS = {"left": slice(9, 18), "right": slice(18, 27)}  # of the pose parameters
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +72,7 @@ class ColourTracker:
     ) -> None:
         """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent.
 
-        factors (N_SHAPE,): the wearer's proportions as measured; None: nothing is known of them.
+        factors (n_shape,): the wearer's proportions as measured; None: nothing is known of them.
         """
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
@@ -91,13 +91,13 @@ class ColourTracker:
         """Compile or load the kernels that only rare frames reach."""
         w, h = self._eyes.each[0].size
         nothing = np.zeros((h, w), np.uint8)
-        rest = self._fitter.model.rest_m
+        model = self._fitter.model
         state = MotionState(
-            rest[0].copy(),
+            model.rest_m[0].copy(),
             np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)),
-            np.zeros(N_POSE),
-            np.ones(N_SHAPE),
-            initial_information(),
+            np.zeros(model.n_pose),
+            np.ones(model.n_shape),
+            initial_information(model.space),
         )
         self._arms.rehearse(state, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
 
@@ -112,10 +112,12 @@ class ColourTracker:
         self._eyes.reset()
         self._tracking.reset()
         self._known: _Known | None = None
-        measured = self._measured
-        self._factors: Floats = np.ones(N_SHAPE) if measured is None else measured.copy()
+        measured, model = self._measured, self._fitter.model
+        self._factors: Floats = np.ones(model.n_shape) if measured is None else measured.copy()
         self._information: Floats = (
-            initial_information() if measured is None else measured_information()
+            initial_information(model.space)
+            if measured is None
+            else measured_information(model.space)
         )
         self._taught_s = 0.0
         self._next_search_ns = 0
@@ -196,7 +198,9 @@ class ColourTracker:
         for side in SIDES:
             # what is hardly seen is hardly known to move; what was changed over jumped
             trust = np.clip((confirmed(side, fit) - 0.15) / p.arm_trust, 0.0, 1.0)
-            velocity[_ARM_STEPS[side]] *= 0.0 if side in switched else trust
+            velocity[fitter.model.space.columns(f"{side}_arm")] *= (
+                0.0 if side in switched else trust
+            )
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
@@ -241,7 +245,12 @@ class ColourTracker:
             is not None
         ]
         states = detection.hypotheses(
-            sightings, self.rig.cameras, self._database, self._factors, self._information
+            sightings,
+            self.rig.cameras,
+            self._database,
+            self._factors,
+            self._information,
+            self._fitter.model.n_pose,
         )
         flat = [
             View(

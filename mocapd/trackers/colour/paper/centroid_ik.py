@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import camera_arrays, pinhole_arrays
-from mocapd.body.model import N_POSE, BodyModel
+from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import difference, retract
+from mocapd.body.shirt import N_LABELS
 from mocapd.trackers.colour.paper.covariances import Covariances
 from mocapd.trackers.colour.paper.drawing import (
     Drawing,
@@ -80,7 +81,7 @@ class CentroidSolver:
         return body
 
     def _gap(self, a: Posture, b: Posture) -> Floats:
-        out = np.empty(N_POSE)
+        out = np.empty(self.model.n_pose)
         difference(
             a.root_m, a.local_xyzw, b.root_m, b.local_xyzw,
             self.model.joint_of_group, self.model.share_of_joint, out,
@@ -90,9 +91,9 @@ class CentroidSolver:
     def _rows(
         self, body: Posture, drawing: Drawing, target: Target, wanted: NDArray[np.bool_]
     ) -> tuple[Floats, Floats]:
-        """Jacobian (P,2,N_POSE) and residual (P,2) [px] of the wanted patches."""
+        """Jacobian (P,2,n_pose) and residual (P,2) [px] of the wanted patches."""
         model, camera = self.model, pinhole_arrays(camera_arrays(target.camera), 1.0)
-        J = np.empty((21, 2, N_POSE))
+        J = np.empty((N_LABELS, 2, model.n_pose))
         centroid_rows(
             drawing.samples, wanted, drawing.count, self._points, model.surface,
             model.articulation, posed_joints(model, body), camera, J,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.assets import asset_path
-from mocapd.body.model import N_POSE
+from mocapd.body.pose_space import upper_body
 from mocapd.errors import ConfigError
 from mocapd.geometry.rig_file import read_json
 from mocapd.types import Floats
@@ -29,7 +29,8 @@ def load_covariances() -> Covariances:
     """The covariances of calib/. Raises ConfigError when the file does not fit the body."""
     path = asset_path(ASSET)
     data = read_json(path)
-    wanted = {"centroid_px2": 2, "blend": N_POSE, "previous": N_POSE}
+    n_pose = upper_body().n_pose
+    wanted = {"centroid_px2": 2, "blend": n_pose, "previous": n_pose}
     matrices = []
     for key, n in wanted.items():
         matrix = np.asarray(data.get(key), dtype=float)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints, camera_arrays
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
+from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.trackers.colour.paper.patch_kernels import rendered_patches
 from mocapd.types import Camera, Floats, Ints
@@ -84,7 +85,7 @@ def draw_vertices(model: BodyModel, xy: Floats, depth: Floats, height: int, widt
     triangle_at = np.empty((height, width), np.int32)
     rasterise(xy, depth, model.triangles, np.empty((height, width), np.float32), triangle_at)
     samples = np.empty(len(model.triangles), np.int64)
-    count, centroid = np.empty(21), np.empty((21, 2))
+    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
     rendered_patches(triangle_at, model.patch, samples, count, centroid)
     return Drawing(triangle_at, samples, count, centroid)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.model import BodyModel
+from mocapd.body.shirt import N_LABELS
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import normalised
 from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
@@ -84,7 +85,7 @@ def constraints(model: BodyModel, local_xyzw: Floats, guess: Guess, sight: Sight
     local[0] = rotations.IDENTITY_XYZW
     points = posed_points(model, posture(model, np.zeros(3), local), triangle_points(model))
     drawing, window = _as_database_draws(model, local, guess.view_from_root_xyzw)
-    patches = [p for p in range(1, 21) if drawing.count[p] >= _MIN_SAMPLES]
+    patches = [p for p in range(1, N_LABELS) if drawing.count[p] >= _MIN_SAMPLES]
     cx, cy, side = window
     cells = (drawing.centroid[patches] - [cx, cy]) / max(side, 1.0)
     pixels = sight.centre_px + cells * sight.map_scale * sight.map40.shape[0]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from mocapd.body.model import build_model
+from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.database import PoseDatabase
@@ -21,11 +22,14 @@ from mocapd.vision.distance_maps import DistanceMaps
 from mocapd.vision.raster_kernels import label_triangles
 
 # The patches that show each joint; joints not named share the trunk's confidence.
-_TRUNK = (1, 2, 3, 4, 5, 6, 7, 8)
+_LEFT, _RIGHT = (tuple(ShirtPatch)[SLEEVE_PATCHES[side]] for side in ("left", "right"))
 _PATCHES_OF = {
-    "leftShoulder": (9,), "leftUpperArm": (9, 10, 11), "leftLowerArm": (10, 11, 12, 13),
-    "leftHand": (12, 13, 14), "rightShoulder": (15,), "rightUpperArm": (15, 16, 17),
-    "rightLowerArm": (16, 17, 18, 19), "rightHand": (18, 19, 20),
+    side + bone: sleeve[of_bone]
+    for side, sleeve in (("left", _LEFT), ("right", _RIGHT))
+    for bone, of_bone in (
+        ("Shoulder", slice(0, 1)), ("UpperArm", slice(0, 3)), ("LowerArm", slice(1, 5)),
+        ("Hand", slice(3, 6)),
+    )
 }  # fmt: skip
 _WELL_SEEN = 40.0  # samples of a joint's patches, best camera
 
@@ -147,7 +151,7 @@ class PaperTracker:
         reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
         distance = maps.fill(rendered, reach)
         ids = eye.refine(pixels, sight, distance) if params.pose_prior else sight.ids
-        count, centroid = np.empty(21), np.empty((21, 2))
+        count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
         classified_patches(
             ids, maps.nearest_yx, drawing.triangle_at, self._model.patch, count, centroid
         )
@@ -191,7 +195,7 @@ def _agreement(drawing: Drawing, colour: Bytes, ids: Bytes) -> tuple[int, int]:
 def _confidence(seen: list[Drawing], agreement: float) -> Floats:
     """Per joint (J,): how much of its patches the best camera sees, times the overall agreement."""
     count = np.max([drawing.count for drawing in seen], axis=0)
-    out = np.full(N_JOINTS, min(1.0, count[list(_TRUNK)].sum() / (4.0 * _WELL_SEEN)))
+    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_PATCHES)].sum() / (4.0 * _WELL_SEEN)))
     for name, patches in _PATCHES_OF.items():
         out[INDEX[name]] = min(1.0, count[list(patches)].sum() / _WELL_SEEN)
     for j, name in enumerate(INDEX):

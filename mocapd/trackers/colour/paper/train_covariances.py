@@ -11,15 +11,16 @@ them.
 import argparse
 import json
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from mocapd.body.model import N_POSE, BodyModel, build_model, shaped
+from mocapd.body.model import BodyModel, build_model, shaped
 from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
+from mocapd.body.shirt import N_LABELS
 from mocapd.geometry import rotations
 from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.trackers.colour.database_file import load_or_build
@@ -123,7 +124,7 @@ def _sight(ids: Bytes, grid: Grid) -> Sight:
 
 
 def _gap(model: BodyModel, a: Posture, b: Posture) -> Floats:
-    out = np.empty(N_POSE)
+    out = np.empty(model.n_pose)
     difference(
         a.root_m,
         a.local_xyzw,
@@ -147,10 +148,7 @@ def observe(
 ) -> None:
     """One frame: the tracker's steps 2 to 4 up to the centroids, and how far each is from the truth."""
     params = Params()
-    worn = BodyModel(
-        **{name: getattr(model, name) for name in BodyModel.__slots__}
-        | {"vertices_m": shape[0], "rest_m": shape[1]}
-    )
+    worn = replace(model, vertices_m=shape[0], rest_m=shape[1])
     body, assumed = posture(worn, *true), posture(model, *true)
     sights = {}
     for camera in pair:
@@ -170,7 +168,7 @@ def observe(
     root_m, local[0] = place(list(guesses.values()), marks)
     blended = posture(model, root_m, local)
     errors.blend.append(_gap(model, assumed, blended))
-    count, centroid = np.empty(21), np.empty((21, 2))
+    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
     for name, g in guesses.items():
         grid = sights[name].grid
         maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)

@@ -1,0 +1,69 @@
+"""The body's surface of a shape: dressed for the shirt's trackers and the simulation, or whole.
+
+Torso, arms with hands, neck with head, and legs are closed tubes that overlap. The surface depends
+linearly on the shape factors, so its derivatives are differences taken once.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mocapd.body.arm_tubes import arm_tube
+from mocapd.body.leg_tubes import foot_tube, leg_tube, plain_leg_tube
+from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
+from mocapd.body.surface import Surface, joined
+from mocapd.body.trunk_tubes import head_tube, torso_tube
+from mocapd.types import Floats
+
+Build = Callable[[BodyShape], Surface]
+
+
+def build_surface(shape: BodyShape) -> Surface:
+    """The dressed body of this shape in its T-pose; its legs are rough."""
+    skeleton = skeleton_of(shape)
+    return joined([
+        torso_tube(shape, skeleton),
+        arm_tube(shape, skeleton, "left"),
+        arm_tube(shape, skeleton, "right"),
+        head_tube(shape, skeleton),
+        plain_leg_tube(shape, skeleton, "left"),
+        plain_leg_tube(shape, skeleton, "right"),
+    ])  # fmt: skip
+
+
+def build_whole_surface(shape: BodyShape) -> Surface:
+    """The same with legs and feet that are tracked, too; above the hips it is vertex by vertex the same."""
+    skeleton = skeleton_of(shape)
+    return joined([
+        torso_tube(shape, skeleton),
+        arm_tube(shape, skeleton, "left"),
+        arm_tube(shape, skeleton, "right"),
+        head_tube(shape, skeleton),
+        leg_tube(shape, skeleton, "left"),
+        leg_tube(shape, skeleton, "right"),
+        foot_tube(shape, skeleton, "left"),
+        foot_tube(shape, skeleton, "right"),
+    ])  # fmt: skip
+
+
+def shape_derivatives(
+    stature_m: float, build: Build = build_surface, n_factors: int = N_FACTORS
+) -> tuple[Floats, Floats]:
+    """d vertices / d factor (N,V,3) and d rest joints / d factor (N,J,3) at the mean shape [m]."""
+    step = 0.02
+    dv, dj = [], []
+    for i in range(n_factors):
+        ends = []
+        for sign in (-1.0, 1.0):
+            factors = np.ones(n_factors)
+            factors[i] += sign * step
+            shape = BodyShape(stature_m, factors)
+            ends.append((build(shape).vertices_m, skeleton_of(shape).rest_m))
+        dv.append((ends[1][0] - ends[0][0]) / (2 * step))
+        dj.append((ends[1][1] - ends[0][1]) / (2 * step))
+    return np.array(dv), np.array(dj)
+
+
+def mean_surface(stature_m: float) -> Surface:
+    """The dressed surface of the mean body of this stature."""
+    return build_surface(mean_shape(stature_m))
