@@ -44,9 +44,7 @@ def render_background(
         # within a pixel the lens is linear; the tilt of the unit length is of second order
         directions = centre + dx * right + dy * down
         cast_room(
-            origin, directions.astype(np.float32), room.shapes, room.albedo, room.pattern, room.glow,
-            room.lamp, room.seed, room.first, room.ball, room.casts, lamps.at_m, lamps.rgb,
-            lamps.radius_m, lamps.sun, lamps.ambient_up, lamps.ambient_down, sky, i, layers, points,
+            origin, directions.astype(np.float32), room, lamps, sky, i, layers, points,
         )  # fmt: skip
     layers /= samples
     return Background(layers, points)

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from mocapd.geometry.cameras import normalised, project
-from mocapd.sim.board_kernels import shade_sheet
+from mocapd.sim.board_kernels import PixelRays, shade_sheet
 from mocapd.types import Bytes, Camera, Floats
 
 _SUBSAMPLES = 3  # across a pixel and down it
@@ -122,7 +122,7 @@ class BoardFilm:
         cover, light = np.zeros(rays.shape[:2]), np.zeros(rays.shape[:2])
         blank = _INK if self._board.inverted else _PAPER
         shade_sheet(
-            rays, down, across, board_from_ray, self._board.square_m, self._print, _CELLS,
+            PixelRays(rays, down, across), board_from_ray, self._board.square_m, self._print, _CELLS,
             _SUBSAMPLES, _INK, _PAPER, blank, front, cover, light,
         )  # fmt: skip
         return BoardLayer(region, cover, light)

@@ -1,5 +1,7 @@
 """Light from a printed sheet, ray by ray."""
 
+from typing import NamedTuple
+
 from numba import njit
 
 from mocapd.types import Bytes, Floats
@@ -7,18 +9,27 @@ from mocapd.types import Bytes, Floats
 MARGIN = 1.0 / 3.0  # of blank paper round the print, in squares
 
 
+class PixelRays(NamedTuple):
+    """Undistorted normalised coordinates of each pixel (h,w,2), and their change to the pixel below and
+    to the one at the right."""
+
+    middle: Floats
+    down: Floats
+    across: Floats
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def shade_sheet(
-    rays: Floats, down: Floats, across: Floats, board_from_ray: Floats, square_m: float,
+    pixels: PixelRays, board_from_ray: Floats, square_m: float,
     print_: Bytes, cells: int, subsamples: int, ink: float, paper: float, blank: float, front: bool,
     cover: Floats, light: Floats,
 ) -> None:  # fmt: skip
     """Mean over subsamples x subsamples of each pixel: cover (h,w), light (h,w) given back.
 
-    rays (h,w,2) undistorted normalised coordinates, down and across their change per pixel;
     board_from_ray (3,3) gives x, y [m] times inverse depth, and inverse depth. print_ (r,c) 0 ink,
     with `cells` pixels a square; blank is the light of the margin. Not front: all of it is blank.
     """
+    rays, down, across = pixels
     columns, rows = print_.shape[1] // cells, print_.shape[0] // cells
     h = board_from_ray
     share = 1.0 / (subsamples * subsamples)

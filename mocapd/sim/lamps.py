@@ -1,6 +1,6 @@
 """The scenario's lights as arrays for the kernels."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,8 +8,7 @@ from mocapd.sim.scenario import Scenario
 from mocapd.types import Floats, Ints
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Lamps:
+class Lamps(NamedTuple):
     """L lights: at_m (L,3) (a unit direction when sun), rgb (L,3) linear at 1 m, radius_m (L,), sun (L,) 0/1."""
 
     at_m: Floats

@@ -12,7 +12,7 @@ from mocapd.sim.figure_kernels import light_vertices, vertex_normals
 from mocapd.sim.lamps import Lamps, lamps_of
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response import noise_table, response_curve
-from mocapd.sim.response_kernels import expose, shade_room
+from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
 from mocapd.sim.room import Primitives, furnish
 from mocapd.sim.scenario import CameraSpec, Scenario
 from mocapd.sim.shadows import lamp_views, shadow_maps
@@ -52,9 +52,11 @@ class CameraRenderer:
             self.camera, stage.room, stage.lamps, stage.sky, samples
         )
         width, height = self.camera.size_px
-        self._noise = noise_table(scenario.seed, index)
-        self._curve = response_curve(self.spec)
-        self._gains = (self.spec.gain * np.array(self.spec.white_balance)).astype(np.float32)
+        gains = (self.spec.gain * np.array(self.spec.white_balance)).astype(np.float32)
+        self._sensor = Sensor(
+            gains, self.spec.vignetting, self.spec.shot_noise, self.spec.read_noise,
+            noise_table(scenario.seed, index), response_curve(self.spec),
+        )  # fmt: skip
         self._lit: tuple[Floats, Singles] | None = None
         self._nearness = np.zeros((height, width), dtype=np.float32)
         self._owner = np.full((height, width), -1, dtype=np.int32)
@@ -114,8 +116,7 @@ class CameraRenderer:
         out = np.empty((*cover.shape, 3), dtype=np.uint8)
         expose(
             self._room(levels), self.background.layers, levels.astype(np.float32), shade,
-            colour, cover, box, self._gains, self.spec.vignetting,
-            self.spec.shot_noise, self.spec.read_noise, self._noise, noise_key, self._curve, out,
+            PersonLayer(colour, cover, box), self._sensor, noise_key, out,
         )  # fmt: skip
         return out
 

@@ -1,11 +1,33 @@
 """From linear light to the camera's 8-bit values."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from mocapd.sim.figure_kernels import shadow_at
 from mocapd.sim.pattern_kernels import hash01
 from mocapd.types import Bytes, Floats, Singles
+
+
+class PersonLayer(NamedTuple):
+    """colour (H,W,3) linear RGB times cover, cover (H,W) 0..1; all of it within box x0 y0 x1 y1."""
+
+    colour: Singles
+    cover: Singles
+    box: tuple[int, int, int, int]
+
+
+class Sensor(NamedTuple):
+    """gains (3,) RGB; noise: a table of normal deviates; curve maps signal 0..2, as its index does, to
+    8-bit values."""
+
+    gains: Singles
+    vignetting: float
+    shot: float
+    read: float
+    noise: Singles
+    curve: Bytes
 
 
 @njit(cache=True, nogil=True)
@@ -25,17 +47,16 @@ def shade_room(points: Singles, views: Floats, depths: Singles, step: int, out: 
 
 @njit(cache=True, nogil=True, fastmath=True)
 def expose(
-    room: Singles, layers: Singles, levels: Singles, shade: Singles, colour: Singles, cover: Singles,
-    box: tuple[int, int, int, int], gains: Singles, vignetting: float, shot: float, read: float,
-    noise: Singles, noise_key: int, curve: Bytes, out: Bytes,
+    room: Singles, layers: Singles, levels: Singles, shade: Singles, person: PersonLayer,
+    sensor: Sensor, noise_key: int, out: Bytes,
 ) -> None:  # fmt: skip
     """The picture out (H,W,3) BGR of the lit room (H,W,3) linear RGB with the person over it.
 
     levels (L,) and shade (L,H,W) 0..1 take the person's shadow out of the room's layers
-    (L+1,H,W,3); colour (H,W,3), cover (H,W) are the person, all within box x0 y0 x1 y1. gains (3,)
-    RGB. noise is a table of normal deviates, entered at a place that hangs on noise_key and the
-    row. curve maps signal 0..2, as its index does, to 8-bit values.
+    (L+1,H,W,3). The table of noise is entered at a place that hangs on noise_key and the row.
     """
+    colour, cover, box = person
+    gains, vignetting, shot, read, noise, curve = sensor
     height, width = cover.shape
     n = 3 * width
     last = len(curve) - 1

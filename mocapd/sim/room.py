@@ -1,6 +1,7 @@
 """The furnished room as a list of boxes and balls for the ray caster."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,8 +19,7 @@ _BOOK_COLOURS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Primitives:
+class Primitives(NamedTuple):
     """P boxes and balls: shapes (P,9): middle x y z [m], 1 / half extents [1/m], cosine and sine
     of the yaw, 1 for a ball; albedo (P,3) linear RGB, pattern (P,), glow (P,) in the light of
     lamp (P,) (-1: none), noise seed (P,).

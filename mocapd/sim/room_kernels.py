@@ -3,7 +3,9 @@
 import numpy as np
 from numba import njit
 
+from mocapd.sim.lamps import Lamps
 from mocapd.sim.pattern_kernels import hash01, pattern_albedo
+from mocapd.sim.room import Primitives
 from mocapd.types import Floats, Ints, Singles
 
 _FAR = 1e30
@@ -97,17 +99,16 @@ def _face(shapes: Floats, p: int, hit: Floats, normal: Floats, uv: Floats) -> No
 
 @njit(cache=True, nogil=True)
 def cast_room(
-    origin: Floats, directions: Singles, shapes: Floats, albedo: Floats, pattern: Ints,
-    glow: Floats, lamp: Ints, seed: Ints, first: Ints, ball: Floats, casts: Ints,
-    light_at: Floats, light_rgb: Floats, light_radius: Floats, light_sun: Ints,
-    ambient_up: Floats, ambient_down: Floats, sky: Floats, sample: int, layers: Singles,
-    points: Singles,
+    origin: Floats, directions: Singles, room: Primitives, lamps: Lamps, sky: Floats, sample: int,
+    layers: Singles, points: Singles,
 ) -> None:  # fmt: skip
     """Add one sample per pixel to layers (L+1,H,W,3): layer 0 ambient light and sky, layer 1+l lamp l.
 
     directions (H,W,3) unit rays of this sample; points (H,W,3) receives where they end [m, world]
     (NaN: sky). A pixel's random offset on the lamp's disc makes shadows soft over the samples.
     """
+    shapes, albedo, pattern, glow, lamp, seed, first, ball, casts = room
+    light_at, light_rgb, _, _, ambient_up, ambient_down = lamps
     height, width = directions.shape[:2]
     hit, normal, uv, rgb = np.empty(3), np.empty(3), np.zeros(4), np.empty(3)
     for y in range(height):
@@ -148,20 +149,17 @@ def cast_room(
                 for c in range(3):
                     layers[1 + lamp[best], y, x, c] += glow[best] * light_rgb[lamp[best], c]
             for k in range(len(light_at)):
-                strength = _facing(
-                    k, x, y, sample, hit, normal, shapes, first, ball, casts, light_at,
-                    light_radius, light_sun,
-                )  # fmt: skip
+                strength = _facing(k, x, y, sample, hit, normal, room, lamps)
                 for c in range(3):
                     layers[1 + k, y, x, c] += rgb[c] * light_rgb[k, c] * strength
 
 
 @njit(cache=True, nogil=True)
 def _facing(
-    k: int, x: int, y: int, sample: int, hit: Floats, normal: Floats, shapes: Floats, first: Ints,
-    ball: Floats, casts: Ints, light_at: Floats, light_radius: Floats, light_sun: Ints,
+    k: int, x: int, y: int, sample: int, hit: Floats, normal: Floats, room: Primitives, lamps: Lamps,
 ) -> float:  # fmt: skip
     """Lambert's cosine over the squared distance to lamp k, 0 in its shadow."""
+    light_at, _, light_radius, light_sun, _, _ = lamps
     near = 0.0 if light_sun[k] else 1.0
     r = light_radius[k]
     u = light_at[k, 0] - near * hit[0] + r * (2 * hash01(x, y, 31 * sample + k) - 1)
@@ -173,7 +171,7 @@ def _facing(
     cosine = u * normal[0] + v * normal[1] + w * normal[2]
     reach = 50.0 if light_sun[k] else distance - 0.02
     if cosine <= 0.0 or _blocked(
-        shapes, first, ball, casts, hit[0], hit[1], hit[2], u, v, w, reach
+        room.shapes, room.first, room.ball, room.casts, hit[0], hit[1], hit[2], u, v, w, reach
     ):
         return 0.0
     return float(cosine if light_sun[k] else cosine / max(square, 0.04))

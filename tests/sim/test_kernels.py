@@ -14,7 +14,7 @@ from mocapd.sim.figure_kernels import light_vertices, skin_vertices, vertex_norm
 from mocapd.sim.lamps import lamps_of
 from mocapd.sim.legs import leg_rotations
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
-from mocapd.sim.response_kernels import expose
+from mocapd.sim.response_kernels import PersonLayer, Sensor, expose
 from mocapd.sim.scenario import Clothes
 from mocapd.sim.shadows import lamp_views, shadow_maps
 from mocapd.sim.world import World
@@ -186,8 +186,8 @@ def test_exposure_equals_its_formula_without_noise() -> None:
     curve = np.round(255 * np.linspace(0, 2, 1 << 12).clip(0, 1)).astype(np.uint8)
     out = np.empty((h, w, 3), dtype=np.uint8)
     expose(
-        room, layers, np.ones(1, np.float32), shade, colour, cover, (3, 2, 5, 4), gains, 0.2, 0.0,
-        0.0, np.zeros(64, np.float32), 9, curve, out,
+        room, layers, np.ones(1, np.float32), shade, PersonLayer(colour, cover, (3, 2, 5, 4)),
+        Sensor(gains, 0.2, 0.0, 0.0, np.zeros(64, np.float32), curve), 9, out,
     )  # fmt: skip
     y, x = np.mgrid[:h, :w]
     r2 = ((x - w / 2) ** 2 + (y - h / 2) ** 2) / (0.25 * (w * w + h * h))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.model import BodyModel, build_model
+from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import normalised
@@ -179,11 +180,12 @@ def render(
     is_shirt = np.zeros(len(model.vertices_m), dtype=bool)
     is_shirt[model.triangles[model.colour > 0]] = True
 
+    body = Shaped(model.vertices_m, model.rest_m, model.centres_m)
+
     def draw(part: slice) -> None:
         render_poses(
-            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], model.vertices_m,
-            model.rest_m, model.skin, model.surface, is_shirt, model.parents,
-            params.focal_px, params.distance_m,
+            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], body, model.skin,
+            model.surface, is_shirt, model.parents, params.focal_px, params.distance_m,
             out.packed_maps[part], out.root_m[part], out.side_rad[part],
         )  # fmt: skip
 

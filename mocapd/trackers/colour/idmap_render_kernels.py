@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays, TriangleArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
+from mocapd.body.shaping import Shaped
 from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_window, pack, resample
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 
@@ -19,8 +20,7 @@ CANVAS = 80  # [px] the shirt is drawn at twice the map's resolution, then cropp
 def render_poses(
     local_xyzw: NDArray[np.float32],
     camera_from_root_xyzw: NDArray[np.float32],
-    vertices: Array,
-    rest: Array,
+    body: Shaped,
     skin: SkinArrays,
     surface: TriangleArrays,
     is_shirt: NDArray[np.bool_],
@@ -35,8 +35,9 @@ def render_poses(
 
     root_m (N,3): the hips joint relative to the ray through the crop's centre, its depth as third
     coordinate; side_rad (N,): the crop's side [px] over the focal length.
-    vertices (V,3) and rest (J,3) of the body's model; is_shirt (V,): the vertices whose box the canvas is fitted to.
+    is_shirt (V,): the vertices whose box the canvas is fitted to.
     """
+    vertices, rest, _ = body
     triangles, colour = surface.corners, surface.colour
     J, V = rest.shape[0], vertices.shape[0]
     R, joints, turned = np.empty((J, 3, 3)), np.empty((J, 3)), np.empty((J, 4))
