@@ -116,8 +116,8 @@ def board_size(text: str) -> tuple[int, int]:
     columns, _, rows = text.lower().partition("x")
     try:
         return (
-            whole_number_of_text(columns, 1, MOST_SQUARES),
-            whole_number_of_text(rows, 1, MOST_SQUARES),
+            whole_number_of_text(columns, 0, MOST_SQUARES),
+            whole_number_of_text(rows, 0, MOST_SQUARES),
         )
     except MalformedError as error:
         raise ConfigError(
