@@ -21,8 +21,9 @@ from typing import Self
 import zenoh
 
 from mocapd.errors import UnavailableError
-from mocapd.outputs import keys, wire
-from mocapd.outputs.zenoh_config import client_config
+from mocapd.outputs import wire
+from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]

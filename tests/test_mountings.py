@@ -4,10 +4,10 @@ import logging
 
 import pytest
 
-from mocapd.calibrate.bump_watch import Mounting
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.clock import nanoseconds
-from mocapd.mountings import Mountings
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.mountings import Mountings
 from mocapd.types import Bytes, Frame, Rig
 from tests.calibrate.distant_room import Room, camera, turn
 

@@ -1,1 +1,1 @@
-"""From cameras and a shirt to a calibration: lens, room, colours."""
+"""How a calibration is found out: intrinsics, extrinsics, colours, body shape, and whether a camera was bumped."""

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.shape import FACTORS
-from mocapd.calibrate.saved_calibration import SavedCalibration
+from mocapd.calibration.saved_calibration import SavedCalibration
+from mocapd.shirt.colour.strokes import read_labelled
+from mocapd.shirt.colour.white_balance import balanced
 from mocapd.trackers.registry import StrokedPicture, TrackerInputs
 from mocapd.types import Floats, Rig
-from mocapd.vision.strokes import read_labelled
-from mocapd.vision.white_balance import balanced
 
 
 @dataclass(frozen=True, slots=True, eq=False)

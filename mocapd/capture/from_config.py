@@ -7,12 +7,12 @@ from pathlib import Path
 from mocapd.boundary.files import is_file, is_folder, user_path
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
+from mocapd.capture.capture_folder import RecordedCamera, folder_source, load_folder
 from mocapd.capture.file import FileSource, probe_video, size_error
-from mocapd.capture.folder import RecordedCamera, folder_source, load_folder
-from mocapd.capture.identity import PREFIX, WebcamIdentity, parse_identity
 from mocapd.capture.pace import Pace
 from mocapd.capture.url import UrlSource, is_url
-from mocapd.capture.v4l2 import V4l2Source, WebcamSettings
+from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, parse_identity
+from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
 from mocapd.errors import ConfigError, InputError
 
 _FORMS = (

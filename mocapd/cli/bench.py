@@ -11,7 +11,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
-    from mocapd.evaluate.bench_live import Watching
+    from mocapd.evaluate.bench.bench_live import Watching
 
 _SIM = "sim:"
 _DEFAULT = "sim:living_room"
@@ -51,7 +51,7 @@ def bench_command(
 
     Example: mocapd bench --tracker colour --json
     """
-    from mocapd.cli.libraries import prepare_libraries
+    from mocapd.app.libraries import prepare_libraries
 
     effective = effective_config(
         config, settings, tracker__name=tracker, tracker__variant=variant
@@ -64,10 +64,10 @@ def bench_command(
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.cli.progress import ProgressBars
-    from mocapd.evaluate import bench_report
-    from mocapd.evaluate.bench_input import open_input
-    from mocapd.evaluate.bench_run import Bench
+    from mocapd.app.progress import ProgressBars
+    from mocapd.evaluate.bench import bench_report
+    from mocapd.evaluate.bench.bench_input import open_input
+    from mocapd.evaluate.bench.bench_run import Bench
 
     own = effective.tracker
     with ProgressBars() as progress:

@@ -34,9 +34,9 @@ def board(
 
     Example: mocapd board --out board.pdf --paper A4
     """
-    from mocapd.calibrate.board import board_size as counts_of
-    from mocapd.calibrate.board_pdf import board_pdf, fitted_board, flags_of
-    from mocapd.calibrate.paper import write_pdf
+    from mocapd.calibration.board_spec import board_size as counts_of
+    from mocapd.printing.board_pdf import board_pdf, fitted_board, flags_of
+    from mocapd.printing.paper_sizes import write_pdf
 
     columns, rows = counts_of(board_size)
     made = fitted_board(

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from mocapd.capture.listing import CameraInfo
-    from mocapd.capture.v4l2_ioctl import PixelFormat
+    from mocapd.capture.webcam.listing import CameraInfo
+    from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
 
 
 def add_to(app: typer.Typer) -> None:
@@ -24,7 +24,7 @@ def cameras(
 
     Example: mocapd cameras
     """
-    from mocapd.capture.listing import list_cameras
+    from mocapd.capture.webcam.listing import list_cameras
 
     found = list_cameras()
     for info in found:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from mocapd.app.unsafe_settings import unsafe_settings
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
-from mocapd.cli.unsafe_settings import unsafe_settings
 
 if TYPE_CHECKING:
-    from mocapd.config import Setting
-    from mocapd.config_keys import Key
-    from mocapd.config_sections import Config
+    from mocapd.config.config_keys import Key
+    from mocapd.config.effective import Setting
+    from mocapd.config.sections import Config
 
 
 def add_to(app: typer.Typer) -> None:
@@ -55,7 +55,7 @@ def check_config(
 def _print_calibration(config: "Config") -> None:
     """What it is, as comments below the settings."""
     from mocapd.boundary.urls import without_password
-    from mocapd.saved_session import calibration_of
+    from mocapd.session.saved_session import calibration_of
 
     saved = calibration_of(config)
     if saved is None:
@@ -76,7 +76,7 @@ def _print_calibration(config: "Config") -> None:
 
 
 def _print_table(rows: "list[Setting]") -> None:
-    from mocapd.config_keys import shown
+    from mocapd.config.config_keys import shown
 
     cells = [(s.key.path, shown(s.value), s.origin) for s in rows]
     widths = [max((len(row[i]) for row in cells), default=0) for i in range(2)]
@@ -85,9 +85,9 @@ def _print_table(rows: "list[Setting]") -> None:
 
 
 def _print_markdown() -> None:
-    from mocapd.config import known_keys
-    from mocapd.config_keys import entry_keys
-    from mocapd.config_sources import env_name
+    from mocapd.config.config_keys import entry_keys
+    from mocapd.config.effective import known_keys
+    from mocapd.config.sources import env_name
 
     print("| key | default | environment | meaning |\n|---|---|---|---|")
     for path, key in known_keys().items():
@@ -99,7 +99,7 @@ def _print_markdown() -> None:
 def _default(key: "Key") -> str:
     from dataclasses import MISSING
 
-    from mocapd.config_keys import shown
+    from mocapd.config.config_keys import shown
 
     if key.default is MISSING:
         return "must be given"

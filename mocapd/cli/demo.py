@@ -12,7 +12,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.cli.run import run_with
 
 if TYPE_CHECKING:
-    from mocapd.config_sections import Config
+    from mocapd.config.sections import Config
 
 SCENARIO = "sim:living_room"
 

@@ -73,7 +73,7 @@ def evaluate_captures(
 
     Example: mocapd eval captures/office captures/gym --compare baseline --out docs
     """
-    from mocapd.cli.libraries import prepare_libraries
+    from mocapd.app.libraries import prepare_libraries
 
     effective = effective_config(config, settings, tracker__name=tracker).config
     name = effective.tracker.name
@@ -85,11 +85,11 @@ def evaluate_captures(
         )
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.cli.progress import ProgressBars
+    from mocapd.app.progress import ProgressBars
     from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.page import write_page
-    from mocapd.tracker_setup import build_tracker, with_cache
+    from mocapd.session.tracker_setup import build_tracker, with_cache
     from mocapd.trackers.base import Tracker
     from mocapd.trackers.registry import TrackerInputs
 

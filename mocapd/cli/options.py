@@ -8,7 +8,7 @@ import typer
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
-    from mocapd.config import Effective
+    from mocapd.config.effective import Effective
 
 ConfigOption = Annotated[
     Path | None,
@@ -41,7 +41,7 @@ def effective_config(
 
     `capture`: a folder or scenario, whose cameras are taken, all of them.
     """
-    from mocapd.config import load_config
+    from mocapd.config.effective import load_config
 
     given: dict[str, str] = {}
     for text in settings or ():
@@ -50,7 +50,7 @@ def effective_config(
             raise ConfigError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
         given[key.strip()] = value.strip()
     if capture is not None:
-        from mocapd.session import cameras_of
+        from mocapd.session.session import cameras_of
 
         given["camera"] = _camera_list([(one.id, one.source) for one in cameras_of(capture)])
     if cameras:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.app.unsafe_settings import unsafe_settings
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
-from mocapd.cli.unsafe_settings import unsafe_settings
 
 if TYPE_CHECKING:
-    from mocapd.config import Effective
+    from mocapd.config.effective import Effective
 
 _log = logging.getLogger(__name__)
 
@@ -52,8 +52,8 @@ def run(
 
 def run_with(effective: "Effective", hint: str = "") -> int:
     """Run with this configuration until it ends; the exit code. `hint` is logged once it runs."""
-    from mocapd.cli.libraries import prepare_libraries
-    from mocapd.cli.logs import set_up_logs
+    from mocapd.app.libraries import prepare_libraries
+    from mocapd.app.logs import set_up_logs
 
     config = effective.config
     set_up_logs(config.log_level)
@@ -61,12 +61,12 @@ def run_with(effective: "Effective", hint: str = "") -> int:
     for line in unsafe_settings(effective):
         _log.warning("unsafe: %s", line)
 
-    from mocapd.cli.daemon_page import DaemonPage
-    from mocapd.cli.first_start import prepare_apart
-    from mocapd.cli.progress import ProgressBars
-    from mocapd.cli.running import Signals, end_despite_work, run_daemon
-    from mocapd.daemon import Daemon
-    from mocapd.session import open_session
+    from mocapd.app.daemon_page import DaemonPage
+    from mocapd.app.first_start import prepare_apart
+    from mocapd.app.progress import ProgressBars
+    from mocapd.app.running import Signals, end_despite_work, run_daemon
+    from mocapd.service.daemon import Daemon
+    from mocapd.session.session import open_session
 
     signals = Signals()
     prepare_apart(config)

@@ -27,8 +27,8 @@ def shirt(
 
     Example: mocapd shirt --out shirt.pdf --size L
     """
-    from mocapd.calibrate.paper import write_pdf
-    from mocapd.calibrate.shirt_pdf import shirt_pdf
+    from mocapd.printing.paper_sizes import write_pdf
+    from mocapd.printing.shirt_pdf import shirt_pdf
 
     write_pdf(out, shirt_pdf(size, paper, layout))
     typer.echo(f"{out}: print it at 100 %; how to sew it is on its first page", err=True)

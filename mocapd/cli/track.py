@@ -40,8 +40,8 @@ def track(
 
     Example: mocapd track captures/office --out office.npz --tracker colour
     """
-    from mocapd.cli.libraries import prepare_libraries
-    from mocapd.cli.logs import set_up_logs
+    from mocapd.app.libraries import prepare_libraries
+    from mocapd.app.logs import set_up_logs
 
     effective = effective_config(
         config, settings, tracker__name=tracker, tracker__variant=variant
@@ -49,11 +49,11 @@ def track(
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.capture.folder import frame_sets, load_folder
-    from mocapd.cli.progress import ProgressBars
-    from mocapd.offline import check_writable, track_all, write_track
-    from mocapd.saved_session import inputs_of_saved, load_saved
-    from mocapd.tracker_setup import build_tracker, inputs_of_capture, with_cache
+    from mocapd.app.progress import ProgressBars
+    from mocapd.capture.capture_folder import frame_sets, load_folder
+    from mocapd.session.offline import check_writable, track_all, write_track
+    from mocapd.session.saved_session import inputs_of_saved, load_saved
+    from mocapd.session.tracker_setup import build_tracker, inputs_of_capture, with_cache
 
     check_writable(out)
     folder = load_folder(capture)

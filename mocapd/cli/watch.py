@@ -9,7 +9,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 
 if TYPE_CHECKING:
     from mocapd.client import Body
-    from mocapd.config_sections import ZenohSection
+    from mocapd.config.sections import ZenohSection
 
 SHOWN = ("head", "leftHand", "rightHand", "hips")
 
@@ -55,7 +55,7 @@ def watch(
 
 def _endpoint(zenoh: "ZenohSection") -> str:
     """Where a daemon of this configuration can be reached from this machine."""
-    from mocapd.outputs.zenoh_config import listen_endpoints
+    from mocapd.outputs.zenoh.zenoh_config import listen_endpoints
 
     return zenoh.connect[0] if zenoh.connect else listen_endpoints(zenoh)[0]
 

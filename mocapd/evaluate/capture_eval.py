@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.capture.folder import CaptureFolder, frame_sets, load_folder
+from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import Score, score
 from mocapd.evaluate.truth import Truth, load_truth
-from mocapd.offline import RecordedTrack, track_all
-from mocapd.tracker_setup import inputs_of_capture
+from mocapd.session.offline import RecordedTrack, track_all
+from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Bytes, FrameSet, Skeleton, Track

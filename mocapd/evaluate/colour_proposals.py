@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.shirt import N_LABELS, standard_shirt
+from mocapd.shirt.colour.white_balance import frobenius_distance
 from mocapd.types import Bytes, Floats
-from mocapd.vision.white_balance import frobenius_distance
 
 _LEAST_PX = 40  # a patch of fewer pixels is hardly visible
 

@@ -7,15 +7,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from mocapd.calibrate.colour_solution import white_balances
-from mocapd.calibrate.stroke_proposal import propose_strokes_together
-from mocapd.capture.folder import load_folder
-from mocapd.config_sections import TrackerSection, default_cache_dir
+from mocapd.calibrate.colours.colour_solution import white_balances
+from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
+from mocapd.capture.capture_folder import load_folder
+from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.colour_proposals import ProposalScore, score_by_strokes, table
-from mocapd.tracker_setup import inputs_of_capture
+from mocapd.session.tracker_setup import inputs_of_capture
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.trackers.colour.build import colour_model
-from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.database_file import load_or_build
 
 
 def score_capture(

@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.evaluate.score import joint_errors_m, match
 from mocapd.evaluate.truth import Truth
-from mocapd.offline import RecordedTrack
+from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 LIMIT_M = 0.06

@@ -4,10 +4,10 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.fit.motion_state import MotionState, initial_information, step_between
+from mocapd.fit.solver import Fitter
 from mocapd.geometry.rotations import inverse, rotate
-from mocapd.offline import RecordedTrack
-from mocapd.trackers.colour.fitting import Fitter
-from mocapd.trackers.colour.motion_state import MotionState, initial_information, step_between
+from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.shirt import standard_shirt
+from mocapd.shirt.colour.whitening import Whitening
+from mocapd.trackers.colour_paper.classify_kernels import classify, classify_with_prior
 from mocapd.types import Bytes, Floats, Singles
-from mocapd.vision.classify_kernels import classify, classify_with_prior
-from mocapd.vision.whitening import Whitening
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1
 

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.capture.folder import frame_sets
+from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence
 from mocapd.evaluate.retraced import states
@@ -26,18 +26,18 @@ from mocapd.evaluate.roc import (
     sweep_assisted,
 )
 from mocapd.evaluate.truth import labelled_frames, read_label
-from mocapd.tracker_setup import inputs_of_capture
+from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.session.tracker_setup import inputs_of_capture
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.white_balance import solve_white_balance
+from mocapd.shirt.colour.whitening import fold
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.trackers.colour.drawing import work_factors
-from mocapd.trackers.colour.fitting import Fitter
-from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.trackers.colour.params import Params
+from mocapd.trackers.colour_paper.classify_kernels import sum_colours
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet
-from mocapd.vision.classify_kernels import sum_colours
-from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.distance_maps import DistanceMaps
-from mocapd.vision.white_balance import solve_white_balance
-from mocapd.vision.whitening import fold
 
 _PRIOR_WEIGHT = 6.0  # C = 6 / s, s being the side of the shirt's square
 _WHOLE = np.ones((3, 3), np.uint8)

@@ -11,22 +11,22 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.calibrate.body_room import RoomReport, room_from_body
-from mocapd.calibrate.patch_tracks import PatchTracks
-from mocapd.calibrate.relative_pose import relative_pose
-from mocapd.capture.folder import CaptureFolder, frame_sets, load_folder
-from mocapd.config_sections import TrackerSection, default_cache_dir
+from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
+from mocapd.calibrate.self_calibration.relative_pose import relative_pose
+from mocapd.calibrate.self_calibration.self_calibration import RoomReport, room_from_body
+from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
+from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.score import JOINT_SETS, match, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.geometry import rotations
-from mocapd.offline import RecordedTrack, track_all
-from mocapd.tracker_setup import inputs_of_capture
+from mocapd.session.offline import RecordedTrack, track_all
+from mocapd.session.tracker_setup import inputs_of_capture
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.database_file import load_or_build
 from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.types import Camera, Floats, Rig
-from mocapd.vision.colour_model import ColourModel
 
 
 @dataclass(frozen=True, slots=True)

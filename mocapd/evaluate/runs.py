@@ -8,7 +8,7 @@ from mocapd.evaluate.capture_eval import BuildTracker, CaptureResult, Case, eval
 from mocapd.evaluate.compare import FULL, VARIANTS, Comparison
 from mocapd.evaluate.roc import Roc, no_roc
 from mocapd.evaluate.truth import labelled_frames
-from mocapd.tracker_setup import Progress
+from mocapd.session.tracker_setup import Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapd.errors import InputError
 from mocapd.evaluate.truth import Truth
-from mocapd.offline import RecordedTrack
+from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats, Ints
 
 _UPPER = (

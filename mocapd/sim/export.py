@@ -15,8 +15,8 @@ from mocapd.geometry.rig_file import camera_to_dict
 from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
+from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import setup_of
-from mocapd.sim.strokes import LabelledImage
 from mocapd.sim.world import World
 from mocapd.types import Bytes
 

@@ -18,8 +18,8 @@ from mocapd.boundary.pictures import decode_picture
 from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
+from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import SimSetup, setup_of
-from mocapd.sim.strokes import LabelledImage
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Bytes
 
@@ -73,7 +73,7 @@ def film_key(scenario: Scenario) -> str:
     digest = hashlib.sha256(msgspec.json.encode(scenario))
     for package in (mocapd.sim, mocapd.body):
         for folder in package.__path__:
-            for source in sorted(Path(folder).glob("*.py")):
+            for source in sorted(Path(folder).rglob("*.py")):
                 digest.update(source.read_bytes())
     for asset in ("shirt_standard_v1.json", "body_proportions.json"):
         digest.update(asset_path(asset).read_bytes())

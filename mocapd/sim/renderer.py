@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.sim.background import Background, render_background
-from mocapd.sim.figure import Figure, build_figure, posed_figure
-from mocapd.sim.figure_kernels import light_vertices, vertex_normals
-from mocapd.sim.lamps import Lamps, lamps_of
+from mocapd.sim.person.figure import Figure, build_figure, posed_figure
+from mocapd.sim.person.figure_kernels import light_vertices, vertex_normals
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response import noise_table, response_curve
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
-from mocapd.sim.room import Primitives, furnish
 from mocapd.sim.scenario import CameraSpec, Scenario
-from mocapd.sim.shadows import lamp_views, shadow_maps
+from mocapd.sim.scenery.empty_room import Background, render_background
+from mocapd.sim.scenery.furniture import Primitives, furnish
+from mocapd.sim.scenery.lamps import Lamps, lamps_of
+from mocapd.sim.scenery.shadows import lamp_views, shadow_maps
 from mocapd.sim.world import World, light_levels, rig_of
 from mocapd.types import Bytes, Camera, Floats, Pose, Singles
 

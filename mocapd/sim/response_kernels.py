@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from mocapd.sim.figure_kernels import shadow_at
-from mocapd.sim.pattern_kernels import hash01
+from mocapd.sim.person.figure_kernels import shadow_at
+from mocapd.sim.scenery.pattern_kernels import hash01
 from mocapd.types import Bytes, Floats, Singles
 
 

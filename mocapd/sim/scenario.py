@@ -12,7 +12,7 @@ from mocapd.boundary.files import read_text
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import check_numbers
 from mocapd.errors import ConfigError, MalformedError
-from mocapd.sim.poses import POSES
+from mocapd.sim.person.poses import POSES
 
 _MOST_BYTES = 1 << 20
 

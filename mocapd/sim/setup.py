@@ -7,12 +7,12 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from mocapd.sim.figure import build_figure
-from mocapd.sim.lamps import studio_lamps
+from mocapd.sim.person.figure import build_figure
 from mocapd.sim.renderer import CameraRenderer, Set, camera_renderers
-from mocapd.sim.room import backdrop
 from mocapd.sim.scenario import CameraSpec, Keyframe, Motion, Scenario, load_scenario
-from mocapd.sim.strokes import LabelledImage, scribble
+from mocapd.sim.scenery.furniture import backdrop
+from mocapd.sim.scenery.lamps import studio_lamps
+from mocapd.sim.scribbles import LabelledImage, scribble
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Rig
 

@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from mocapd.sim.board import PrintedBoard
+from mocapd.sim.board.board_picture import PrintedBoard
 
 
 class SetupScene(StrEnum):

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.body.shape import FACTORS, BodyShape, skeleton_of
 from mocapd.body.skeleton import joint_positions
 from mocapd.geometry import rotations
-from mocapd.sim.motion import Motion, compile_motion, pose_at
+from mocapd.sim.person.motion import Motion, compile_motion, pose_at
 from mocapd.sim.scenario import CameraSpec, Light, Scenario
 from mocapd.types import Camera, Floats, Pose, Rig, Skeleton
 

@@ -13,7 +13,7 @@ from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Floats, Rig
 
 if TYPE_CHECKING:
-    from mocapd.trackers.colour.database import PoseDatabase
+    from mocapd.shirt.pose_database.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
 
@@ -77,7 +77,7 @@ def _canned(inputs: TrackerInputs) -> Tracker:
 
 
 def _database(inputs: TrackerInputs) -> "PoseDatabase":
-    from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build
+    from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
 
     stale = (inputs.cache_dir / FILE_NAME).exists()
     loaded = load_or_build(inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks)

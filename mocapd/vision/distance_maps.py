@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.shirt import N_COLOURS
 from mocapd.types import Bytes, Singles
 from mocapd.vision import distance_kernels
-from mocapd.vision.strokes import COLOURS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,8 +27,8 @@ class DistanceMaps:
         """Buffers for id maps (height, width), with room for the nearest samples if asked."""
         kept = (height, width) if nearest else (0, 0)
         return cls(
-            np.empty((COLOURS, height, width), dtype=np.float32),
-            np.empty((COLOURS, *kept, 2), dtype=np.int16),
+            np.empty((N_COLOURS, height, width), dtype=np.float32),
+            np.empty((N_COLOURS, *kept, 2), dtype=np.int16),
             np.empty((height, width), dtype=np.int32),
         )
 

@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from mocapd.daemon import Snapshot
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.daemon import Snapshot
 from mocapd.types import BodyState, Rig, Skeleton
 from mocapd.wizard.wizard import Wizard
 

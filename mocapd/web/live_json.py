@@ -5,9 +5,9 @@ from dataclasses import asdict
 
 import numpy as np
 
-from mocapd.calibrate.bump_watch import Mounting
-from mocapd.daemon import Snapshot
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.geometry.cameras import centre, rays
+from mocapd.service.daemon import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
 FRUSTUM_M = 0.35  # how long the cameras are drawn [m]

@@ -15,6 +15,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Receive, Scope, Send
 from uvicorn.protocols.utils import ClientDisconnected
 
+from mocapd.config.web_params import Params
 from mocapd.errors import UnavailableError
 from mocapd.outputs.socket_owners import holder_of
 from mocapd.web.access import Access
@@ -31,7 +32,6 @@ from mocapd.web.host import Host
 from mocapd.web.links import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs
 from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url_of, withdraw
-from mocapd.web_params import Params
 
 STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
 

@@ -13,7 +13,12 @@ import msgspec
 
 from mocapd.boundary.messages import convert
 from mocapd.boundary.numbers import brief
-from mocapd.calibrate.board import LARGEST_SQUARE_M, MOST_SQUARES, SMALLEST_SQUARE_M, BoardKind
+from mocapd.calibration.board_spec import (
+    LARGEST_SQUARE_M,
+    MOST_SQUARES,
+    SMALLEST_SQUARE_M,
+    BoardKind,
+)
 from mocapd.errors import InputError, MalformedError
 
 LONGEST_NAME = 40

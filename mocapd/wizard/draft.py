@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mocapd.calibrate.board import BoardSpec
-from mocapd.calibrate.detection import BoardView
-from mocapd.calibrate.lens import Lens
-from mocapd.capture.controls import Controls
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.board_spec import BoardSpec
+from mocapd.capture.webcam.controls import Controls
 from mocapd.types import Bytes, Floats, Rig
 
 

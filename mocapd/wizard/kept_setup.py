@@ -25,10 +25,10 @@ from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_msgpack
 from mocapd.boundary.pictures import decode_picture
 from mocapd.boundary.urls import without_password
-from mocapd.calibrate.board import BoardSpec
-from mocapd.calibrate.detection import FEWEST_CORNERS, BoardView
-from mocapd.calibrate.lens import Lens
-from mocapd.capture.controls import Controls
+from mocapd.calibrate.board.board_detection import FEWEST_CORNERS, BoardView
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.board_spec import BoardSpec
+from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
 from mocapd.types import Bytes, Rig

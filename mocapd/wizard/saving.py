@@ -12,14 +12,14 @@ import mocapd
 from mocapd.body.shape import FACTORS
 from mocapd.boundary.numbers import brief
 from mocapd.calibrate.calibrated_inputs import Calibrated, read_calibrated
-from mocapd.calibrate.calibration_file import (
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.calibration_file import (
     FILE_NAME,
     calibration_path,
     read_calibration,
     write_calibration,
 )
-from mocapd.calibrate.lens import Lens
-from mocapd.calibrate.saved_calibration import (
+from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,
     LensFit,

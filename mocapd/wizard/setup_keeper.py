@@ -10,10 +10,10 @@ from pathlib import Path
 
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
-from mocapd.capture.v4l2 import WebcamSettings
+from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError
-from mocapd.wizard.camera_draft import with_cameras
-from mocapd.wizard.camera_locks import CameraLocks
+from mocapd.wizard.cameras.camera_draft import with_cameras
+from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, read_kept, write_kept
 from mocapd.wizard.step import StepName

@@ -4,19 +4,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from mocapd.capture.listing import CameraInfo
+from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.pipeline.loop import OnDeath
-from mocapd.wizard.body_step import BodyStep
-from mocapd.wizard.camera_locks import CameraLocks
-from mocapd.wizard.cameras_step import CamerasStep
-from mocapd.wizard.check_step import CheckStep
-from mocapd.wizard.check_tracking import CheckSettings
-from mocapd.wizard.colour_step import ColourStep
+from mocapd.wizard.body.body_step import BodyStep
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.cameras_step import CamerasStep
+from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
+from mocapd.wizard.check.check_step import CheckStep
+from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.lens_step import LensStep
+from mocapd.wizard.extrinsics.room_step import RoomStep
+from mocapd.wizard.intrinsics.lens_step import LensStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.room_step import RoomStep
-from mocapd.wizard.same_port import AsksForPorts, Moved
 from mocapd.wizard.step import StepName
 from mocapd.wizard.wizard import MakeStep
 

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardKind, BoardSpec, aruco_board, board_size, corners_m
-from mocapd.calibrate.detection import BoardDetector, Reason, settled
-from mocapd.calibrate.reasons import why_not_seen
+from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settled
+from mocapd.calibrate.board.detection_diagnostics import why_not_seen
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.errors import ConfigError
-from mocapd.sim.board import BoardFilm, BoardLight, PrintedBoard, printed
+from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard, printed
 from mocapd.types import Bytes
 from tests.calibrate.board_rooms import PRINT, cameras, corners_px, held_poses
 

@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardSpec, aruco_board, corners_m
-from mocapd.calibrate.board_pdf import board_pdf, fitted_board, flags_of, layout_of
-from mocapd.calibrate.paper import PAPERS_MM, RULER_MM
+from mocapd.calibration.board_spec import BoardSpec, aruco_board, corners_m
 from mocapd.errors import ConfigError
+from mocapd.printing.board_pdf import board_pdf, fitted_board, flags_of, layout_of
+from mocapd.printing.paper_sizes import PAPERS_MM, RULER_MM
 from mocapd.types import Floats
 from tests.calibrate.printed import Print, keywords, pages, printed, text
 

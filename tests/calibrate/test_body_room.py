@@ -7,17 +7,17 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.calibrate.body_room import RoomParams, room_from_body
-from mocapd.calibrate.body_rows import RowGatherer, camera_columns, moved_camera
-from mocapd.calibrate.free_surface import free_body
-from mocapd.calibrate.patch_tracks import Sighting
+from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.self_calibration.patch_tracks import Sighting
+from mocapd.calibrate.self_calibration.self_calibration import RoomParams, room_from_body
+from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, to_camera
-from mocapd.trackers.colour.fit_params import FitParams
-from mocapd.trackers.colour.fitting import Fitter, View
-from mocapd.trackers.colour.motion_state import MotionState, initial_information
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 

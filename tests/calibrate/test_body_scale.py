@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from mocapd.calibrate.body_scale import Scale, scale_trouble
+from mocapd.calibrate.body_shape.body_scale import Scale, scale_trouble
 
 NAN = math.nan
 

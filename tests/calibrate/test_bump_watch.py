@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.bump_watch import BumpWatch, Mounting
-from mocapd.capture.folder import frame_sets, load_folder
+from mocapd.calibrate.bump.bump_watch import BumpWatch, Mounting
+from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Camera, Frame

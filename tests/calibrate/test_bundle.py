@@ -6,12 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardKind, BoardSpec, corners_m
-from mocapd.calibrate.bundle import adjust
-from mocapd.calibrate.chain import first_scene, observations
-from mocapd.calibrate.detection import BoardView
-from mocapd.calibrate.lens import Lens
-from mocapd.calibrate.reprojection import (
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
+from mocapd.calibrate.extrinsics.reprojection import (
     Observations,
     Scene,
     exp_matrices,
@@ -19,7 +17,14 @@ from mocapd.calibrate.reprojection import (
     moved,
     residuals_px,
 )
-from mocapd.calibrate.room import play_area_error, rig_in, world_guessed, world_on_floor
+from mocapd.calibrate.extrinsics.world_frame import (
+    play_area_error,
+    rig_in,
+    world_guessed,
+    world_on_floor,
+)
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, project

@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 import tomli_w
 
-from mocapd.calibrate.board import BoardKind, BoardSpec
 from mocapd.calibrate.calibrated_inputs import inputs_of_calibration, read_calibrated
-from mocapd.calibrate.calibration_file import (
+from mocapd.calibration.board_spec import BoardKind, BoardSpec
+from mocapd.calibration.calibration_file import (
     FILE_NAME,
     read_calibration,
     rewrite_sources,
     write_calibration,
 )
-from mocapd.calibrate.saved_calibration import (
+from mocapd.calibration.saved_calibration import (
     ColourFit,
     LensFit,
     Made,
@@ -33,8 +33,8 @@ from mocapd.calibrate.saved_calibration import (
     SavedCamera,
     Wearer,
 )
-from mocapd.calibrate.saved_sources import SECRETS
-from mocapd.capture.controls import Controls
+from mocapd.calibration.saved_sources import SECRETS
+from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import CannotCreateError, ConfigError, InputError
 from mocapd.types import Bytes
 

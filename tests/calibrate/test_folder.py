@@ -9,9 +9,13 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardKind, BoardSpec
-from mocapd.calibrate.folder import Calibration, FolderParams, calibrate_folder
-from mocapd.calibrate.recordings import find_recordings, numbered
+from mocapd.calibrate.board.recordings import find_recordings, numbered
+from mocapd.calibrate.extrinsics.folder_calibration import (
+    Calibration,
+    FolderParams,
+    calibrate_folder,
+)
+from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError, InputError
 from mocapd.geometry.cameras import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardKind, BoardSpec, corners_m
-from mocapd.calibrate.detection import BoardView
-from mocapd.calibrate.lens import solve_lens
-from mocapd.calibrate.views import Choice, chosen_views, coverage, covered
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.intrinsics.intrinsics import solve_lens
+from mocapd.calibrate.intrinsics.views import Choice, chosen_views, coverage, covered
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
 from tests.calibrate.board_rooms import TARGET_M, cameras, corners_px, held_poses, middle_m

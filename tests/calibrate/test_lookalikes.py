@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from mocapd.calibrate.lookalikes import described, hull_of, lookalikes
+from mocapd.calibrate.colours.lookalikes import described, hull_of, lookalikes
 from tests.calibrate.swatches import MODEL, NAMES
 
 W, H = 320, 240

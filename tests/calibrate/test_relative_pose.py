@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.relative_pose import relative_pose
+from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.types import Floats

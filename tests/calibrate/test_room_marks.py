@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.room_marks import room_marks, seen_turn
+from mocapd.calibrate.bump.landmarks import room_marks, seen_turn
 from tests.calibrate.distant_room import AXES, Room, camera, turn
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt import standard_shirt
-from mocapd.calibrate.cielab import lab_from_srgb
-from mocapd.calibrate.shirt_drawing import centre_of
-from mocapd.calibrate.shirt_pattern import (
+from mocapd.errors import ConfigError
+from mocapd.printing.cielab import lab_from_srgb
+from mocapd.printing.shirt_drawing import centre_of
+from mocapd.printing.shirt_pattern import (
     EASE_MM,
     HEM_MM,
     SEAM_MM,
@@ -18,9 +19,8 @@ from mocapd.calibrate.shirt_pattern import (
     offset,
     pieces_of,
 )
-from mocapd.calibrate.shirt_pdf import shirt_pdf as shirt_pdf_anew
-from mocapd.calibrate.shirt_tiles import EDGE_MM, FOOT_MM, tiling_of
-from mocapd.errors import ConfigError
+from mocapd.printing.shirt_pdf import shirt_pdf as shirt_pdf_anew
+from mocapd.printing.shirt_tiles import EDGE_MM, FOOT_MM, tiling_of
 from mocapd.types import Floats
 from tests.calibrate.printed import pages, printed, text
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
-from mocapd.calibrate.body_rows import moved_camera
-from mocapd.calibrate.patch_tracks import Sighting
-from mocapd.calibrate.ring_bundle import lengths_m, placed_by_rings
-from mocapd.calibrate.ring_pairs import RingPairs
-from mocapd.calibrate.sleeve_rings import N_ALONG, sleeve_rings
+from mocapd.calibrate.self_calibration.body_rows import moved_camera
+from mocapd.calibrate.self_calibration.patch_tracks import Sighting
+from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, placed_by_rings
+from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
+from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, normalised, project, to_camera
 from mocapd.types import Floats

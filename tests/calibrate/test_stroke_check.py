@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.stroke_check import check_strokes, require_good_strokes
+from mocapd.calibrate.colours.stroke_check import check_strokes, require_good_strokes
 from mocapd.errors import InputError
 from tests.calibrate.swatches import MODEL, NAMES, swapped, swatches
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.colour_solution import personal_colour_model, white_balances
-from mocapd.calibrate.light_hypotheses import black_body_rgb, light_hypotheses
-from mocapd.calibrate.stroke_proposal import (
+from mocapd.calibrate.colours.colour_solution import personal_colour_model, white_balances
+from mocapd.calibrate.colours.light_hypotheses import black_body_rgb, light_hypotheses
+from mocapd.calibrate.colours.stroke_proposal import (
     Proposal,
     interiors,
     propose_strokes,
@@ -13,14 +13,14 @@ from mocapd.calibrate.stroke_proposal import (
 )
 from mocapd.errors import InputError
 from mocapd.evaluate.colour_proposals import score_by_labels, score_by_strokes, table
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.colour.build import colour_model
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes, Camera
-from mocapd.vision.colour_model import ColourModel
 from tests.calibrate.swatches import MODEL, swatches
 from tests.sim import small
 

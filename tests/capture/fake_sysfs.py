@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mocapd.capture.identity import WebcamIdentity
+from mocapd.capture.webcam.identity import WebcamIdentity
 
 HOST = "devices/pci0000:00/0000:00:14.0"
 

@@ -7,18 +7,18 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibrate.bump_watch import Mounting
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.from_config import open_source
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
-from mocapd.config_sections import CameraSection, Config, OscSection, TrackerSection, ZenohSection
-from mocapd.daemon import Daemon
+from mocapd.config.sections import CameraSection, Config, OscSection, TrackerSection, ZenohSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.health import camera_message
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.metrics import CameraMetrics
-from mocapd.session import open_session
-from mocapd.wizard.daemon_host import DaemonHost
+from mocapd.service.daemon import Daemon
+from mocapd.service.health import camera_message
+from mocapd.session.session import open_session
+from mocapd.wizard.hosts.daemon_host import DaemonHost
 
 ADDRESS = "rtsp://admin:hunter2@127.0.0.1:9/live?token=hunter2"
 SHOWN = "rtsp://admin:***@127.0.0.1:9/live?token=***"

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.capture.camera_controls import Control, NodeControls
-from mocapd.capture.control_lock import exposure_units, lock, read_held, restore, set_free
-from mocapd.capture.controls import Controls, apply_unknown_to_opencv
-from mocapd.capture.usb_bandwidth import Mode, crowded_buses, lower_mode, usable_bytes_per_s
-from mocapd.capture.v4l2_ioctl import ControlRange, PixelFormat
+from mocapd.capture.webcam.camera_controls import Control, NodeControls
+from mocapd.capture.webcam.control_lock import exposure_units, lock, read_held, restore, set_free
+from mocapd.capture.webcam.controls import Controls, apply_unknown_to_opencv
+from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode, usable_bytes_per_s
+from mocapd.capture.webcam.v4l2_ioctl import ControlRange, PixelFormat
 from mocapd.errors import ConfigError, UnavailableError
 
 HELD = {

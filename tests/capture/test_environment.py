@@ -16,7 +16,7 @@ def said_by(code: str, env: dict[str, str]) -> str:
 
 def test_the_timeout_is_set_before_opencv_is_loaded(clean_env: dict[str, str]) -> None:
     env = {k: v for k, v in clean_env.items() if not k.startswith("OPENCV_")}
-    assert said_by(f"import mocapd.capture.v4l2; {SAY}", env).split() == ["False", "1"]
+    assert said_by(f"import mocapd.capture.webcam.v4l2; {SAY}", env).split() == ["False", "1"]
     assert said_by(f"import cv2; {SAY}", env).split() == ["True", "1"]
 
 
@@ -26,5 +26,5 @@ def test_a_value_of_the_user_is_left_alone(clean_env: dict[str, str]) -> None:
 
 
 def test_capture_does_not_load_numba(clean_env: dict[str, str]) -> None:
-    code = "import mocapd.capture.v4l2, mocapd.capture.thread, sys; print('numba' in sys.modules)"
+    code = "import mocapd.capture.webcam.v4l2, mocapd.capture.thread, sys; print('numba' in sys.modules)"
     assert said_by(code, clean_env).strip() == "False"

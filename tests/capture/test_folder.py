@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from mocapd.capture.capture_folder import frame_sets, load_folder, sources_in_step
 from mocapd.capture.file import FileSource
-from mocapd.capture.folder import frame_sets, load_folder, sources_in_step
 from mocapd.errors import ConfigError, InputError, MocapdError
 from tests.capture.films import number_of, write_capture, write_film
 

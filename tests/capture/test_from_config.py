@@ -8,7 +8,7 @@ from mocapd.capture.file import FileSource
 from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
 from mocapd.capture.url import UrlSource
-from mocapd.capture.v4l2 import V4l2Source
+from mocapd.capture.webcam.v4l2 import V4l2Source
 from mocapd.errors import ConfigError, InputError, MocapdError, UnavailableError
 from tests.capture.films import write_capture, write_film
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.capture.identity import WebcamIdentity, match_identity, parse_identity
+from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import ConfigError, UnavailableError
 
 LEFT = WebcamIdentity("1-3", "046d", "0825", "AA01")

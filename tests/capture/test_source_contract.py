@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mocapd.capture.base import Source
+from mocapd.capture.capture_folder import folder_source, load_folder
 from mocapd.capture.file import FileSource
-from mocapd.capture.folder import folder_source, load_folder
 from mocapd.capture.pace import Pace
 from mocapd.capture.sim import SimSource
 from mocapd.errors import CameraLost, EndOfStream, MocapdError

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.capture.controls import Controls, apply_controls, control_steps
 from mocapd.capture.rate import RateMeter
-from mocapd.capture.v4l2 import WebcamSettings, decode, negotiate
+from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
+from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.types import Bytes
 from tests.capture.films import number_of, picture

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.identity import WebcamIdentity
-from mocapd.capture.listing import list_cameras
-from mocapd.capture.node_access import holders
-from mocapd.capture.usb_devices import UsbWebcam, usb_webcams
-from mocapd.capture.v4l2 import V4l2Source
-from mocapd.capture.webcams import capture_nodes, find_webcam, video_nodes
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.listing import list_cameras
+from mocapd.capture.webcam.node_access import holders
+from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
+from mocapd.capture.webcam.v4l2 import V4l2Source
+from mocapd.capture.webcam.webcams import capture_nodes, find_webcam, video_nodes
 from mocapd.errors import UnavailableError
 from tests.capture.fake_sysfs import FakeMachine
 

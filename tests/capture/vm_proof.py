@@ -20,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.capture.controls import Controls
-from mocapd.capture.identity import WebcamIdentity
-from mocapd.capture.listing import list_cameras
 from mocapd.capture.thread import CaptureState, CaptureThread
-from mocapd.capture.usb_devices import usb_webcams
-from mocapd.capture.v4l2 import V4l2Source, WebcamSettings
-from mocapd.capture.webcams import capture_nodes
+from mocapd.capture.webcam.controls import Controls
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.listing import list_cameras
+from mocapd.capture.webcam.usb_devices import usb_webcams
+from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
+from mocapd.capture.webcam.webcams import capture_nodes
 from mocapd.clock import monotonic_ns
 from mocapd.errors import MocapdError
 from mocapd.types import Bytes, Frame

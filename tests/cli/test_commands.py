@@ -13,7 +13,7 @@ import pytest
 
 import mocapd as package
 from mocapd.cli.demo import watch_command
-from mocapd.config_sections import Config, ZenohSection
+from mocapd.config.sections import Config, ZenohSection
 from tests.cli.mocapd_process import COMMAND, mocapd
 from tests.cli.small_capture import FRAMES, write_capture
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.cli import progress
-from mocapd.cli.progress import ProgressBars
+from mocapd.app import progress
+from mocapd.app.progress import ProgressBars
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
 

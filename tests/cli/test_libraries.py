@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import mocapd
-from mocapd.cli.libraries import use_cache_dir
+from mocapd.app.libraries import use_cache_dir
 from mocapd.errors import CannotCreateError, PermissionDeniedError
 
 

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
+from mocapd.app.status_line import status_text
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.cli.status_line import status_text
-from mocapd.daemon import Snapshot
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
+from mocapd.service.daemon import Snapshot
 from mocapd.types import Tracking
 
 NOTHING = Percentiles(float("nan"), float("nan"))

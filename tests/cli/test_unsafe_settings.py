@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.cli.unsafe_settings import unsafe_settings
-from mocapd.config import load_config
+from mocapd.app.unsafe_settings import unsafe_settings
+from mocapd.config.effective import load_config
 from tests.cli.mocapd_process import mocapd
 
 URL = "rtsp://admin:hunter2@127.0.0.1:9/stream"

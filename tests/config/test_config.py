@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.config import Effective, load_config
-from mocapd.config_sections import CameraSection
+from mocapd.config.effective import Effective, load_config
+from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
 
 
@@ -214,5 +214,5 @@ def test_every_key_is_documented() -> None:
 
 def test_reading_the_configuration_loads_no_numba() -> None:
     """Numba reads where its cache is while it is imported, and the configuration says where."""
-    code = "import sys, mocapd.config; sys.exit('numba' in sys.modules)"
+    code = "import sys, mocapd.config.effective; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

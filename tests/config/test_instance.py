@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.camera_inputs import CameraInput
-from mocapd.config import load_config
-from mocapd.config_sections import Config, OscSection, ZenohSection
-from mocapd.daemon import Daemon
+from mocapd.config.effective import load_config
+from mocapd.config.sections import Config, OscSection, ZenohSection
 from mocapd.errors import ConfigError
-from mocapd.outputs import keys
-from mocapd.session import Session
+from mocapd.outputs.zenoh import keys
+from mocapd.service.daemon import Daemon
+from mocapd.session.camera_inputs import CameraInput
+from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
 from tests.e2e.dying_camera import DyingCamera
 

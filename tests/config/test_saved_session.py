@@ -8,13 +8,18 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.calibrate.calibration_file import read_calibration, write_calibration
-from mocapd.calibrate.saved_sources import SECRETS
-from mocapd.capture.folder import load_folder
-from mocapd.config_sections import CameraSection, Config, TrackerSection
+from mocapd.calibration.calibration_file import read_calibration, write_calibration
+from mocapd.calibration.saved_sources import SECRETS
+from mocapd.capture.capture_folder import load_folder
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError
-from mocapd.saved_session import calibration_of, cameras_of_calibration, inputs_of_saved, load_saved
-from mocapd.session import cameras_of, open_session
+from mocapd.session.saved_session import (
+    calibration_of,
+    cameras_of_calibration,
+    inputs_of_saved,
+    load_saved,
+)
+from mocapd.session.session import cameras_of, open_session
 from mocapd.wizard.saving import save_draft
 from tests.cli.small_capture import write_capture
 from tests.wizard.drafts import PORTS, full_draft, source_of

@@ -5,11 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.folder import load_folder
-from mocapd.config_sections import CameraSection, Config, TrackerSection
+from mocapd.capture.capture_folder import load_folder
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.session import cameras_of, open_session
-from mocapd.tracker_setup import inputs_of_capture, inputs_of_config, read_model, stroked_folder
+from mocapd.session.session import cameras_of, open_session
+from mocapd.session.tracker_setup import (
+    inputs_of_capture,
+    inputs_of_config,
+    read_model,
+    stroked_folder,
+)
 from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.session.simulation import inputs_of_simulation
+from mocapd.shirt.pose_database.database import DatabaseParams, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.simulation import inputs_of_simulation
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.colour.database import DatabaseParams, build_database
 from mocapd.trackers.registry import TrackerInputs, build
 from mocapd.types import Frame, FrameSet
 from tests.sim import small

@@ -2,12 +2,12 @@
 
 import sys
 
+from mocapd.app.running import Signals, run_daemon
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.camera_inputs import CameraInput
-from mocapd.cli.running import Signals, run_daemon
-from mocapd.config_sections import Config, OscSection, ZenohSection
-from mocapd.daemon import Daemon
-from mocapd.session import Session
+from mocapd.config.sections import Config, OscSection, ZenohSection
+from mocapd.service.daemon import Daemon
+from mocapd.session.camera_inputs import CameraInput
+from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
 from mocapd.types import Frame
 

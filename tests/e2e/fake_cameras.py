@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.camera_inputs import CameraInput
 from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
-from mocapd.config_sections import Config, OscSection, ZenohSection
-from mocapd.daemon import Daemon
+from mocapd.config.sections import Config, OscSection, ZenohSection
 from mocapd.errors import CameraLost, ConfigError
-from mocapd.session import Session
+from mocapd.service.daemon import Daemon
+from mocapd.session.camera_inputs import CameraInput
+from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
 from mocapd.types import Frame, FrameSet, Track
 from tests.capture.films import SIZE_PX, picture

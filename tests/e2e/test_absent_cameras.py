@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from pythonosc.osc_bundle import OscBundle
 
-from mocapd.camera_inputs import CameraInput
+from mocapd.app.status_line import status_text
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.cli.status_line import status_text
-from mocapd.daemon import Daemon
-from mocapd.health import camera_message
+from mocapd.service.daemon import Daemon
+from mocapd.service.health import camera_message
+from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Tracking
 from tests.capture.films import SIZE_PX
 from tests.e2e.fake_cameras import FakeCamera, daemon_on

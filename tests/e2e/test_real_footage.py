@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.camera_inputs import picture_size
 from mocapd.capture.file import FileSource
-from mocapd.config_sections import CameraSection
+from mocapd.config.sections import CameraSection
 from mocapd.errors import EndOfStream
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.geometry.rig_file import load_rig
-from mocapd.offline import track_all
-from mocapd.tracker_setup import build_tracker, with_cache
+from mocapd.session.camera_inputs import picture_size
+from mocapd.session.offline import track_all
+from mocapd.session.tracker_setup import build_tracker, with_cache
 from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Frame, FrameSet, Rig
 from tests.cli.mocapd_process import start

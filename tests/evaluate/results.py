@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.capture.folder import CaptureFolder, RecordedCamera
+from mocapd.capture.capture_folder import CaptureFolder, RecordedCamera
 from mocapd.evaluate.capture_eval import CaptureResult, Case
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.roc import ALONE_THRESHOLDS, Counts, Roc

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.evaluate.bench import REST, Probed, bench_tracker
-from mocapd.evaluate.bench_endurance import endure
-from mocapd.evaluate.bench_input import CHUNK, BenchInput
+from mocapd.evaluate.bench.bench_endurance import endure
+from mocapd.evaluate.bench.bench_input import CHUNK, BenchInput
+from mocapd.evaluate.bench.bench_step import REST, Probed, bench_tracker
 from mocapd.trackers.canned.tracker import CannedTracker
 from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Frame, FrameSet, Track

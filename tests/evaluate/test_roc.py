@@ -17,20 +17,20 @@ from mocapd.evaluate.roc import (
     sweep_alone,
     sweep_assisted,
 )
-from mocapd.geometry.rotations import IDENTITY_XYZW, exp
-from mocapd.offline import RecordedTrack
-from mocapd.trackers.colour.fit_params import FitParams
-from mocapd.trackers.colour.fitting import Fitter
-from mocapd.trackers.colour.motion_state import (
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
     moved,
     step_between,
 )
+from mocapd.fit.solver import Fitter
+from mocapd.geometry.rotations import IDENTITY_XYZW, exp
+from mocapd.session.offline import RecordedTrack
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.whitening import fold
 from mocapd.types import Bytes
-from mocapd.vision.colour_model import ColourModel
 from mocapd.vision.distance_maps import DistanceMaps
-from mocapd.vision.whitening import fold
 from tests.geometry.rigs import ring
 
 

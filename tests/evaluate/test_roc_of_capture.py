@@ -12,7 +12,7 @@ from mocapd.evaluate.roc import correct_at
 from mocapd.evaluate.roc_of_capture import roc_of_capture
 from mocapd.evaluate.score import score
 from mocapd.evaluate.truth import read_label
-from mocapd.offline import RecordedTrack
+from mocapd.session.offline import RecordedTrack
 from mocapd.sim.export import export_capture
 from tests.sim.small import scenario
 

@@ -13,7 +13,7 @@ from mocapd.body.skeleton import INDEX, NAMES
 from mocapd.errors import InputError
 from mocapd.evaluate.score import JOINT_SETS, interior_angle_deg, match, score
 from mocapd.evaluate.truth import load_truth
-from mocapd.offline import RecordedTrack, write_track
+from mocapd.session.offline import RecordedTrack, write_track
 from tests.evaluate.tracks import EMPTY, FRAMES, moving_truth, track_of
 
 SKIPPED = 15  # half a second

@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS, NAMES, standard_skeleton
 from mocapd.evaluate.truth import Truth
-from mocapd.offline import RecordedTrack
+from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 EMPTY, FRAMES = 10, 70  # frames before the person comes, and in all

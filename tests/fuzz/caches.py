@@ -6,14 +6,14 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.cli.first_start import MARKER, prepare_apart
-from mocapd.config_sections import Config
+from mocapd.app.first_start import MARKER, prepare_apart
+from mocapd.config.sections import Config
+from mocapd.shirt.pose_database import database_file
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
+from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
 from mocapd.sim import film as film_module
 from mocapd.sim.film import Film, load_film
 from mocapd.sim.scenario import scenario_from_dict
-from mocapd.trackers.colour import database_file
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, content_hash
-from mocapd.trackers.colour.database_file import FILE_NAME, load_or_build
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.sim.small import TABLE, table

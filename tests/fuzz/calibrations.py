@@ -4,11 +4,11 @@ import os
 from datetime import UTC, datetime
 from random import Random
 
-from mocapd.calibrate.calibration_file import COLOURS, read_calibration
+from mocapd.calibration.calibration_file import COLOURS, read_calibration
 from mocapd.geometry.rig_file import load_rig
-from mocapd.saved_session import load_saved
-from mocapd.wizard.saved_lenses import FILE_NAME as LENSES
-from mocapd.wizard.saved_lenses import lens_for, read_lenses, store_lenses
+from mocapd.session.saved_session import load_saved
+from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
+from mocapd.wizard.intrinsics.saved_intrinsics import lens_for, read_lenses, store_lenses
 from mocapd.wizard.saving import load_draft, save_draft
 from tests.capture.films import write_capture
 from tests.fuzz.damaged_pictures import damaged_png

@@ -4,18 +4,18 @@ from collections.abc import Callable
 from random import Random
 
 from mocapd.assets import asset_path
-from mocapd.calibrate.board import BoardKind, BoardSpec, aruco_board, board_size, corners_m
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.capture.from_config import open_source
-from mocapd.capture.identity import PREFIX, parse_identity
-from mocapd.config import Effective, known_keys, load_config
-from mocapd.config_keys import shown
-from mocapd.config_sources import env_name
-from mocapd.outputs.osc_sink import parse_destination
-from mocapd.outputs.zenoh_config import Params, is_loopback, listen_endpoints, session_config
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.config.config_keys import shown
+from mocapd.config.effective import Effective, known_keys, load_config
+from mocapd.config.sources import env_name
+from mocapd.outputs.osc.osc_sink import parse_destination
+from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
+from mocapd.session.simulation import SIM, scenario_path
 from mocapd.sim.film import first_frame
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import rig_of
-from mocapd.simulation import SIM, scenario_path
 from tests.capture.films import write_capture, write_film
 from tests.fuzz.mutations import NUMBERS, TOML_LINES, TOML_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, each_of, named, taken

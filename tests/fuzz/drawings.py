@@ -5,10 +5,10 @@ from random import Random
 
 import numpy as np
 
-from mocapd.capture.folder import StrokedImage
-from mocapd.tracker_setup import read_model, read_stroked, stroked_folder
-from mocapd.vision.strokes import read_labelled, stroke_means
-from mocapd.wizard.stroke_images import decode_strokes
+from mocapd.capture.capture_folder import StrokedImage
+from mocapd.session.tracker_setup import read_model, read_stroked, stroked_folder
+from mocapd.shirt.colour.strokes import read_labelled, stroke_means
+from mocapd.wizard.colour.stroke_images import decode_strokes
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample, strokes_on
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, named, taken

@@ -9,13 +9,13 @@ from random import Random
 import cv2
 import numpy as np
 
+from mocapd.capture.capture_folder import folder_source, frame_sets, load_folder
 from mocapd.capture.file import FileSource
-from mocapd.capture.folder import folder_source, frame_sets, load_folder
 from mocapd.capture.pace import Pace
 from mocapd.capture.thread import CaptureThread
-from mocapd.capture.v4l2 import decode
+from mocapd.capture.webcam.v4l2 import decode
 from mocapd.errors import EndOfStream, MocapdError
-from mocapd.tracker_setup import inputs_of_capture
+from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.types import Bytes, Frame
 from tests.capture import films
 from tests.cli import small_capture

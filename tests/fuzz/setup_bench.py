@@ -11,22 +11,22 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.boundary.messages import decode_json
-from mocapd.capture.identity import parse_identity
-from mocapd.capture.listing import CameraInfo
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.capture.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.identity import parse_identity
+from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
 from mocapd.clock import monotonic_ns
-from mocapd.config_sections import TrackerSection
+from mocapd.config.sections import TrackerSection
 from mocapd.errors import CannotCreateError
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.trackers.colour.database import PoseDatabase
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Frame
 from mocapd.web.wizard_link import Command
-from mocapd.wizard.camera_locks import CameraLocks
-from mocapd.wizard.check_tracking import CheckSettings
-from mocapd.wizard.colour_step import ColourStep
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.same_port import Moved
+from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.same_port import Moved
 from mocapd.wizard.step import Json, StepName, Tell
 from mocapd.wizard.steps import SetupCameras, all_steps
 from mocapd.wizard.wizard import Wizard, WizardView

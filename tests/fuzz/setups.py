@@ -8,9 +8,9 @@ from random import Random
 import numpy as np
 
 from mocapd.types import Bytes
-from mocapd.wizard.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import Drawn, solve
+from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.step import StepName
-from mocapd.wizard.stroke_images import decode_strokes
 from tests.fuzz.damaged_pictures import png, sample, strokes_on
 from tests.fuzz.mutations import JSON_VALUES, mistyped
 from tests.fuzz.row import Attempt, Place, each_of

@@ -3,7 +3,7 @@
 from random import Random
 
 from mocapd.outputs.wire import JSON, MSGPACK, decode, encode_json, encode_msgpack
-from mocapd.outputs.zenoh_config import Params, session_config
+from mocapd.outputs.zenoh.zenoh_config import Params, session_config
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.outputs.frames import small_frame, whole_frame

@@ -9,8 +9,8 @@ from pythonosc.osc_bundle import OscBundle
 from pythonosc.osc_message import OscMessage
 from pythonosc.osc_message_builder import OscMessageBuilder
 
-from mocapd.outputs import osc_encoding as osc
-from mocapd.outputs.osc_frame import FrameBundles
+from mocapd.outputs.osc import osc_encoding as osc
+from mocapd.outputs.osc.osc_frame import FrameBundles
 from mocapd.outputs.wire import Joint
 from tests.outputs.frames import small_frame, whole_frame
 

@@ -6,7 +6,7 @@ import pytest
 from pythonosc.osc_bundle import OscBundle
 
 from mocapd.errors import ConfigError, UnavailableError
-from mocapd.outputs.osc_sink import OscSink, Params
+from mocapd.outputs.osc.osc_sink import OscSink, Params
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import free_port, small_frame, whole_frame
 

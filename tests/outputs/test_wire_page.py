@@ -2,7 +2,8 @@
 
 import re
 
-from mocapd.outputs import keys, osc_frame
+from mocapd.outputs.osc import osc_frame
+from mocapd.outputs.zenoh import keys
 from tests.outputs.wire_tables import PAGE, page_with_tables
 
 

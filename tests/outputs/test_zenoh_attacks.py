@@ -5,7 +5,7 @@ import sys
 import time
 
 from mocapd.client import Client, Link
-from mocapd.outputs.zenoh_limits import MAX_MESSAGE_BYTES
+from mocapd.outputs.zenoh.zenoh_limits import MAX_MESSAGE_BYTES
 from tests.attacks.herd import herd
 from tests.attacks.newcomers import times_s
 from tests.attacks.silent import silent_connections
@@ -17,9 +17,9 @@ from tests.outputs.zenoh_pair import other_program, running_sink
 # A daemon that sends to its subscribers until somebody says so, then ends as `mocapd run` does.
 DAEMON = """
 import sys, threading, time
-from mocapd.cli.running import end_despite_work
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.app.running import end_despite_work
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import whole_frame
 from tests.outputs.test_zenoh_sink import HEALTH
 sink = ZenohSink(Params(instance="pc", port=int(sys.argv[1])))

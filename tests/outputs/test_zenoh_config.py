@@ -6,8 +6,8 @@ import pytest
 import zenoh
 
 from mocapd.errors import ConfigError
-from mocapd.outputs import keys
-from mocapd.outputs.zenoh_config import Params, is_loopback, listen_endpoints, session_config
+from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
 
 
 def test_by_default_it_listens_on_the_loopback_only_and_scouts_nobody() -> None:

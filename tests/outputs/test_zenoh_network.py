@@ -9,8 +9,8 @@ import zenoh
 
 from mocapd.client import Client, Link
 from mocapd.errors import UnavailableError
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port, small_frame
 
 pytestmark = pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl")

@@ -7,9 +7,9 @@ import pytest
 import zenoh
 
 from mocapd.errors import ConfigError
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_password_file import MAX_BYTES
-from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_password_file import MAX_BYTES
+from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import free_port
 from tests.outputs.zenoh_pair import other_program, running_sink
 

@@ -14,8 +14,8 @@ import zenoh
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Health
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
 from tests.outputs.zenoh_pair import GET_S, Running, ask, other_program, running_sink
 
@@ -262,8 +262,8 @@ def test_closed_it_takes_frames_and_state_quietly() -> None:
 
 def test_a_process_that_forgets_to_close_still_ends() -> None:
     program = (
-        "from mocapd.outputs.zenoh_sink import ZenohSink\n"
-        "from mocapd.outputs.zenoh_config import Params\n"
+        "from mocapd.outputs.zenoh.zenoh_sink import ZenohSink\n"
+        "from mocapd.outputs.zenoh.zenoh_config import Params\n"
         f"sink = ZenohSink(Params(port={free_port()}))\n"
         "sink.open()\n"
         "raise SystemExit(3)\n"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_warnings import warnings
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_warnings import warnings
 from tests.outputs.zenoh_pair import running_sink
 
 ANYWHERE = "/0.0.0.0:7447"

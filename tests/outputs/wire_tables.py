@@ -9,7 +9,8 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 import msgspec
 
-from mocapd.outputs import messages, osc_frame, schemas, wire
+from mocapd.outputs import messages, schemas, wire
+from mocapd.outputs.osc import osc_frame
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "wire.md"
 STRUCTS: dict[str, type[msgspec.Struct]] = {

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import msgspec
 import zenoh
 
-from mocapd.outputs.zenoh_config import Params
-from mocapd.outputs.zenoh_sink import ZenohSink
+from mocapd.outputs.zenoh.zenoh_config import Params
+from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port
 
 GET_S = 5.0

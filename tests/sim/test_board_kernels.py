@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.geometry.cameras import normalised
-from mocapd.sim.board import BoardFilm, PrintedBoard, printed
+from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard, printed
 from mocapd.types import Floats
 from tests.calibrate.board_rooms import cameras, held_poses
 

@@ -9,14 +9,14 @@ from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.body.surface import posed_vertices
 from mocapd.body.surface_building import build_surface
 from mocapd.geometry import rotations
-from mocapd.sim.figure import build_figure
-from mocapd.sim.figure_kernels import light_vertices, skin_vertices, vertex_normals
-from mocapd.sim.lamps import lamps_of
-from mocapd.sim.legs import leg_rotations
+from mocapd.sim.person.figure import build_figure
+from mocapd.sim.person.figure_kernels import light_vertices, skin_vertices, vertex_normals
+from mocapd.sim.person.legs import leg_rotations
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose
 from mocapd.sim.scenario import Clothes
-from mocapd.sim.shadows import lamp_views, shadow_maps
+from mocapd.sim.scenery.lamps import lamps_of
+from mocapd.sim.scenery.shadows import lamp_views, shadow_maps
 from mocapd.sim.world import World
 from mocapd.types import Floats, Pose, Skeleton
 from tests.sim.small import scenario

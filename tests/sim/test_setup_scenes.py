@@ -9,15 +9,15 @@ import pytest
 
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.board import BoardKind, BoardSpec, centre_m, corners_m
-from mocapd.calibrate.bundle import adjust
-from mocapd.calibrate.chain import first_scene, observations
-from mocapd.calibrate.detection import BoardDetector, BoardView
-from mocapd.calibrate.lens import Lens, solve_lens
-from mocapd.calibrate.room import play_area_error, rig_in, world_on_floor
-from mocapd.calibrate.views import covered
+from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
+from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
+from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in, world_on_floor
+from mocapd.calibrate.intrinsics.intrinsics import Lens, solve_lens
+from mocapd.calibrate.intrinsics.views import covered
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
 from mocapd.geometry.cameras import centre, project
-from mocapd.sim.board_clips import board_scenes, hold_frames, load_board_clips
+from mocapd.sim.board.board_clips import board_scenes, hold_frames, load_board_clips
 from mocapd.sim.clips import Clip
 from mocapd.sim.scenario import Scenario, load_scenario
 from mocapd.sim.setup_scenes import SETUP_BOARD, WEARER_S, SetupScene

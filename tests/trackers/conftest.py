@@ -2,7 +2,7 @@
 
 import pytest
 
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 
 
 @pytest.fixture(scope="session")

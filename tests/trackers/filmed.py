@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small

@@ -10,8 +10,8 @@ from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
 from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.fit.motion_state import MotionState
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.motion_state import MotionState
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 

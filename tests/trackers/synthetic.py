@@ -7,11 +7,11 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information, moved
+from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
-from mocapd.trackers.colour.fit_params import FitParams
-from mocapd.trackers.colour.fitting import Fitter, View
-from mocapd.trackers.colour.key_poses import arm_rotations
-from mocapd.trackers.colour.motion_state import MotionState, initial_information, moved
+from mocapd.shirt.pose_database.key_poses import arm_rotations
 from mocapd.types import Floats
 from tests.geometry.rigs import looking_at
 

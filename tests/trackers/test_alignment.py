@@ -8,8 +8,7 @@ import pytest
 from mocapd.body.arrays import PinholeArrays
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.geometry import rotations
-from mocapd.trackers.colour.alignment_kernels import (
+from mocapd.fit.idmap_term_kernels import (
     AlignmentSums,
     ComparedPictures,
     Search,
@@ -17,8 +16,9 @@ from mocapd.trackers.colour.alignment_kernels import (
     colours_in_reach,
     spiral,
 )
-from mocapd.trackers.colour.fitting import Fit, Fitter, View
-from mocapd.trackers.colour.motion_state import MotionState
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.geometry import rotations
 from mocapd.types import Bytes
 from tests.trackers import naive_alignment
 from tests.trackers.naive_alignment import Posed, Sums, posed

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt import standard_shirt
-from mocapd.trackers.colour import appearance as looks
-from mocapd.trackers.colour.appearance import Appearance
+from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation.appearance import Appearance
 from mocapd.types import Floats
 
 MODEL_MEAN = standard_shirt().srgb / 255.0

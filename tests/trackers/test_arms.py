@@ -10,10 +10,8 @@ from mocapd.body.joint_limits import swing_twist
 from mocapd.body.model import shaped
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
-from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project, rays
-from mocapd.trackers.colour.arm_kernels import ArmSamples, score_arms
-from mocapd.trackers.colour.arms import (
+from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.limb_search import (
     ArmSearch,
     arm_library,
     arm_of,
@@ -22,9 +20,11 @@ from mocapd.trackers.colour.arms import (
     confirmed,
     doubtful,
 )
-from mocapd.trackers.colour.fit_params import LimbSearchParams
-from mocapd.trackers.colour.fitting import Fitter, View
-from mocapd.trackers.colour.motion_state import MotionState
+from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.geometry.cameras import project, rays
 from mocapd.types import Floats
 from tests.trackers.synthetic import FACTOR, MODEL, fitter, standing, views_of
 

@@ -8,8 +8,8 @@ import pytest
 
 from mocapd.body.skeleton import INDEX, PARENTS, joint_positions
 from mocapd.errors import ConfigError
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.types import BodyState, Bytes, Floats, FrameSet, Track, Tracking
 from tests.trackers.filmed import Filmed, Pictures, film, tracker_of
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.solver import Fit, View
 from mocapd.geometry.cameras import project
 from mocapd.trackers.colour.confidence import joint_confidence
-from mocapd.trackers.colour.fitting import Fit, View
 from mocapd.types import Floats
 from tests.trackers.synthetic import fitter, standing, views_of
 

@@ -16,22 +16,22 @@ from mocapd.body.pose_space import upper_body
 from mocapd.errors import CannotCreateError
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project
-from mocapd.trackers.colour import database_file
-from mocapd.trackers.colour.database import (
+from mocapd.shirt.pose_database import database_file
+from mocapd.shirt.pose_database.database import (
     DatabaseParams,
     PoseDatabase,
     build_database,
     camera_from_view,
     content_hash,
 )
-from mocapd.trackers.colour.database_file import (
+from mocapd.shirt.pose_database.database_file import (
     FILE_NAME,
     LOCK_NAME,
     load_or_build,
     write_database,
 )
-from mocapd.trackers.colour.idmap_crop_kernels import crop_id_map
-from mocapd.trackers.colour.pose_sampling import SamplingParams, poses_from_cube, random_cube
+from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
+from mocapd.shirt.pose_database.pose_sampling import SamplingParams, poses_from_cube, random_cube
 from mocapd.types import Camera
 
 SMALL = DatabaseParams(count=1500, pool=1.4, cells=24)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.trackers.colour.idmap_crop_kernels import MARGIN, SIZE, crop_id_map, pack, unpack
-from mocapd.trackers.colour.idmap_distance_kernels import (
+from mocapd.shirt.pose_database.idmap_crop_kernels import MARGIN, SIZE, crop_id_map, pack, unpack
+from mocapd.shirt.pose_database.idmap_distance_kernels import (
     MISSING,
     nearest_exact,
     squared_distances,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.trackers.colour.locate_kernels import CAP, CELL, find_shirt, suppress_background
+from mocapd.shirt.segmentation.locate_kernels import CAP, CELL, find_shirt, suppress_background
 from mocapd.types import Bytes, Ints
 
 H, W = 96, 128

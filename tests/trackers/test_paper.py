@@ -12,11 +12,12 @@ from mocapd.body.shirt import N_LABELS, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import project
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
-from mocapd.trackers.colour.key_poses import arm_rotations
-from mocapd.trackers.colour.paper.centroid_ik import CentroidSolver, Target
-from mocapd.trackers.colour.paper.covariances import load_covariances
-from mocapd.trackers.colour.paper.drawing import (
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.key_poses import arm_rotations
+from mocapd.trackers.colour_paper.centroid_ik import CentroidSolver, Target
+from mocapd.trackers.colour_paper.covariances import load_covariances
+from mocapd.trackers.colour_paper.paper_drawing import (
     Grid,
     Posture,
     draw,
@@ -25,17 +26,16 @@ from mocapd.trackers.colour.paper.drawing import (
     posture,
     triangle_points,
 )
-from mocapd.trackers.colour.paper.eye import Eye
-from mocapd.trackers.colour.paper.params import Params, tolerant
-from mocapd.trackers.colour.paper.patch_kernels import (
+from mocapd.trackers.colour_paper.paper_segmenter import Eye
+from mocapd.trackers.colour_paper.params import Params, tolerant
+from mocapd.trackers.colour_paper.patch_kernels import (
     centroid_rows,
     classified_patches,
     rendered_patches,
 )
-from mocapd.trackers.colour.paper.placement import Constraints, Guess, place
-from mocapd.trackers.colour.paper.tracker import PaperTracker
+from mocapd.trackers.colour_paper.placement import Constraints, Guess, place
+from mocapd.trackers.colour_paper.tracker import PaperTracker
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Tracking
-from mocapd.vision.colour_model import ColourModel
 
 STATURE_M = 1.75
 FRAME_NS = 33_333_333

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt import standard_shirt
-from mocapd.trackers.colour import appearance as looks
-from mocapd.trackers.colour.background_kernels import changed, learn_background
-from mocapd.trackers.colour.background_light import relight_background
-from mocapd.trackers.colour.cell_kernels import (
+from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     FAR,
     ClassifierWeights,
@@ -16,12 +14,14 @@ from mocapd.trackers.colour.cell_kernels import (
     classify,
     colour_distances,
 )
-from mocapd.trackers.colour.segmentation_kernels import (
+from mocapd.shirt.segmentation.segmentation_kernels import (
     agreement,
     colour_statistics,
     count_colours,
 )
 from mocapd.types import Bytes, Floats, Ints, Singles
+from mocapd.vision.background_kernels import changed, learn_background
+from mocapd.vision.background_light import relight_background
 
 H, W = 36, 48
 TOLERANCE = 0.05

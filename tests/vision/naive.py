@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.types import Bytes, Floats, Singles
-from mocapd.vision.colour_model import ColourModel
 
 NAMES = ("red", "orange", "yellow", "lime", "green", "cyan", "blue", "violet", "magenta", "pink")
 MEANS = np.array(

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from mocapd.trackers.colour_paper.mog_background import BackgroundParams, BackgroundSubtractor
 from mocapd.types import Bytes
-from mocapd.vision.background import BackgroundParams, BackgroundSubtractor
 
 
 def room(seed: int, person: bool = False) -> Bytes:

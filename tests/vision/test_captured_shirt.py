@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from mocapd.assets import asset_path
+from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
+from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.lut_kernels import classify_by_table
+from mocapd.shirt.colour.strokes import read_labelled, stroke_means
+from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.types import Bytes
-from mocapd.vision.colour_model import ColourModel, fit_colour_model
-from mocapd.vision.colour_tables import ColourTables
-from mocapd.vision.lut_kernels import classify_by_table
-from mocapd.vision.strokes import read_labelled, stroke_means
-from mocapd.vision.white_balance import shade_precision, solve_white_balance
 from tests.vision.naive import NAMES
 
 FRAMES = (60, 120, 180)

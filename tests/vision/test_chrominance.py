@@ -5,15 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.types import Bytes
-from mocapd.vision.chrominance import HistogramParams, HistogramSearch, weighted_mean
-from mocapd.vision.histogram_kernels import (
+from mocapd.trackers.colour_paper.chrominance import HistogramParams, HistogramSearch, weighted_mean
+from mocapd.trackers.colour_paper.histogram_kernels import (
     BINS,
     NO_BIN,
     chrominance_bins,
     integral_histogram,
     uniformity,
 )
+from mocapd.types import Bytes
 from tests.vision import naive
 
 EVERYWHERE = np.ones((1, 1), dtype=np.uint8)

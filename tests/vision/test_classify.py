@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from mocapd.errors import ConfigError
-from mocapd.types import Bytes
-from mocapd.vision.classify_kernels import classify, classify_with_prior, sum_colours
-from mocapd.vision.colour_tables import ColourTables
-from mocapd.vision.lut_kernels import (
+from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.lut_kernels import (
     STEPS_PER_SIGMA,
     classify_by_table,
     classify_by_table_with_prior,
 )
-from mocapd.vision.whitening import fold
+from mocapd.shirt.colour.whitening import fold
+from mocapd.trackers.colour_paper.classify_kernels import classify, classify_with_prior, sum_colours
+from mocapd.types import Bytes
 from tests.vision import naive
 
 MODEL = naive.example_model()

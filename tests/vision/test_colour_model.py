@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from mocapd.errors import ConfigError, InputError
+from mocapd.shirt.colour.colour_model import MIN_STANDARD_DEVIATION, fit_colour_model
+from mocapd.shirt.colour.strokes import stroke_colours, stroke_means
 from mocapd.types import Bytes
-from mocapd.vision.colour_model import MIN_STANDARD_DEVIATION, fit_colour_model
-from mocapd.vision.strokes import stroke_colours, stroke_means
 from tests.vision.naive import MEANS, NAMES, example_model
 
 PATCH = 24

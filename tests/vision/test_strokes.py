@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from mocapd.errors import InputError
-from mocapd.types import Bytes
-from mocapd.vision.strokes import (
+from mocapd.shirt.colour.strokes import (
     read_image,
     read_labelled,
     read_strokes,
     stroked_pictures,
     strokes_beside,
 )
+from mocapd.types import Bytes
 
 STROKES = (np.arange(48 * 64) // 280).astype(np.uint8).reshape(48, 64)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.vision.white_balance import (
+from mocapd.shirt.colour.white_balance import (
     REFERENCE_CAPACITY,
     frobenius_distance,
     remember_illumination,

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.config.web_params import Params
 from mocapd.web.server import WebServer
-from mocapd.web_params import Params
 from tests.web.tiny_host import TinyHost
 
 

@@ -7,9 +7,9 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from mocapd.config.web_params import Params
 from mocapd.web.access import HEADERS
 from mocapd.web.server import WebServer
-from mocapd.web_params import Params
 from tests.web.browser import PATIENCE_S, connect, get, origin_of, token_of
 from tests.web.tiny_host import TinyHost
 

@@ -16,11 +16,11 @@ from pathlib import Path
 import httpx
 import pytest
 
+from mocapd.config.web_params import Params
 from mocapd.errors import UnavailableError
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.runtime_file import Place, begin_setup, running, runtime_folder
 from mocapd.web.server import WebServer
-from mocapd.web_params import Params
 from tests.web.browser import PATIENCE_S
 from tests.web.tiny_host import TinyHost
 

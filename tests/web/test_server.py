@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from mocapd.config.web_params import Params
 from mocapd.errors import CannotCreateError, UnavailableError
 from mocapd.web.runtime_file import Place
 from mocapd.web.server import WebServer
-from mocapd.web_params import Params
 from tests.web.browser import PATIENCE_S, connect, until_closed
 from tests.web.tiny_host import TinyHost
 

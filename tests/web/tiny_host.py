@@ -8,12 +8,12 @@ import numpy as np
 from mocapd.body.skeleton import joint_positions, standard_skeleton
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
-from mocapd.daemon import Snapshot
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
+from mocapd.service.daemon import Snapshot
 from mocapd.trackers.canned.tracker import CannedParams, canned_pose
 from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
 from mocapd.wizard.commands import Command, Verbs

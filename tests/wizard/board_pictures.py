@@ -4,9 +4,9 @@ from functools import cache
 
 import numpy as np
 
-from mocapd.calibrate.board import BoardKind, BoardSpec
+from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.geometry import rotations
-from mocapd.sim.board import BoardFilm
+from mocapd.sim.board.board_picture import BoardFilm
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.wizard.draft import DraftCamera
 from tests.calibrate.board_rooms import PRINT, cameras, floor_pose, held_poses, middle_m

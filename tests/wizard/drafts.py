@@ -3,9 +3,9 @@
 import numpy as np
 
 from mocapd.body.shape import N_FACTORS
-from mocapd.calibrate.board import BoardKind, BoardSpec
-from mocapd.calibrate.lens import Lens
-from mocapd.capture.controls import Controls
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.board_spec import BoardKind, BoardSpec
+from mocapd.capture.webcam.controls import Controls
 from mocapd.types import Camera, Rig
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 

@@ -3,9 +3,9 @@ behaves as UVC cameras were seen to (values refused under their automatic, gains
 
 import numpy as np
 
-from mocapd.capture.camera_controls import Control
-from mocapd.capture.v4l2 import WebcamSettings
-from mocapd.capture.v4l2_ioctl import ControlRange
+from mocapd.capture.webcam.camera_controls import Control
+from mocapd.capture.webcam.v4l2 import WebcamSettings
+from mocapd.capture.webcam.v4l2_ioctl import ControlRange
 from mocapd.errors import CameraLost, UnavailableError
 from mocapd.types import Bytes, Frame
 

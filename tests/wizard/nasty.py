@@ -16,23 +16,23 @@ import cv2
 import msgspec
 import numpy as np
 
-from mocapd.config_sections import TrackerSection
+from mocapd.config.sections import TrackerSection
 from mocapd.errors import CannotCreateError, InputError, MocapdError
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.colour.database import PoseDatabase
 from mocapd.types import Bytes
 from mocapd.web.shown_json import as_json
-from mocapd.wizard.body_step import BodyStep
-from mocapd.wizard.camera_locks import CameraLocks
-from mocapd.wizard.cameras_step import CamerasStep
-from mocapd.wizard.check_step import CheckStep
-from mocapd.wizard.check_tracking import CheckSettings
-from mocapd.wizard.colour_step import ColourStep
+from mocapd.wizard.body.body_step import BodyStep
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.cameras_step import CamerasStep
+from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
+from mocapd.wizard.check.check_step import CheckStep
+from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.lens_step import LensStep
+from mocapd.wizard.extrinsics.room_step import RoomStep
+from mocapd.wizard.intrinsics.lens_step import LensStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.room_step import RoomStep
-from mocapd.wizard.same_port import AsksForPorts, Moved
 from mocapd.wizard.step import Context, Step, StepName, Tell
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import SIZE_PX, full_draft

@@ -13,14 +13,14 @@ from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Frame, FrameSet, Rig
-from mocapd.wizard.body_step import BodyStep
-from mocapd.wizard.colour_solving import Drawn, solve
+from mocapd.wizard.body.body_step import BodyStep
+from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 from mocapd.wizard.saving import calibrated_of
 from mocapd.wizard.step import Scene, StepState, Tell

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.camera_controls import Control
-from mocapd.capture.controls import Controls
-from mocapd.capture.identity import WebcamIdentity
-from mocapd.capture.listing import CameraInfo
-from mocapd.capture.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.camera_controls import Control
+from mocapd.capture.webcam.controls import Controls
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
 from mocapd.errors import InputError
-from mocapd.wizard.camera_locks import CameraLocks
-from mocapd.wizard.cameras_step import CamerasStep
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import StepState, StepView
 from tests.wizard.context import FakeContext, do

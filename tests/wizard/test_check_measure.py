@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mocapd.geometry import rotations
+from mocapd.shirt.pose_database.database import DatabaseParams, build_database
 from mocapd.sim.world import rig_of
-from mocapd.trackers.colour.database import DatabaseParams, build_database
 from mocapd.types import Rig
-from mocapd.wizard.check_measure import Measure, MeasuredTracker, Measures
+from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, Measures
 from tests.trackers.filmed import Filmed, film, tracker_of
 
 TURN_RAD = np.radians(1.0)

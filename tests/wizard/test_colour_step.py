@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt import standard_shirt
-from mocapd.capture.folder import load_folder
+from mocapd.capture.capture_folder import load_folder
 from mocapd.errors import CannotCreateError, InputError
-from mocapd.tracker_setup import read_stroked
+from mocapd.session.tracker_setup import read_stroked
+from mocapd.shirt.colour.white_balance import frobenius_distance
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes
-from mocapd.vision.white_balance import frobenius_distance
-from mocapd.wizard.colour_step import ColourStep
+from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import Scene, StepState, StepView, Tell
 from tests.wizard.context import FakeContext, do

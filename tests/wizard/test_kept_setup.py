@@ -13,12 +13,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibrate.detection import BoardView
-from mocapd.capture.camera_controls import Control
-from mocapd.capture.v4l2 import WebcamSettings
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.capture.webcam.camera_controls import Control
+from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.wizard.camera_locks import CameraLocks
+from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, _Kept, read_kept, write_kept

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board import BoardKind, BoardSpec
-from mocapd.calibrate.lens import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.types import Bytes
-from mocapd.wizard.board_form import usual_board
+from mocapd.wizard.board.board_form import usual_board
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.lens_step import LensStep
-from mocapd.wizard.saved_lenses import FILE_NAME, lens_for, read_lenses, store_lenses
+from mocapd.wizard.intrinsics.lens_step import LensStep
+from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME, lens_for, read_lenses, store_lenses
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.types import Bytes, Floats, Ints
-from mocapd.wizard.light_check import Flicker, find_flicker, light_problems
+from mocapd.wizard.cameras.light_check import Flicker, find_flicker, light_problems
 
 
 def film(

@@ -9,7 +9,7 @@ import pytest
 
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame
-from mocapd.wizard.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.commands import OF_WIZARD
 from mocapd.wizard.step import StepName
 from mocapd.wizard.wizard import Wizard

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.detection import BoardDetector, BoardView
-from mocapd.calibrate.lens import Lens
+from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
+from mocapd.calibrate.intrinsics.intrinsics import Lens
 from mocapd.errors import InputError
 from mocapd.geometry.cameras import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes, Rig
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.room_step import RoomStep
+from mocapd.wizard.extrinsics.room_step import RoomStep
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibrate.calibration_file import read_calibration
-from mocapd.capture.identity import WebcamIdentity, parse_identity
-from mocapd.capture.listing import CameraInfo
+from mocapd.calibration.calibration_file import read_calibration
+from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
+from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
+from mocapd.wizard.cameras.found_cameras import plugged_cameras, where_now
+from mocapd.wizard.cameras.same_port import AsksForPorts, moved_cameras
 from mocapd.wizard.commands import CAMERAS, Command, Lock
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.found_cameras import plugged_cameras, where_now
-from mocapd.wizard.same_port import AsksForPorts, moved_cameras
 from mocapd.wizard.saving import save_draft
 from mocapd.wizard.step import Context, StepName, StepState, StepView
 from tests.wizard.context import FakeContext, do

@@ -10,19 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.body_room import RoomParams
-from mocapd.calibrate.lens import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.self_calibration.self_calibration import RoomParams
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.geometry.cameras import centre
-from mocapd.trackers.colour.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.types import Frame, FrameSet
-from mocapd.wizard.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
-from mocapd.wizard.room_step import RoomStep
+from mocapd.wizard.extrinsics.room_step import RoomStep
+from mocapd.wizard.extrinsics.room_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.wearer_walking import WalkParams
 from mocapd.wizard.step import Scene, StepState
-from mocapd.wizard.wearer_room import WearerRoom
-from mocapd.wizard.wearer_walking import WalkParams
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, Wearer, wearer
 

@@ -19,14 +19,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-from mocapd.capture.listing import list_cameras
 from mocapd.capture.thread import CaptureThread
-from mocapd.capture.v4l2 import V4l2Source, WebcamSettings
-from mocapd.capture.webcams import capture_nodes
+from mocapd.capture.webcam.listing import list_cameras
+from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
+from mocapd.capture.webcam.webcams import capture_nodes
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.wizard.camera_locks import CameraLocks
-from mocapd.wizard.cameras_step import CamerasStep
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.step import StepName, StepState
 from mocapd.wizard.wizard import Wizard, WizardView

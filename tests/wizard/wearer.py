@@ -9,8 +9,8 @@ import numpy as np
 
 from mocapd.body.shape import FACTORS
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
+from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import scribble_picture
-from mocapd.sim.strokes import LabelledImage
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Bytes, Floats, Frame, FrameSet, Rig
 from tests.sim import small

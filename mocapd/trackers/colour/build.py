@@ -6,19 +6,19 @@ import numpy as np
 
 from mocapd.body.shirt import standard_shirt
 from mocapd.errors import ConfigError
+from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
+from mocapd.shirt.colour.strokes import stroke_means
+from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.paper.params import Params as PaperParams
-from mocapd.trackers.colour.paper.params import tolerant
-from mocapd.trackers.colour.paper.tracker import PaperTracker
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.trackers.colour_paper.params import Params as PaperParams
+from mocapd.trackers.colour_paper.params import tolerant
+from mocapd.trackers.colour_paper.tracker import PaperTracker
 from mocapd.trackers.registry import StrokedPicture
 from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Floats, Rig
-from mocapd.vision.colour_model import ColourModel, fit_colour_model
-from mocapd.vision.strokes import stroke_means
-from mocapd.vision.white_balance import shade_precision, solve_white_balance
 
 VARIANTS = ("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant")
 # Spread of a printed or dyed standard colour, where no pictures of the shirt are given

@@ -5,7 +5,7 @@ import numpy as np
 from mocapd.body.pose_space import SIDES
 from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.trackers.colour.fitting import Fit
+from mocapd.fit.solver import Fit
 from mocapd.trackers.tracking_state import FADE_S
 from mocapd.types import Floats
 

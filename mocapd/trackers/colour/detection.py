@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.cameras import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
-from mocapd.trackers.colour.database import PoseDatabase, camera_from_view
-from mocapd.trackers.colour.fitting import Fit, Fitter, View
-from mocapd.trackers.colour.idmap_crop_kernels import SIZE, crop_id_map
-from mocapd.trackers.colour.motion_state import MotionState
-from mocapd.trackers.colour.segmentation import Eye, Found
+from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
+from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_id_map
+from mocapd.shirt.segmentation.camera_segmenter import Eye, Found
 from mocapd.types import Camera, Floats
 
 WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.trackers.colour.fit_params import FitParams, LimbSearchParams
-from mocapd.trackers.colour.segmentation_params import SegmentationParams
+from mocapd.fit.fit_params import FitParams, LimbSearchParams
+from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,22 +10,23 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
-from mocapd.geometry import rotations
-from mocapd.trackers.colour import detection
-from mocapd.trackers.colour.arms import ArmSearch, confirmed, doubtful
-from mocapd.trackers.colour.confidence import joint_confidence
-from mocapd.trackers.colour.database import PoseDatabase
-from mocapd.trackers.colour.drawing import work_factors
-from mocapd.trackers.colour.eyes import Eyes
-from mocapd.trackers.colour.fit_params import TICK_S
-from mocapd.trackers.colour.fitting import Fit, Fitter, View
-from mocapd.trackers.colour.motion_state import (
+from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.limb_search import ArmSearch, confirmed, doubtful
+from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
     measured_information,
     moved,
     step_between,
 )
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.geometry import rotations
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.segmentation.rig_segmenter import Eyes
+from mocapd.trackers.colour import detection
+from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
 from mocapd.types import (
@@ -38,7 +39,6 @@ from mocapd.types import (
     Track,
     Tracking,
 )
-from mocapd.vision.colour_model import ColourModel
 
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
 

@@ -1,0 +1,135 @@
+"""What `run` and `demo` share: signals, the status line, and how the process ends."""
+
+import os
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Iterable
+from types import FrameType
+from typing import Protocol
+
+from mocapd.app.first_signals import SIGINT_EXIT
+from mocapd.app.status_line import StatusLine
+from mocapd.service.daemon import Daemon, Snapshot, ThreadDiedError
+
+SHOW_EVERY_S = 0.25  # how often the status line changes [s]
+TELL_EVERY = 4  # health goes out with every fourth of them
+
+JOIN_S = 0.2  # what idle threads may take to end [s]
+
+INTERNAL_ERROR = 70  # EX_SOFTWARE
+
+
+class Ends(Protocol):
+    """Something that runs until it is told to end."""
+
+    def end(self) -> None: ...
+
+
+class Signals:
+    """SIGTERM and SIGHUP end with 0 and SIGINT with 130: at once while things are set up, then in order.
+
+    SIGHUP is what a terminal sends that is closed; under nohup it is ignored. A second signal has its
+    default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
+    """
+
+    def __init__(self) -> None:
+        self.exit_code = 0
+        self._caught_one = False
+        self._daemon: Ends | None = None
+        self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
+        hangup = signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN
+        for number in (signal.SIGTERM, signal.SIGINT, *((signal.SIGHUP,) if hangup else ())):
+            signal.signal(number, self._caught)
+
+    def ends(self, daemon: Ends) -> None:
+        """From now on a signal ends this in order."""
+        self._daemon = daemon
+
+    def alone(self) -> None:
+        """Nothing runs that could be ended in order: a signal, also one that came already, ends the
+        process at once."""
+        self._daemon = None
+        if self._caught_one:
+            sys.exit(self.exit_code)
+
+    def _caught(self, number: int, _frame: FrameType | None) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        _silence(fd for fd in self._terminals if not os.isatty(fd))
+        self._caught_one = True
+        self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
+        if self._daemon is None:
+            sys.exit(self.exit_code)
+        self._daemon.end()
+
+
+def _silence(gone: Iterable[int]) -> None:
+    """What is written to a terminal that is gone must not fail: the orderly end comes after it."""
+    for fd in gone:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, fd)
+        os.close(nowhere)
+
+
+class Beside(Protocol):
+    """Something that lives beside the daemon, such as its page."""
+
+    def beat(self, snapshot: Snapshot) -> bool:
+        """Called several times a second; whether the daemon is to end, to be made anew."""
+        ...
+
+    def let_go(self, anew: bool) -> None:
+        """The daemon is about to end, whether another follows; never blocks for long."""
+        ...
+
+
+def run_daemon(
+    daemon: Daemon, signals: Signals, hint: str = "", beside: Beside | None = None
+) -> int | None:
+    """Run until it ends; the exit code, or None when it is to be made anew. Raises MocapdError when a
+    named error killed a thread."""
+    # a thread nobody watches must not die unseen either
+    threading.excepthook = lambda args: daemon.died(args.exc_value or RuntimeError(args.exc_type))
+    signals.ends(daemon)
+    try:
+        with daemon, StatusLine() as line:
+            if hint:
+                print(hint, flush=True)
+            beats, anew = 0, False
+            try:
+                while not daemon.wait(SHOW_EVERY_S):
+                    snapshot = daemon.snapshot()
+                    line.show(snapshot)
+                    if beats % TELL_EVERY == 0:
+                        daemon.tell(snapshot)
+                    beats += 1
+                    if beside is not None and beside.beat(snapshot):
+                        anew = True
+                        return None
+            finally:
+                if beside is not None:
+                    beside.let_go(anew)
+    except ThreadDiedError as error:
+        traceback.print_exception(error.__cause__)
+        return INTERNAL_ERROR
+    return signals.exit_code
+
+
+def end_despite_work(exit_code: int) -> None:
+    """End the process at once when threads still work on what nobody waits for any more.
+
+    The interpreter would wait for them: the pose database takes half a minute, a kernel to compile
+    some seconds, and neither can be told to stop.
+    """
+    until_s = time.monotonic() + JOIN_S
+    for thread in threading.enumerate():
+        if thread is not threading.current_thread() and not thread.daemon:
+            thread.join(max(0.0, until_s - time.monotonic()))
+            if thread.is_alive():
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(exit_code)

@@ -1,0 +1,112 @@
+"""A calibration from recordings as the file that the daemon runs on, with colours from stroke images."""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+
+import mocapd
+from mocapd.boundary.files import is_file
+from mocapd.calibrate.board.recordings import find_recordings
+from mocapd.calibrate.colours.colour_solution import white_balances
+from mocapd.calibrate.colours.stroke_check import require_good_strokes
+from mocapd.calibrate.extrinsics.folder_calibration import Calibration, CameraReport
+from mocapd.calibration.calibration_file import write_calibration
+from mocapd.calibration.saved_calibration import (
+    SCHEMA,
+    ColourFit,
+    LensFit,
+    Made,
+    RoomFit,
+    SavedCalibration,
+    SavedCamera,
+)
+from mocapd.config.sections import CameraSection
+from mocapd.errors import InputError
+from mocapd.shirt.colour.strokes import read_labelled, strokes_beside
+from mocapd.trackers.colour.build import colour_model
+from mocapd.trackers.registry import StrokedPicture
+from mocapd.types import Camera, Floats, Rig
+from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
+
+
+def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, StrokedPicture]:
+    """NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, and
+    naming what is wrong with the strokes of one."""
+    model = colour_model(())
+    pictures = {}
+    for camera in rig.cameras:
+        image = strokes / f"{camera.name}.png"
+        if not is_file(image):
+            continue
+        drawn = strokes_beside(image)
+        pixels, labels = read_labelled(image, drawn)
+        require_good_strokes(pixels, labels, model, str(drawn))
+        pictures[camera.name] = StrokedPicture(pixels, labels)
+    if not pictures:
+        names = ", ".join(f"{name}.png" for name in rig.names)
+        raise InputError("holds no picture of a camera", str(strokes), f"put {names} there")
+    return pictures
+
+
+def save_from_folder(
+    out: Path,
+    found: Calibration,
+    recordings: Path,
+    floor_known: bool,
+    pictures: Mapping[str, StrokedPicture],
+    cameras: tuple[CameraSection, ...],
+) -> None:
+    """Write it all. cameras: those of the configuration, whose sources are taken where the ids agree;
+    else a camera's source is its recording. Raises CannotCreateError."""
+    sources = {one.name: str(one.path.absolute()) for one in find_recordings(recordings)}
+    sources |= {one.id: one.source for one in cameras}
+    area = found.play_area
+    W = white_balances(pictures, colour_model(()))
+    saved = SavedCalibration(
+        schema=SCHEMA,
+        made=Made(
+            when=datetime.now(UTC).replace(microsecond=0),
+            by=login_name(),
+            mocapd=mocapd.__version__,
+        ),
+        room=RoomFit(
+            method="board",
+            rms_px=figure(found.rms_px),
+            play_area_cm=None if area is None else figure(area.median_cm),
+            floor_known=floor_known,
+        ),
+        board=found.board,
+        camera=tuple(
+            _camera(one, sources[one.name], found.cameras[one.name], W.get(one.name))
+            for one in found.rig.cameras
+        ),
+    )
+    write_calibration(
+        out,
+        saved,
+        {name: (one.pixels, one.strokes) for name, one in pictures.items()},
+        own_folder=False,
+    )
+
+
+def _camera(camera: Camera, source: str, report: CameraReport, W: Floats | None) -> SavedCamera:
+    colour = None
+    if W is not None:
+        colour = ColourFit(picture=NOT_WRITTEN_YET, strokes=NOT_WRITTEN_YET, W=W.tolist())
+    return SavedCamera(
+        id=camera.name,
+        source=source,
+        size_px=camera.size_px,
+        K=camera.K.tolist(),
+        dist=camera.dist.tolist(),
+        R=camera.R.tolist(),
+        t_m=camera.t_m.tolist(),
+        rms_px=figure(report.rms_px),
+        lens=LensFit(
+            rms_px=figure(report.rms_px),
+            held_out_px=figure(report.held_out_px),
+            views=report.views,
+            focal_deviation=figure(report.focal_deviation),
+        ),
+        colour=colour,
+    )

@@ -1,0 +1,79 @@
+"""The one live line of a running daemon."""
+
+import math
+import sys
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from mocapd.app.logs import stderr_is_journal
+from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.outputs.base import SinkStatus
+from mocapd.service.daemon import Snapshot
+
+PLAIN_EVERY_S = 5.0  # where nothing can be overwritten [s]
+
+
+def status_text(snapshot: Snapshot) -> str:
+    """Rate, latency, tracker and its state, each camera's rate, and who listens, in one line."""
+    m = snapshot.metrics
+    parts = [f"{m.rate_hz:4.1f} Hz"]
+    if not math.isnan(m.latency_ms.median):
+        parts.append(f"{m.latency_ms.median:.0f} ms (p95 {m.latency_ms.p95:.0f})")
+    parts.append(f"{m.tracker} {m.tracking.value}" if m.tracker else "no frame yet")
+    parts.append(" ".join(_camera(status) for status in snapshot.cameras.values()))
+    parts += [f"{name}: {_listeners(status)}" for name, status in snapshot.outputs.items()]
+    if m.sets_dropped:
+        parts.append(f"{m.sets_dropped} dropped")
+    return " | ".join(parts)
+
+
+def _camera(status: CaptureStatus) -> str:
+    """Its rate while it is live and sends, else what is wrong."""
+    if status.is_silent:
+        return f"{status.camera} silent {status.silent_s:.0f} s"
+    if status.state is CaptureState.LIVE:
+        return f"{status.camera} {status.fps_hz:.1f}"
+    return f"{status.camera} {status.state.value}"
+
+
+def _listeners(status: SinkStatus) -> str:
+    return "nobody listens" if status.listeners == 0 else status.detail
+
+
+class StatusLine:
+    """On a terminal a line that is overwritten; elsewhere a line every five seconds. On stderr."""
+
+    def __init__(self) -> None:
+        self._console = Console(stderr=True)
+        self._live: Live | None = None
+        self._printed_s = -math.inf
+
+    def __enter__(self) -> "StatusLine":
+        if self._console.is_terminal:
+            self._live = Live(console=self._console, auto_refresh=False, redirect_stdout=False)
+            self._live.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Call it as often as the line shall change."""
+        if self._live is not None:
+            line = Text(status_text(snapshot), no_wrap=True, overflow="ellipsis")
+            self._live.update(line, refresh=True)
+        elif time.monotonic() - self._printed_s >= PLAIN_EVERY_S:
+            self._printed_s = time.monotonic()
+            # in the journal it is of the lowest priority, <7>
+            prefix = "<7>" if stderr_is_journal() else ""
+            print(prefix + status_text(snapshot), file=sys.stderr, flush=True)

@@ -1,0 +1,62 @@
+"""What a configuration permits although it is unsafe: one line each, for the log and `check-config`."""
+
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mocapd.boundary.files import is_file
+from mocapd.boundary.folders import readable_by_others
+from mocapd.boundary.urls import has_password
+
+if TYPE_CHECKING:
+    from mocapd.config.effective import Effective
+
+
+def unsafe_settings(effective: "Effective") -> list[str]:
+    """Each with what anybody could do, and the mend. Imports numba: after `prepare_libraries`."""
+    return [*_camera_passwords(effective), *_state(effective.config.state_dir)]
+
+
+def _camera_passwords(effective: "Effective") -> list[str]:
+    secret = [one.id for one in effective.config.camera if has_password(one.source)]
+    if not secret:
+        return []
+    names = " and ".join(secret)
+    origin = next(one.origin for one in effective.settings if one.key.path == "camera")
+    if origin == "command line":
+        return [
+            f"the password of camera {names} stands on the command line, which every user of this"
+            " machine can read: write it into a config file of yours with mode 600"
+        ]
+    file = effective.file
+    if file is not None and origin.startswith(str(file)) and readable_by_others(file):
+        return [
+            f"{file} holds the password of camera {names}, and others may read it"
+            f" ({_mode(file)}): `chmod 600 {file}`"
+        ]
+    return []
+
+
+def _state(folder: Path) -> list[str]:
+    from mocapd.calibration.calibration_file import FILE_NAME
+    from mocapd.calibration.saved_sources import SECRETS
+
+    if not is_file(folder / FILE_NAME):
+        return []
+    lines = []
+    if readable_by_others(folder):
+        lines.append(
+            f"{folder} may hold pictures of the wearer, and others may look into it"
+            f" ({_mode(folder)}): `chmod 700 {folder}`, as the next save will"
+        )
+    secrets = folder / SECRETS
+    if readable_by_others(secrets):
+        lines.append(
+            f"{secrets} holds passwords of cameras, and others may read it ({_mode(secrets)}):"
+            f" `chmod 600 {secrets}`"
+        )
+    return lines
+
+
+def _mode(path: Path) -> str:
+    return f"mode {stat.S_IMODE(path.stat().st_mode):04o}"

@@ -1,0 +1,199 @@
+"""The corners of a calibration board in a picture, or the reason why there are none."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+import numpy as np
+
+from mocapd.calibrate.board.sharpness import edge_sharpness
+from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, first_markers
+from mocapd.errors import ConfigError
+from mocapd.types import Bytes, Floats, Ints
+
+_KNOWN_MARKERS = 250  # of a dictionary: no board that is carried has more
+_PLENTY = 0.6  # share of the corners above which nobody looks twice
+_ENLARGED_UP_TO_PX = 800  # width of a picture that is enlarged; a larger one takes too long
+FEWEST_CORNERS = 6  # in one picture; 4 fix the pose of a plane, the rest check it
+
+
+class Reason(StrEnum):
+    """Why a picture has no board in it that can be used, as told to the user."""
+
+    TOO_DARK = "the picture is too dark"
+    BLURRED = "the picture is blurred"
+    FEW = "too little of the board is in sight"
+    OTHER_SIZE = "the board has another size than the one given"
+    OTHER_DICTIONARY = "the markers are of another dictionary"
+    MIRRORED = "the picture is mirrored"
+    NOTHING = "no board in the picture"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardView:
+    """The board in one picture: ids (n,) of corners, corners_px (n,2), ascending by id.
+
+    `sharpness` is the rise of the steepest edges, in parts of the contrast per pixel.
+    """
+
+    index: int
+    ids: Ints
+    corners_px: Floats
+    sharpness: float
+
+
+@dataclass(frozen=True, slots=True)
+class NotSeen:
+    """No usable board in this picture. `detail` adds what was seen instead."""
+
+    index: int
+    reason: Reason
+    detail: str = ""
+
+
+class BoardDetector:
+    """Finds one kind of board. Not to be shared by threads."""
+
+    def __init__(self, spec: BoardSpec) -> None:
+        self.spec = spec
+        self._charuco: Any = None
+        self._charuco_enlarged: Any = None
+        if spec.kind is BoardKind.CHARUCO:
+            board = aruco_board(spec, own_markers=True)
+            self._charuco = cv2.aruco.CharucoDetector(board)
+            self._charuco_enlarged = cv2.aruco.CharucoDetector(
+                board, cv2.aruco.CharucoParameters(), _for_small_markers()
+            )
+
+    def find(self, pixels: Bytes, index: int = 0) -> BoardView | None:
+        """The board in a picture (h,w,3) BGR or (h,w) grey; None without enough of it.
+
+        Raises ConfigError when OpenCV cannot look for such a board.
+        """
+        grey = self.as_printed(pixels)
+        try:
+            found = self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
+        except cv2.error as error:
+            raise ConfigError(
+                f"OpenCV cannot look for a {self.spec} in a picture of"
+                f" {grey.shape[1]}x{grey.shape[0]} ({error.err})",
+                "the board",
+                "give another board, or pictures of another size",
+            ) from None
+        if found is None:
+            return None
+        ids, corners_px = found
+        if len(ids) < FEWEST_CORNERS or _on_a_line(corners_px):
+            return None
+        return BoardView(index, ids, corners_px, edge_sharpness(grey, corners_px))
+
+    def as_printed(self, pixels: Bytes) -> Bytes:
+        """The picture in grey, dark on light also for an inverted board."""
+        grey = as_grey(pixels)
+        return 255 - grey if self.spec.inverted else grey
+
+    def markers(self, grey: Bytes) -> Ints:
+        """Ids of the markers in sight, whether or not they fit the board; of the first 250."""
+        if self._charuco is None:
+            return np.zeros(0, np.int64)
+        known = first_markers(self.spec.dictionary, _KNOWN_MARKERS)
+        ids: Any = cv2.aruco.ArucoDetector(known).detectMarkers(grey)[1]
+        return np.zeros(0, np.int64) if ids is None else np.sort(ids.ravel()).astype(np.int64)
+
+    def _of_charuco(self, grey: Bytes) -> tuple[Ints, Floats] | None:
+        """A far board is looked at again enlarged: with cells of 2 px that finds four times the corners."""
+        corners, ids, _, markers = self._charuco.detectBoard(grey)
+        found = None if ids is None else _ascending(corners, ids)
+        columns, rows = self.spec.grid
+        few = found is None or len(found[0]) < _PLENTY * columns * rows
+        if markers is None or not few or grey.shape[1] > _ENLARGED_UP_TO_PX:
+            return found
+        large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
+        corners, ids, _, _ = self._charuco_enlarged.detectBoard(large)
+        if ids is None or (found is not None and len(ids) <= len(found[0])):
+            return found
+        # pixel centres are at integers in both pictures
+        return _ascending((corners + 0.5) / 2.0 - 0.5, ids)
+
+    def _of_chessboard(self, grey: Bytes) -> tuple[Ints, Floats] | None:
+        columns, rows = self.spec.grid
+        # a part of a larger board looks like the board itself: told only when all of it is found
+        flags = cv2.CALIB_CB_ACCURACY | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
+        found, corners, squares = cv2.findChessboardCornersSBWithMeta(
+            grey, (columns, rows), flags=flags
+        )
+        if not found or squares.shape != (rows, columns):
+            return None
+        corners_px = corners.reshape(-1, 2).astype(float)
+        # Numbered from an end that the finder chose. The first square is black, which tells the
+        # ends apart where the numbers of columns and rows are not both even or both odd.
+        if self.spec.turns_show and not _first_is_black(grey, corners_px.reshape(rows, columns, 2)):
+            corners_px = corners_px[::-1].copy()
+        return np.arange(rows * columns), corners_px
+
+
+def _ascending(corners: Floats, ids: Ints) -> tuple[Ints, Floats]:
+    order = np.argsort(ids.ravel())
+    return ids.ravel()[order].astype(np.int64), corners.reshape(-1, 2)[order].astype(float)
+
+
+def _for_small_markers() -> Any:
+    """Borders may be rounder, and more bits may be wrong: only the board's own markers are known."""
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshWinSizeStep = 4
+    parameters.polygonalApproxAccuracyRate = 0.08
+    parameters.errorCorrectionRate = 1.0
+    parameters.perspectiveRemovePixelPerCell = 8
+    return parameters
+
+
+def as_grey(pixels: Bytes) -> Bytes:
+    """(h,w) of a picture (h,w,3) BGR, or of one that is grey already."""
+    if pixels.ndim == 2:
+        return pixels
+    grey: Bytes = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
+    return grey
+
+
+def _on_a_line(corners_px: Floats) -> bool:
+    spread = np.linalg.svd(corners_px - corners_px.mean(axis=0), compute_uv=False)
+    return bool(spread[1] < 0.05 * spread[0])
+
+
+def _first_is_black(grey: Bytes, corners_px: Floats) -> bool:
+    """Whether the squares of the colour of the very first one are the dark ones."""
+    middles = 0.25 * (
+        corners_px[:-1, :-1] + corners_px[1:, :-1] + corners_px[:-1, 1:] + corners_px[1:, 1:]
+    )
+    x, y = np.moveaxis(np.round(middles).astype(int), -1, 0)
+    values = grey[np.clip(y, 0, grey.shape[0] - 1), np.clip(x, 0, grey.shape[1] - 1)]
+    # the square between the first four inner corners is diagonal to the very first: same colour
+    same = np.indices(values.shape).sum(axis=0) % 2 == 0
+    return bool(values[same].mean() < values[~same].mean())
+
+
+def settled(spec: BoardSpec, pictures: Sequence[Bytes]) -> BoardSpec:
+    """The spec, inverted or in the other layout where the pictures show that board instead.
+
+    As given when that is found in any of them, and when nothing is.
+    """
+    variants = [replace(spec, inverted=i, legacy=spec.legacy) for i in _first(spec.inverted)]
+    if spec.kind is BoardKind.CHARUCO and spec.rows % 2 == 0:
+        variants = [replace(v, legacy=legacy) for legacy in _first(spec.legacy) for v in variants]
+    given = BoardDetector(spec)
+    if any(given.find(picture) is not None for picture in pictures):
+        return spec
+    counts = [0]
+    for variant in variants[1:]:
+        detector = BoardDetector(variant)
+        views = [detector.find(picture) for picture in pictures]
+        counts.append(sum(len(view.ids) for view in views if view is not None))
+    return variants[int(np.argmax(counts))]
+
+
+def _first(given: bool) -> tuple[bool, bool]:
+    return given, not given

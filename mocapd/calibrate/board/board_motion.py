@@ -1,0 +1,33 @@
+"""How a board moves between frames: what cameras that do not expose at the same instant see of it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.calibrate.extrinsics.reprojection import Scene
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+
+def paths(scene: Scene, indices: Sequence[int]) -> Floats:
+    """(V,2,6): velocity [per frame] and half the acceleration [per frame^2] of turn [rad] and shift [m].
+
+    The parabola through the positions one frame before and after; where one of them is unknown the
+    board is taken to stand still, and a delay shows nothing there.
+    """
+    out = np.zeros((len(indices), 2, 6))
+    place = {index: v for v, index in enumerate(indices)}
+    for v, index in enumerate(indices):
+        before, after = place.get(index - 1), place.get(index + 1)
+        if before is None or after is None:
+            continue
+        back, on = _step(scene, v, before), _step(scene, v, after)
+        out[v, 0], out[v, 1] = 0.5 * (on - back), 0.5 * (on + back)
+    return out
+
+
+def _step(scene: Scene, start: int, end: int) -> Floats:
+    """Turn [rad] and shift [m] (6,) from one position to the other."""
+    turn = scene.board_turn[end] @ scene.board_turn[start].T
+    shift_m = scene.board_t_m[end] - scene.board_t_m[start]
+    return np.concatenate([rotations.log(rotations.from_matrix(turn)), shift_m])

@@ -1,0 +1,1 @@
+"""The wearer's proportions, and whether their scale agrees with the extrinsics."""

@@ -1,0 +1,95 @@
+"""Whether the typed stature agrees with the scale of the room, and what is wrong when it does not."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.model import BodyModel, shaped
+from mocapd.body.posing_kernels import forward_kinematics
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit
+from mocapd.fit.motion_state import MotionState
+from mocapd.types import Floats
+
+TOLERATED = 0.06  # people of one stature differ by some 2 %, so that 6 % is none of them
+_ALIKE = 0.04  # two scales that differ by less say the same
+_NECK = INDEX["neck"]
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """The wearer as the cameras see them, against the mean body of the typed stature; 1 when they agree.
+
+    bones: from widths and lengths, with its standard deviation; height: of the neck over the floor,
+    NaN when the floor is not known.
+    """
+
+    bones: float
+    bones_sd: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class ScaleTrouble:
+    """What disagrees, and its likely cause as something to do."""
+
+    what: str
+    fix: str
+
+
+def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
+    """One common factor of all proportions: what is left of each is what people differ by."""
+    information = fit.information + 1e-3 * np.eye(len(fit.factors))
+    spread = np.diag(model.space.factor_sd**2) + np.linalg.inv(information)
+    weight = np.linalg.inv(spread)
+    bones = float(weight.sum(axis=0) @ fit.seen / weight.sum())
+    height = float("nan")
+    if floor_known:
+        seen_m = [_neck_m(fit.states[k], model) for k in fit.counted]
+        height = float(np.median(seen_m) / model.rest_m[_NECK, 1])
+    return Scale(bones, float(weight.sum() ** -0.5), height)
+
+
+def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> ScaleTrouble | None:
+    """None when all agree. by_wearer: the room's scale came from the stature, not from a board."""
+    off = abs(scale.bones - 1.0) > TOLERATED
+    low = bool(np.isfinite(scale.height)) and abs(scale.height - 1.0) > TOLERATED
+    if off and low and abs(scale.bones - scale.height) > 2.0 * _ALIKE:
+        return ScaleTrouble(
+            f"arms and shoulders look {_percent(scale.bones)} than usual for {stature_m:.2f} m, the"
+            f" height over the floor {_percent(scale.height)}",
+            "measure again, standing upright; if it stays, do the room again with the floor",
+        )
+    if off:
+        seems_m = scale.bones * stature_m
+        board = (
+            "the room was scaled by another stature: do it again with this one"
+            if by_wearer
+            else "check the ruler printed on the board with a real one: it may have been printed at"
+            " another scale, then give the right size of a square and do lens and room again"
+        )
+        return ScaleTrouble(
+            f"in this room you look {seems_m:.2f} m tall, {_percent(scale.bones)} than the"
+            f" {stature_m:.2f} m that you typed",
+            f"correct the stature; if it is right, {board}",
+        )
+    if low:
+        return ScaleTrouble(
+            f"your neck is {_percent(scale.height)} over the floor than usual for {stature_m:.2f} m",
+            "the floor seems to lie wrong: stand on it without a step or a bent knee and measure"
+            " again; if it stays, lay the board on the floor and do the room again",
+        )
+    return None
+
+
+def _percent(ratio: float) -> str:
+    share = round(100.0 * abs(ratio - 1.0))
+    return f"{share} % {'more' if ratio > 1.0 else 'less'}"
+
+
+def _neck_m(state: MotionState, model: BodyModel) -> float:
+    rest: Floats = shaped(model, state.factors)[1]
+    R, joints = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3))
+    quats = np.empty((N_JOINTS, 4))
+    forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, quats)
+    return float(joints[_NECK, 1])

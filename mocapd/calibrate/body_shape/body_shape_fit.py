@@ -1,0 +1,235 @@
+"""The wearer's proportions from a few seconds of movement, with the cameras known.
+
+One Gauss-Newton over the body's shape and the pose of every moment, from the rows of the tracker's own
+alignment; the poses are eliminated from each step (Schur complement), so that what a moment says of
+lengths is only what no other pose explains. The tracker's own learning goes frame by frame and cannot
+take back what it took from a poor one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.calibrate.self_calibration.body_rows import BodyRows, RowGatherer
+from mocapd.clock import seconds
+from mocapd.errors import InputError
+from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import (
+    MotionState,
+    initial_information,
+    step_between,
+    stepped,
+)
+from mocapd.fit.solver import Fitter, View
+from mocapd.types import Camera, Floats, FrameSet, Track
+
+_SOFTNESS = 255  # of unclassified pixels: less would let the body grow beyond its picture
+_SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeParams:
+    """How the proportions are solved."""
+
+    rounds: int = 8
+    averaged: int = 4  # last rounds: steps end in the noise of whole pixels
+    settling: int = 4  # iterations of every pose before the first round
+    radius_px: int = 7  # work px within which colours are looked for: the poses are known
+    loose_s: float = 0.1  # a pose is held to as loosely as a prediction over this time
+    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of shape
+    least_match: float = 0.6  # of a moment that counts
+    tolerated_cost: float = 1.5  # and its cost, against that of the middle one
+    fewest_moments: int = 6
+    # how many of them count in full against what is known of people: their errors are alike
+    independent_moments: float = 32.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShapeMoment:
+    """The body as it was tracked at one instant, and what the cameras saw: views at work resolution."""
+
+    t_ns: int
+    state: MotionState
+    views: tuple[View, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShapeFit:
+    """factors (N,) of `body.shape`. seen (N,) and information (N,N): what the
+    pictures alone say, without what is known of people; match: share of the drawn shirt that they
+    confirm; states: every moment's pose in this shape; counted: which of them were believed."""
+
+    factors: Floats
+    seen: Floats
+    information: Floats
+    match: float
+    states: tuple[MotionState, ...]
+    counted: tuple[int, ...]
+
+
+def moment_of(
+    track: Track,
+    frames: FrameSet,
+    model: BodyModel,
+    cameras: Sequence[Camera],
+    before: ShapeMoment | None,
+) -> ShapeMoment | None:
+    """A moment of a tracked frame set; None when nothing was seen. before: the last one, for velocity."""
+    body = track.body
+    if body.pose is None or not track.evidence:
+        return None
+    index = {camera.name: i for i, camera in enumerate(cameras)}
+    work = work_factors(cameras, FitParams().work_width_px)
+    views = []
+    for name, ids in track.evidence.items():
+        i = index[name]
+        x0, y0, x1, y1 = (edge // work[i] for edge in track.roi_px[name])
+        late_s = seconds(frames.frames[name].t_ns - body.t_ns)
+        softness = np.full(ids.shape, _SOFTNESS, np.uint8)
+        views.append(View(i, (x0, y0, x1, y1), ids, softness, late_s))
+    local = local_from_global(standard_skeleton(model.stature_m), body.pose.quats_xyzw)
+    velocity = np.zeros(model.n_pose)
+    if before is not None:
+        dt_s = max(seconds(body.t_ns - before.t_ns), 1e-3)
+        last = before.state.root_m, before.state.local_xyzw
+        velocity = step_between(model, (body.pose.root_m, local), last) / dt_s
+    state = MotionState(
+        body.pose.root_m.copy(),
+        local,
+        velocity,
+        np.ones(model.n_shape),
+        initial_information(model.space),
+    )
+    return ShapeMoment(body.t_ns, state, tuple(views))
+
+
+def fit_shape(
+    moments: Sequence[ShapeMoment],
+    model: BodyModel,
+    cameras: Sequence[Camera],
+    params: ShapeParams | None = None,
+) -> ShapeFit:
+    """The proportions that agree best with all moments. Raises InputError when too few agree."""
+    p = params if params is not None else ShapeParams()
+    tracker = FitParams()
+    fitter = Fitter(model, cameras, work_factors(cameras, tracker.work_width_px), tracker)
+    gatherer = RowGatherer(fitter, p.radius_px)
+    if len(moments) < p.fewest_moments:
+        raise _too_few(len(moments), p)
+    states = [
+        fitter.fit(m.state, m.views, p.loose_s, p.settling, learn_shape=True).state for m in moments
+    ]
+    factors = np.median([state.factors for state in states], axis=0)
+    kept: list[Floats] = []
+    for i in range(p.rounds + 1):
+        states = [replace(state, factors=factors) for state in states]
+        rows = [
+            [gatherer.gather(state, view) for view in m.views]
+            for state, m in zip(states, moments, strict=True)
+        ]
+        # before the first steps a wearer of odd proportions agrees with no picture well
+        counted = _counted(rows, p, p.least_match if i == p.rounds else 0.0)
+        evidence = _Evidence(rows, counted, model, p)
+        if i == p.rounds:
+            break
+        step = evidence.step(factors)
+        states = [
+            state if follow is None else _followed(model, state, follow, step)
+            for state, follow in zip(states, evidence.follows, strict=True)
+        ]
+        factors = np.clip(factors + step, _SMALLEST, _LARGEST)
+        kept.append(factors)
+        if i == p.rounds - 1:
+            factors = np.mean(kept[-p.averaged :], axis=0)
+    return ShapeFit(
+        factors,
+        factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(model.n_shape), evidence.b),
+        evidence.H,
+        float(np.mean([_match(rows[k]) for k in counted])),
+        tuple(states),
+        tuple(counted),
+    )
+
+
+_Follow = tuple[Floats, Floats]  # how a pose answers to a step of the shape, and its own step
+
+
+class _Evidence:
+    """What all moments together say of the shape: H (N,N), b (N,) without the poses."""
+
+    def __init__(
+        self,
+        rows: Sequence[Sequence[BodyRows]],
+        counted: Sequence[int],
+        model: BodyModel,
+        p: ShapeParams,
+    ) -> None:
+        n, n_shape = model.n_pose, model.n_shape
+        self.H, self.b = np.zeros((n_shape, n_shape)), np.zeros(n_shape)
+        self._prior = 1.0 / model.space.factor_sd**2
+        self.follows: list[_Follow | None] = [None] * len(rows)
+        held = np.full(n, 1.0 / p.joint_sd_rad**2)
+        held[:6] = 1e-3  # root and hips are free
+        for k in counted:
+            H = np.sum([row.H for row in rows[k]], axis=0)
+            b = np.sum([row.b for row in rows[k]], axis=0)
+            Hpp = H[:n, :n] + np.diag(held)
+            Hps = H[:n, n:]
+            back: Floats = np.asarray(np.linalg.solve(Hpp, Hps), dtype=np.float64)
+            own: Floats = np.asarray(np.linalg.solve(Hpp, b[:n]), dtype=np.float64)
+            self.H += H[n:, n:] - Hps.T @ back
+            self.b += b[n:] - Hps.T @ own
+            self.follows[k] = back, own
+        gain = min(1.0, p.independent_moments / len(counted))
+        self.H, self.b = self.H * gain, self.b * gain
+
+    def step(self, factors: Floats) -> Floats:
+        """Towards what is seen and what people are like."""
+        prior = self._prior
+        step: Floats = np.asarray(
+            np.linalg.solve(self.H + np.diag(prior), self.b - prior * (factors - 1.0)),
+            dtype=np.float64,
+        )
+        return step
+
+
+def _followed(model: BodyModel, state: MotionState, follow: _Follow, step: Floats) -> MotionState:
+    root, local = stepped(model, state.root_m, state.local_xyzw, follow[1] - follow[0] @ step)
+    return replace(state, root_m=root, local_xyzw=local)
+
+
+def _counted(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: float) -> list[int]:
+    """The moments in which body and pictures agree. Raises InputError when they are too few."""
+    costs = [_cost(moment) for moment in rows]
+    tolerable = p.tolerated_cost * float(np.median(costs))
+    counted = [
+        k
+        for k, moment in enumerate(rows)
+        if _match(moment) >= least_match and costs[k] <= tolerable
+    ]
+    if len(counted) < p.fewest_moments:
+        raise _too_few(len(counted), p)
+    return counted
+
+
+def _too_few(count: int, p: ShapeParams) -> InputError:
+    return InputError(
+        f"body and pictures agree in {count} moments only, {p.fewest_moments} are needed",
+        "body",
+        "check the colours, then stand where all cameras see the whole shirt and measure again",
+    )
+
+
+def _cost(moment: Sequence[BodyRows]) -> float:
+    """Cost for each drawn pixel of the shirt."""
+    drawn = sum(float(row.visible.sum()) for row in moment)
+    return sum(row.cost for row in moment) / max(drawn, 1.0)
+
+
+def _match(moment: Sequence[BodyRows]) -> float:
+    """Share of the drawn shirt that is confirmed, in the camera that confirms least."""
+    return min(row.match for row in moment)

@@ -1,0 +1,1 @@
+"""Whether a camera was turned since it was calibrated."""

@@ -1,0 +1,354 @@
+"""A frozen picture read without any knowledge of the light: which light, and how the wearer stands in it.
+
+Every light hypothesis is asked where it sees a shirt (histogram search on colour ids); the most
+promising are followed: the pose database names the pose, the body is fitted, the white balance is
+solved from the patches as the fitted body shows them, and again until it settles. The reading under
+which body and picture agree best wins. With a known rig the cameras are then fitted together, each
+in its own light.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
+from mocapd.errors import InputError
+from mocapd.fit.body_drawing import Drawing, work_factors
+from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
+from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.rotations import IDENTITY_XYZW
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.strokes import COLOURS
+from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.segmentation.appearance import Appearance, fresh
+from mocapd.shirt.segmentation.camera_segmenter import Eye, Found
+from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
+from mocapd.trackers.colour import detection
+from mocapd.trackers.colour.params import Params
+from mocapd.types import Bytes, Camera
+
+MEAN_STATURE_M = 1.72  # a picture from one camera does not tell size from distance
+_FOLLOWED = 16  # candidates that are followed
+_FINALISTS = 4  # of which so many are followed to the end
+_ALIKE = 0.15  # |W - W'|_F under which two candidates about one place are one
+_ALIKE_PX = 24  # work px
+_FIRST_TURNS = 2
+_LAST_TURNS = 8  # of the arm search, so that all of its library is tried
+# turns in a row that may be no better: with one camera pose and light then drift off together
+_IDLE_TURNS = 2
+_LOOSE_S = 0.1
+_ALONE = 0.8  # share of the work that each camera's own reading is
+_ARM_JOINTS = [
+    INDEX[side + bone]
+    for side in ("left", "right")
+    for bone in ("Shoulder", "UpperArm", "LowerArm")
+]
+_GAINS = (1.0, 1.8)  # brightness beyond that of the hypotheses
+_NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
+
+
+# runs the readings of several cameras: `map`, or that of a pool of threads
+MapCameras = Callable[
+    [Callable[[int], "Reading | InputError"], Iterable[int]], Iterable["Reading | InputError"]
+]
+
+
+def _quiet(_: float) -> None:
+    """Nobody watches."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reading:
+    """A picture read in one light: the fitted body, the view it was fitted to, what the colours look
+    like, the agreement 0..1 (the share of the rendered shirt that the picture confirms, less what it
+    shows elsewhere), and how many of the colours are confirmed."""
+
+    light: str
+    fit: Fit
+    view: View
+    appearance: Appearance
+    agreement: float
+    colours: int
+
+    @property
+    def score(self) -> float:
+        """What readings are compared by. From every side a whole shirt shows all of its colours, so
+        that few of them, however well they agree, are a bookshelf."""
+        return self.agreement * self.colours / COLOURS
+
+
+class LightReader:
+    """Reads frozen pictures of the cameras of one session; keeps buffers, remembers nothing."""
+
+    def __init__(
+        self,
+        cameras: Sequence[Camera],
+        model: ColourModel,
+        database: PoseDatabase,
+        stature_m: float = MEAN_STATURE_M,
+        params: Params | None = None,
+    ) -> None:
+        self._params = p = params if params is not None else Params()
+        self._cameras, self._model, self._database = tuple(cameras), model, database
+        factors = work_factors(cameras, p.fit.work_width_px)
+        self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p.fit)
+        self._arms = ArmSearch(self._fitter, p.limbs)
+        self._eyes = [
+            Eye(c, f, model, np.eye(3), p.segmentation)
+            for c, f in zip(cameras, factors, strict=True)
+        ]
+        self._precision = shade_precision(model)
+
+    def drawing(self, index: int) -> Drawing:
+        """What draws a reading's body into camera `index`."""
+        return self._fitter.drawings[index]
+
+    def read(
+        self, index: int, pixels: Bytes, progress: Callable[[float], None] = _quiet
+    ) -> Reading:
+        """Camera `index`'s picture (H,W,3) BGR in the light that explains it best. Raises InputError.
+
+        Different cameras may be read by different threads at once. progress: of this camera, 0..1.
+        """
+        eye, camera = self._eyes[index], self._cameras[index]
+        _check_size(pixels, camera)
+        eye.reset()
+        eye.look(pixels)
+        readings = []
+        for i, (name, found) in enumerate(self._candidates(eye)):
+            progress(i / (_FOLLOWED + _FINALISTS))
+            fit = self._detected(index, found)
+            if fit is None:
+                continue
+            start = fresh(found.W)
+            reading = self._follow(index, name, fit, start, range(_FIRST_TURNS))
+            if reading is not None and reading.colours >= self._params.accept_colours:
+                readings.append(reading)
+        if not readings:
+            raise InputError(
+                "no shirt was found under any light",
+                camera.name,
+                "stand where the whole upper body is in the picture, with more light on the shirt, "
+                "or draw the strokes by hand",
+            )
+        readings.sort(key=lambda r: -r.score)
+        turns = range(_FIRST_TURNS, _FIRST_TURNS + _LAST_TURNS)
+        finals = []
+        for i, r in enumerate(readings[:_FINALISTS]):
+            progress((_FOLLOWED + i) / (_FOLLOWED + _FINALISTS))
+            finals.append(self._follow(index, r.light, r.fit, r.appearance, turns) or r)
+        return max([*finals, readings[0]], key=lambda r: r.score)
+
+    def read_together(
+        self,
+        pictures: Mapping[int, Bytes],
+        progress: Callable[[float], None] = _quiet,
+        map_cameras: MapCameras = map,
+    ) -> dict[int, Reading]:
+        """Pictures of one moment by camera index, in cameras whose places are known. Raises InputError
+        when no camera shows a shirt; a camera that shows none is left out.
+
+        A camera keeps its own reading where it agrees better than the common body. progress: 0..1.
+        """
+        shares = dict.fromkeys(pictures, 0.0)
+
+        def read(index: int) -> Reading | InputError:
+            def told(share: float) -> None:
+                shares[index] = share
+                progress(_ALONE * sum(shares.values()) / len(shares))
+
+            try:
+                return self.read(index, pictures[index], told)
+            except InputError as error:
+                return error
+
+        own: dict[int, Reading] = {}
+        troubles = []
+        for index, one in zip(pictures, map_cameras(read, pictures), strict=True):
+            if isinstance(one, Reading):
+                own[index] = one
+            else:
+                troubles.append(one)
+        if troubles and not own:
+            raise troubles[0]
+        progress(_ALONE)
+        return self._common(own) if len(own) > 1 else own
+
+    # --- stages ---
+
+    def _candidates(self, eye: Eye) -> list[tuple[str, Found]]:
+        """The most even places over all lights, no two alike, best first."""
+        found: list[tuple[str, Found]] = []
+        for light in light_hypotheses(eye.picture):
+            eye.memory.references = (light.W,)
+            seen = eye.find(detection.WINDOWS)
+            if seen is not None:
+                found.append((light.name, seen))
+        found.sort(key=lambda f: -f[1].evenness)
+        kept: list[tuple[str, Found]] = []
+        for name, seen in found:
+            if len(kept) < _FOLLOWED and not any(_alike(seen, other) for _, other in kept):
+                kept.append((name, seen))
+        return kept
+
+    def _detected(self, index: int, found: Found) -> Fit | None:
+        """The body as the pose database has it, fitted to the ids of the search."""
+        p, eye = self._params, self._eyes[index]
+        eye.memory.references = (found.W,)
+        sighting = detection.sight(index, eye, self._database, p.neighbours)
+        if sighting is None:
+            return None
+        model = self._fitter.model
+        states = detection.hypotheses(
+            [sighting],
+            self._cameras,
+            self._database,
+            np.ones(model.n_shape),
+            initial_information(model.space),
+            model.n_pose,
+        )
+        seen = sighting.found
+        unknown = np.full(seen.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
+        view = View(index, seen.roi, seen.ids, unknown, 0.0)
+        asked = [_arms_out(state) for state in states]
+        return detection.best_fit(self._fitter, states + asked, [view])
+
+    def _follow(
+        self, index: int, light: str, fit: Fit, start: Appearance, turns: range
+    ) -> Reading | None:
+        """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
+        self._eyes[index].memory.appearance = start
+        best: Reading | None = None
+        idle = 0
+        for turn in turns:
+            view = self._classified(index, fit)
+            if view is None or idle == _IDLE_TURNS:
+                break
+            idle += 1
+            fit = self._fitted(fit.state, [view], turn)
+            appearance = self._eyes[index].memory.appearance
+            agreement, colours = fit.explained, fit.confirmed_colours()
+            reading = Reading(light, fit, view, appearance, agreement, colours)
+            if best is None or reading.score > best.score:
+                best, idle = reading, 0
+            self._relight(index, fit.state, view)
+        return best
+
+    def _common(self, own: Mapping[int, Reading]) -> dict[int, Reading]:
+        """One body fitted to all cameras, started from what each saw alone."""
+        best: list[Reading] = []
+        lights = {
+            i: tuple(
+                light.W * gain
+                for light in light_hypotheses(self._eyes[i].picture)
+                for gain in _GAINS
+            )
+            for i in own
+        }
+        for start in own.values():
+            for index, reading in own.items():
+                memory = self._eyes[index].memory
+                memory.appearance = reading.appearance
+                # a camera that misread its light tries them all on the other's body
+                memory.references = lights[index]
+            fit, light = start.fit, start.light
+            most, idle = 0.0, 0
+            for turn in range(_FIRST_TURNS + _LAST_TURNS):
+                views = [v for i in own if (v := self._classified(i, fit)) is not None]
+                if len(views) < len(own) or idle == _IDLE_TURNS:
+                    break
+                for index in own:
+                    self._eyes[index].memory.references = ()
+                fit = self._fitted(fit.state, views, turn)
+                seen = (fit.explained, fit.confirmed_colours())
+                readings = [
+                    Reading(light, fit, v, self._eyes[v.index].memory.appearance, *seen)
+                    for v in views
+                ]
+                idle = 0 if readings[0].score > most else idle + 1
+                most = max(most, readings[0].score)
+                if not best or most > best[0].score:
+                    best = readings
+                for view in views:
+                    self._relight(view.index, fit.state, view)
+        out = dict(own)
+        for reading in best:
+            alone = own[reading.view.index]
+            mine = self._seen_alone(reading)
+            if mine.score >= self._seen_alone(alone).score:
+                out[reading.view.index] = replace(mine, light=alone.light)
+        return out
+
+    def _seen_alone(self, reading: Reading) -> Reading:
+        """The reading judged by its own camera alone."""
+        view = reading.view
+        rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
+        n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]
+        same = np.bincount(rendered[rendered == view.ids], minlength=COLOURS + 1)[1:]
+        return replace(
+            reading,
+            agreement=float(same.sum() / max(n.sum(), 1)),
+            colours=int(np.count_nonzero(confirmed_parts(same, n))),
+        )
+
+    def _fitted(self, state: MotionState, views: list[View], turn: int) -> Fit:
+        fit = self._fitter.fit(
+            state, views, _LOOSE_S, self._params.fit.iterations, learn_shape=False
+        )
+        return self._arms.improve(fit, views, _LOOSE_S, turn, learn_shape=False)[0]
+
+    def _classified(self, index: int, fit: Fit) -> View | None:
+        """The picture's colours, given where the body was; None when it left the picture."""
+        drawing = self.drawing(index)
+        if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
+            return None
+        roi = drawing.region(fit.state, 0.0, self._params.segmentation.doubt_margin_px)
+        if roi is None:
+            return None
+        predicted = drawing.render(fit.state, 0.0, roi)
+        # no arm is called doubtful: looked for far away, its colours are found in the room, whose
+        # background is not known yet
+        ids, softness = self._eyes[index].classify(
+            predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
+        )
+        return View(index, roi, ids.copy(), softness.copy(), 0.0)
+
+    def _relight(self, index: int, state: MotionState, view: View) -> None:
+        """Read on in the light that the fitted body's patches ask for."""
+        eye = self._eyes[index]
+        rendered = self.drawing(index).render(state, 0.0, view.roi)
+        sums = np.zeros((10, 4))
+        colour_statistics(eye.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums)
+        n = sums[:, 0]
+        means = sums[:, 3:0:-1] / np.maximum(n, 1.0)[:, None]
+        before = eye.memory.appearance.W
+        W = solve_white_balance(means, self._model.mean, n, before, precision=self._precision)
+        eye.memory.appearance = Appearance(W, sums)
+
+
+def _arms_out(state: MotionState) -> MotionState:
+    """The same with both arms held out, as the user is asked to stand."""
+    local = state.local_xyzw.copy()
+    local[_ARM_JOINTS] = IDENTITY_XYZW
+    return replace(state, local_xyzw=local)
+
+
+def _alike(a: Found, b: Found) -> bool:
+    near = max(abs(p - q) for p, q in zip(a.roi, b.roi, strict=True)) <= _ALIKE_PX
+    return near and float(np.linalg.norm(a.W - b.W)) < _ALIKE
+
+
+def _check_size(pixels: Bytes, camera: Camera) -> None:
+    w, h = camera.size_px
+    if pixels.shape[:2] != (h, w):
+        raise InputError(
+            f"the picture is {pixels.shape[1]}x{pixels.shape[0]}, the lens is known for {w}x{h}",
+            camera.name,
+            "freeze a frame in the mode that the lens was calibrated in",
+        )

@@ -1,0 +1,119 @@
+"""Strokes proposed on a frozen picture: the patch interiors of the body as it was read."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M, LightReader, MapCameras, Reading
+from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.strokes import COLOURS, stroke_means
+from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.types import Bytes, Camera, Floats, Rig
+
+_CONFIRMED = 0.4  # share of a rendered patch that the picture confirms, for it to get strokes
+_LEAST_PX = 4  # work px of a stroke; less is a speck
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Proposal:
+    """strokes (H,W): 0 nothing, 1..10 colour id; W (3,3) solved from them, model_from_camera on RGB
+    0..1; agreement 0..1 of the fitted body with the picture; `light`: the hypothesis it began with;
+    shirt (H,W): colour ids of the fitted body, for the preview; colours: the ids that have strokes."""
+
+    strokes: Bytes
+    W: Floats
+    agreement: float
+    light: str
+    shirt: Bytes
+    colours: tuple[int, ...]
+
+
+def propose_strokes(
+    pixels: Bytes,
+    camera: Camera | None,
+    model: ColourModel,
+    database: PoseDatabase,
+    stature_m: float = MEAN_STATURE_M,
+) -> Proposal:
+    """Strokes for one picture (H,W,3) BGR of a person in the shirt.
+
+    camera: its lens is used, its place is not; None: a usual webcam lens is assumed. Raises
+    InputError when no shirt is found under any light.
+    """
+    h, w = pixels.shape[:2]
+    if camera is None:
+        camera = nominal_rig("camera", (w, h)).cameras[0]
+    reader = LightReader((camera,), model, database, stature_m)
+    return _proposal(reader, 0, pixels, reader.read(0, pixels), model)
+
+
+def propose_strokes_together(
+    pictures: Mapping[str, Bytes],
+    rig: Rig,
+    model: ColourModel,
+    database: PoseDatabase,
+    stature_m: float = MEAN_STATURE_M,
+    progress: Callable[[float], None] = lambda _: None,
+    map_cameras: MapCameras = map,
+) -> dict[str, Proposal]:
+    """The same for pictures of one moment by camera name, when the cameras' places are known too.
+
+    progress: 0..1; map_cameras: `map`, or that of a pool of threads, one for each camera at best.
+    A camera in which nobody is found is left out. Raises InputError when that is all of them.
+    """
+    reader = LightReader(rig.cameras, model, database, stature_m)
+    chosen = {i: pictures[name] for i, name in enumerate(rig.names) if name in pictures}
+    readings = reader.read_together(chosen, progress, map_cameras)
+    return {
+        rig.names[i]: _proposal(reader, i, chosen[i], reading, model)
+        for i, reading in readings.items()
+    }
+
+
+def interiors(rendered: Bytes, classified: Bytes) -> Bytes:
+    """Strokes (h,w): where body and picture agree on a colour, off the borders of its patches.
+
+    rendered, classified (h,w) colour ids. A patch that the picture mostly denies gets none.
+    """
+    out = np.zeros_like(rendered)
+    cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+    for colour in range(1, COLOURS + 1):
+        count, patches = cv2.connectedComponents((rendered == colour).astype(np.uint8))
+        for patch in range(1, count):
+            expected = (patches == patch).astype(np.uint8)
+            agreed = expected & (classified == colour)
+            if agreed.sum() < _CONFIRMED * expected.sum():
+                continue
+            inside = cv2.erode(expected, cross) & cv2.medianBlur(agreed, 3) & agreed
+            _, parts, stats, _ = cv2.connectedComponentsWithStats(inside, connectivity=4)
+            large = np.flatnonzero(stats[:, cv2.CC_STAT_AREA] >= _LEAST_PX)
+            out[np.isin(parts, large[large > 0])] = colour
+    return out
+
+
+def _proposal(
+    reader: LightReader, index: int, pixels: Bytes, reading: Reading, model: ColourModel
+) -> Proposal:
+    drawing, view = reader.drawing(index), reading.view
+    rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
+    at = (view.roi[0] * drawing.factor, view.roi[1] * drawing.factor)
+    strokes = _enlarged(interiors(rendered, view.ids), drawing.factor, at, pixels)
+    means, counts = stroke_means(pixels, strokes)
+    W = solve_white_balance(means, model.mean, counts, precision=shade_precision(model))
+    return Proposal(
+        strokes, W, reading.agreement, reading.light,
+        _enlarged(rendered, drawing.factor, at, pixels),
+        tuple(int(k) + 1 for k in np.flatnonzero(counts)),
+    )  # fmt: skip
+
+
+def _enlarged(ids: Bytes, factor: int, at: tuple[int, int], pixels: Bytes) -> Bytes:
+    """Ids of a region of the work picture (h,w) in the picture's own pixels (H,W)."""
+    out = np.zeros(pixels.shape[:2], np.uint8)
+    large = np.repeat(np.repeat(ids, factor, axis=0), factor, axis=1)
+    out[at[1] : at[1] + large.shape[0], at[0] : at[0] + large.shape[1]] = large
+    return out

@@ -1,0 +1,254 @@
+"""The room from positions of a board that several cameras saw, and how well it fits."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.optimize
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, lens_row, observations
+from mocapd.calibrate.extrinsics.reprojection import (
+    LENS,
+    POSE,
+    Observations,
+    Scene,
+    moved,
+    residuals_px,
+)
+from mocapd.calibrate.extrinsics.world_frame import (
+    PlayAreaError,
+    play_area_error,
+    rig_in,
+    world_guessed,
+    world_on_floor,
+)
+from mocapd.calibrate.intrinsics.intrinsics import Lens, board_pose
+from mocapd.calibration.board_spec import BoardSpec, centre_m, corners_m
+from mocapd.errors import ConfigError
+from mocapd.types import Floats, Rig
+
+
+class ContradictionError(ConfigError):
+    """The views of the cameras do not fit together, whatever the room."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoomParams:
+    """How it is solved, and what it must reach to be used."""
+
+    bundle: BundleParams = field(default_factory=BundleParams)
+    rms_px: float = 2.5
+    play_area_cm: float = 2.0
+    focal_deviation: float = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolvedRoom:
+    """Cameras and board positions in the first camera's frame; `indices`: of the positions."""
+
+    names: tuple[str, ...]
+    sizes_px: tuple[tuple[int, int], ...]
+    spec: BoardSpec
+    indices: tuple[int, ...]
+    seen: Observations
+    bundle: Bundle
+
+
+@dataclass(frozen=True, slots=True)
+class CameraFit:
+    """One camera in the joint solution: error, pictures that it has, delay to the first camera."""
+
+    rms_px: float
+    views: int
+    delay_frames: float
+    focal_deviation: float
+    refused_corners: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedRoom:
+    """The room in the world; `note`: what must be said of the floor ("": nothing)."""
+
+    rig: Rig
+    rms_px: float
+    cameras: Mapping[str, CameraFit]
+    positions: int
+    play_area: PlayAreaError | None
+    note: str
+
+
+def solve_room(
+    names: Sequence[str],
+    sizes_px: Sequence[tuple[int, int]],
+    lenses: Mapping[str, Lens],
+    views: Mapping[str, Mapping[int, BoardView]],
+    spec: BoardSpec,
+    params: RoomParams,
+) -> SolvedRoom:
+    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one moment.
+
+    Raises ConfigError naming the cameras that share no positions with the others.
+    """
+    board_m = corners_m(spec)
+    # a view that contradicted its own lens tells nothing of the room either
+    trusted = {
+        name: {i: view for i, view in views[name].items() if i not in lenses[name].thrown_out}
+        for name in names
+    }
+    scene, indices = first_scene(names, lenses, trusted, board_m)
+    seen = observations(names, trusted, indices, board_m)
+    bundle = adjust(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
+    return SolvedRoom(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
+
+
+def lone_camera(name: str, size_px: tuple[int, int], lens: Lens, spec: BoardSpec) -> SolvedRoom:
+    """One camera and no board yet: what `with_board` then adds gives it a place."""
+    none = np.zeros(0, np.int64)
+    scene = Scene(
+        lens_row(lens)[None],
+        np.eye(3)[None],
+        np.zeros((1, 3)),
+        np.zeros((0, 3, 3)),
+        np.zeros((0, 3)),
+        np.zeros(1),
+        np.zeros((0, 2, 6)),
+    )
+    seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)))
+    bundle = Bundle(scene, np.zeros(0, bool), np.array([lens.focal_deviation]))
+    return SolvedRoom((name,), (size_px,), spec, (), seen, bundle)
+
+
+def with_board(room: SolvedRoom, index: int, views: Mapping[str, BoardView]) -> SolvedRoom:
+    """The room with one more position of the board, which moves no camera."""
+    board_m, scene = corners_m(room.spec), room.bundle.scene
+    seen = observations(
+        room.names, {n: _only(views, n, index) for n in room.names}, [index], board_m
+    )
+    best, best_px = None, np.inf
+    for name, view in views.items():
+        i = room.names.index(name)
+        fx, fy, cx, cy = scene.lens[i, :4]
+        K = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+        pose = board_pose(view, board_m, K, scene.lens[i, 4:])
+        if pose is None:
+            continue
+        turn = scene.camera_turn[i].T
+        guess = _with(scene, (turn @ pose[0], turn @ (pose[1] - scene.camera_t_m[i])))
+        found, error_px = _fitted(guess, seen)
+        # one camera alone may take the mirror image of a board that it sees small
+        if error_px < best_px:
+            best, best_px = found, error_px
+    if best is None:
+        raise ConfigError("the board cannot be placed", "the room", "show more of the board")
+    both = room.bundle.scene
+    scene = replace(
+        both,
+        board_turn=np.concatenate([both.board_turn, best.board_turn]),
+        board_t_m=np.concatenate([both.board_t_m, best.board_t_m]),
+        path=np.concatenate([both.path, best.path]),
+    )
+    merged = Observations(
+        np.concatenate([room.seen.camera, seen.camera]),
+        np.concatenate([room.seen.view, np.full_like(seen.view, len(room.indices))]),
+        np.concatenate([room.seen.point_m, seen.point_m]),
+        np.concatenate([room.seen.pixels, seen.pixels]),
+    )
+    used = np.concatenate([room.bundle.used, np.ones(len(seen.camera), bool)])
+    bundle = replace(room.bundle, scene=scene, used=used)
+    return replace(room, indices=(*room.indices, index), seen=merged, bundle=bundle)
+
+
+def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, BoardView]:
+    return {index: views[name]} if name in views else {}
+
+
+def _with(scene: Scene, pose: tuple[Floats, Floats]) -> Scene:
+    """The same cameras and this position alone."""
+    return replace(
+        scene,
+        board_turn=pose[0][None],
+        board_t_m=pose[1][None],
+        delay=np.zeros(len(scene.lens)),
+        path=np.zeros((1, 2, 6)),
+    )
+
+
+def _fitted(scene: Scene, seen: Observations) -> tuple[Scene, float]:
+    """Its one position fitted, and the root mean square error [px]."""
+    still = np.zeros((len(scene.lens), LENS)), np.zeros((len(scene.lens), POSE))
+
+    def stepped(x: Floats) -> Scene:
+        return moved(scene, *still, x[None], np.zeros(len(scene.lens)))
+
+    solution = scipy.optimize.least_squares(
+        lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01
+    )
+    found = stepped(solution.x)
+    return found, _rms(np.linalg.norm(residuals_px(found, seen), axis=1))
+
+
+def placed(room: SolvedRoom, floor: int | None, where: str, params: RoomParams) -> PlacedRoom:
+    """The room in the world of the board that lies on the floor at index `floor`; None: guessed.
+
+    `where` names that picture in an error. Raises ContradictionError, or ConfigError: a lens is not
+    known well enough, or cameras are under the floor.
+    """
+    scene, seen = room.bundle.scene, room.seen
+    if floor is None:
+        world = world_guessed(scene, corners_m(room.spec))
+    else:
+        world = world_on_floor(scene, room.indices.index(floor), centre_m(room.spec), where)
+    rig = rig_in(world, scene, room.names, room.sizes_px)
+    kept = seen.of(room.bundle.used)
+    made = PlacedRoom(
+        rig,
+        _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
+        {name: _fit(room, i) for i, name in enumerate(room.names)},
+        len(room.indices),
+        play_area_error(rig, kept),
+        world.note,
+    )
+    _refuse_bad(made, params)
+    return made
+
+
+def _rms(error_px: Floats) -> float:
+    return float(np.sqrt(np.mean(error_px**2))) if len(error_px) else float("nan")
+
+
+def _fit(room: SolvedRoom, i: int) -> CameraFit:
+    bundle, seen = room.bundle, room.seen
+    own = seen.camera == i
+    kept = own & bundle.used
+    return CameraFit(
+        _rms(np.linalg.norm(residuals_px(bundle.scene, seen.of(kept)), axis=1)),
+        len(np.unique(seen.view[kept])),
+        float(bundle.scene.delay[i]),
+        float(bundle.focal_deviation[i]),
+        int((own & ~bundle.used).sum()),
+    )
+
+
+def _refuse_bad(made: PlacedRoom, params: RoomParams) -> None:
+    for name, fit in made.cameras.items():
+        if fit.focal_deviation > params.focal_deviation:
+            raise ConfigError(
+                f"the focal length is known to {100 * fit.focal_deviation:.1f} % only",
+                name,
+                "show the board nearer to this camera, and tilted by 30 degrees and more",
+            )
+    far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
+    if made.rms_px > params.rms_px or far:
+        cm = (
+            ""
+            if made.play_area is None
+            else f", {made.play_area.median_cm:.1f} cm in the play area"
+        )
+        raise ContradictionError(
+            f"the cameras contradict each other: {made.rms_px:.2f} px{cm}",
+            "the room",
+            "hold the board still at each place, keep the cameras where they are, do not mirror "
+            "a picture, and see that frames of one index are of one moment",
+        )

@@ -1,0 +1,233 @@
+"""All cameras and board positions solved at once (bundle adjustment; Triggs et al. 2000).
+
+The first camera stays where it is; the board gives the scale.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+import scipy.sparse
+import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+from mocapd.calibrate.board.board_motion import paths
+from mocapd.calibrate.extrinsics.reprojection import (
+    LENS,
+    POSE,
+    Observations,
+    Scene,
+    jacobians,
+    moved,
+    residuals_px,
+)
+from mocapd.calibrate.intrinsics.intrinsics_priors import LensPriors
+from mocapd.types import Floats, Ints
+
+# of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
+_RIDGES = (1e-9, 1e-6, 1e-3)
+
+
+@dataclass(frozen=True, slots=True)
+class BundleParams:
+    """How the sum of errors is made robust, and when it is small enough."""
+
+    corner_px: float = 1.0  # deviation of a corner as first assumed; then it is measured,
+    least_corner_px: float = 0.1  # and is never below this
+    soft: float = 1.0  # residuals above so many deviations count less and less (soft l1)
+    outlier_sigmas: float = 5.0  # a corner is dropped above so many robust deviations,
+    least_outlier_px: float = 1.5  # but never below this
+    delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
+    rounds: int = 2  # of the board's motion, taken from the solution before
+    evaluations: int = 15
+    priors: LensPriors = field(default_factory=LensPriors)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bundle:
+    """The solution, and which of the observations (N,) it is computed from.
+
+    `focal_deviation` (C,): standard deviation of each focal length, as a part of it.
+    """
+
+    scene: Scene
+    used: NDArray[np.bool_]
+    focal_deviation: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Problem:
+    """Residuals and their sparse slope, in standard deviations, as functions of the steps."""
+
+    scene: Scene
+    seen: Observations
+    size_px: Floats
+    params: BundleParams
+
+    @property
+    def columns(self) -> int:
+        """Lenses, cameras but the first, boards, delays but the first."""
+        cameras, boards = len(self.scene.lens), len(self.scene.board_turn)
+        return cameras * LENS + (cameras - 1) * (POSE + 1) + boards * POSE
+
+    def steps(self, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Lens (C,9), cameras (C,6), boards (V,6) and delay (C,) of a vector of parameters."""
+        cameras = len(self.scene.lens)
+        ends = np.cumsum([cameras * LENS, (cameras - 1) * POSE, len(self.scene.board_turn) * POSE])
+        lens, poses, boards, delay = np.split(x, ends)
+        poses = np.concatenate([np.zeros(POSE), poses]).reshape(-1, POSE)
+        return (
+            lens.reshape(-1, LENS),
+            poses,
+            boards.reshape(-1, POSE),
+            np.concatenate([np.zeros(1), delay]),
+        )
+
+    def error(self, x: Floats) -> Floats:
+        """(2N + priors + C - 1,)."""
+        scene = moved(self.scene, *self.steps(x))
+        priors = self.params.priors.residuals(scene.lens, self.size_px)
+        return np.concatenate(
+            [
+                residuals_px(scene, self.seen).ravel() / self.params.corner_px,
+                priors.ravel(),
+                scene.delay[1:] / self.params.delay_frames,
+            ]
+        )
+
+    def slope(self, x: Floats) -> scipy.sparse.csr_matrix:
+        """d error by x."""
+        lens, cameras, boards, delay = self.steps(x)
+        scene = moved(self.scene, lens, cameras, boards, delay)
+        values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
+        columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
+        rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
+        rows = np.broadcast_to(rows, values.shape)
+        free = columns >= 0
+        corners = scipy.sparse.csr_matrix(
+            (values[free], (rows[free], columns[free])), shape=(2 * len(values), self.columns)
+        )
+        blocks = self.params.priors.slope(scene.lens, self.size_px)
+        count = len(delay) - 1
+        own = scipy.sparse.block_diag(
+            [
+                *blocks,
+                scipy.sparse.csr_matrix((0, self.columns - len(blocks) * LENS - count)),
+                scipy.sparse.identity(count) / self.params.delay_frames,
+            ]
+        )
+        return scipy.sparse.vstack([corners / self.params.corner_px, own]).tocsr()
+
+    def _columns(self) -> Ints:
+        """(N, 9+6+6+1): what each observation depends on; -1: stays as it is."""
+        place: Floats = np.arange(1, self.columns + 1, dtype=float)
+        parts = [part.astype(np.int64) - 1 for part in self.steps(place)]
+        lens, cameras, boards, delay = parts
+        camera, view = self.seen.camera, self.seen.view
+        return np.concatenate(
+            [lens[camera], cameras[camera], boards[view], delay[camera, None]], axis=1
+        )
+
+
+def adjust(
+    scene: Scene,
+    indices: Sequence[int],
+    seen: Observations,
+    size_px: Floats,
+    params: BundleParams | None = None,
+) -> Bundle:
+    """The scene that fits the observations best: lenses, cameras, boards and delays.
+
+    `indices` (V,): the frame of each board position; `size_px` (C,2): of the pictures. First
+    robustly and as if all cameras exposed at once, then with their delays, at last without the
+    outliers.
+    """
+    params = params or BundleParams()
+    scene = _solved(_Problem(scene, seen, size_px, params), robust=True)
+    for _ in range(params.rounds):
+        scene = replace(scene, path=paths(scene, indices))
+        params = replace(params, corner_px=_deviation_px(scene, seen, params))
+        scene = _solved(_Problem(scene, seen, size_px, params), robust=True)
+    error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
+    limit_px = params.outlier_sigmas * _deviation_px(scene, seen, params)
+    used = error_px <= max(limit_px, params.least_outlier_px)
+    problem = _Problem(scene, seen.of(used), size_px, params)
+    scene = _solved(problem, robust=False)
+    return Bundle(scene, used, _focal_deviation(replace(problem, scene=scene)))
+
+
+def _deviation_px(scene: Scene, seen: Observations, params: BundleParams) -> float:
+    """Of a corner's x or y, not minding outliers."""
+    error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
+    # of a Rayleigh distribution the median is 1.18 deviations
+    return max(float(np.median(error_px)) / 1.18, params.least_corner_px)
+
+
+def _solved(problem: _Problem, robust: bool) -> Scene:
+    """Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
+
+    In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
+    along the valleys of focal length and depth.
+    """
+    start = problem.slope(np.zeros(problem.columns))
+    L = _lower((start.T @ start).toarray())
+
+    def step(y: Floats) -> Floats:
+        x: Floats = scipy.linalg.solve_triangular(L, y, lower=True, trans="T")
+        return x
+
+    def slope(y: Floats) -> scipy.sparse.linalg.LinearOperator:
+        J = problem.slope(step(y))
+        return scipy.sparse.linalg.LinearOperator(
+            J.shape,
+            matvec=lambda v: J @ step(v.ravel()),
+            rmatvec=lambda u: scipy.linalg.solve_triangular(L, J.T @ u.ravel(), lower=True),
+        )
+
+    solution = scipy.optimize.least_squares(
+        lambda y: problem.error(step(y)),
+        np.zeros(problem.columns),
+        jac=slope,
+        method="trf",
+        tr_solver="lsmr",
+        # full Gauss-Newton steps
+        tr_options={"regularize": False, "atol": 1e-7, "btol": 1e-7, "maxiter": 800},
+        loss="soft_l1" if robust else "linear",
+        f_scale=problem.params.soft,
+        ftol=1e-5,
+        max_nfev=problem.params.evaluations,
+    )
+    return moved(problem.scene, *problem.steps(step(solution.x)))
+
+
+def _lower(normal: Floats) -> Floats:
+    """L (n,n) of the normal matrix, or of one a little stiffer where that is singular to rounding.
+
+    A position that lost all its corners as outliers has no rows: it stays where it is.
+    """
+    diagonal = np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0)
+    for ridge in _RIDGES:
+        stiff = normal.copy()
+        stiff[np.diag_indices(len(normal))] = (1.0 + ridge) * diagonal
+        # info: 0, or the minor that is not positive
+        L, info = scipy.linalg.lapack.dpotrf(stiff, lower=True, clean=True)
+        if info == 0:
+            lower: Floats = L
+            return lower
+    scales: Floats = np.diag(np.sqrt(diagonal))
+    return scales
+
+
+def _focal_deviation(problem: _Problem) -> Floats:
+    """(C,) from the curvature of the sum of squares at the solution."""
+    J = problem.slope(np.zeros(problem.columns))
+    cameras = len(problem.scene.lens)
+    wanted = np.zeros((problem.columns, cameras))
+    wanted[LENS * np.arange(cameras), np.arange(cameras)] = 1.0
+    normal = (J.T @ J + 1e-12 * scipy.sparse.identity(problem.columns)).tocsc()
+    covariance = scipy.sparse.linalg.spsolve(normal, wanted)
+    variance = np.asarray(covariance)[LENS * np.arange(cameras), np.arange(cameras)]
+    deviation: Floats = np.sqrt(variance) / problem.scene.lens[:, 0]
+    return deviation

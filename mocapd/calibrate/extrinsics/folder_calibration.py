@@ -1,0 +1,212 @@
+"""From a folder of recordings of a board to a rig: lenses, room, and what was refused on the way."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, NotSeen, settled
+from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
+from mocapd.calibrate.board.recordings import Recording, find_recordings
+from mocapd.calibrate.extrinsics.board_extrinsics import CameraFit, RoomParams, placed, solve_room
+from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
+from mocapd.calibrate.intrinsics.intrinsics import Lens, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.views import Choice, chosen_views, covered
+from mocapd.calibration.board_spec import BoardSpec, corners_m
+from mocapd.errors import ConfigError
+from mocapd.types import Bytes, Floats, Rig
+
+Progress = Callable[[str, int, int], None]
+_PROBES = 6  # pictures per camera that the board's variant is settled with
+_ASKED = 2  # pictures per camera that are asked why there is no board
+# A lens alone may leave its focal length open where the room then settles it.
+_ALONE = LensLimits(focal_deviation=0.25)
+
+
+@dataclass(frozen=True, slots=True)
+class FolderParams:
+    """How much of the recordings is looked at, and how the room is solved."""
+
+    most_pictures: int = 200  # per camera, evenly over the recording
+    choice: Choice = field(default_factory=Choice)
+    room: RoomParams = field(default_factory=RoomParams)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighting:
+    """What was found in one camera's recording: views by index, and reasons of pictures without."""
+
+    recording: Recording
+    views: Mapping[int, BoardView]
+    pictures: int
+    not_seen: tuple[NotSeen, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraReport:
+    """One camera: `rms_px` in the joint solution, `held_out_px` of its lens, pictures with the board."""
+
+    rms_px: float
+    held_out_px: float
+    views: int
+    pictures: int
+    covered: float
+    delay_frames: float
+    focal_deviation: float
+    refused_views: tuple[int, ...]
+    refused_corners: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibration:
+    """The rig, how well it fits, and the board as it was found to be."""
+
+    rig: Rig
+    rms_px: float
+    cameras: Mapping[str, CameraReport]
+    positions: int
+    play_area: PlayAreaError | None
+    board: BoardSpec
+    notes: tuple[str, ...]
+
+
+def calibrate_folder(
+    folder: Path,
+    spec: BoardSpec,
+    progress: Progress,
+    floor_frame: int | None = None,
+    params: FolderParams | None = None,
+) -> Calibration:
+    """The rig of the cameras that recorded `folder`. `floor_frame`: index at which the board lies on the floor.
+
+    Raises InputError (recordings missing or damaged) or ConfigError: what of the board, a camera or
+    the room does not fit, and what to do.
+    """
+    params = params or FolderParams()
+    recordings = find_recordings(folder)
+    if len(recordings) > 1 and not spec.turns_show:
+        raise ConfigError(
+            f"a chessboard of {spec.columns}x{spec.rows} squares looks the same upside down",
+            "the board",
+            "for several cameras take one with an even and an odd number of squares, or ChArUco",
+        )
+    notes: list[str] = []
+    sightings = []
+    stride = max(1, -(-max(one.frames for one in recordings) // params.most_pictures))
+    for recording in recordings:
+        sighting, found = _sighting(recording, spec, stride, progress)
+        if found != spec:
+            notes.append(f"{recording.name}: the board is {_difference(found)}, unlike given")
+            spec = found
+        sightings.append(sighting)
+    _refuse_blind(sightings)
+    board_m = corners_m(spec)
+    lenses = {}
+    for done, one in enumerate(sightings):
+        progress("lenses", done, len(sightings))
+        lenses[one.recording.name] = _lens(one, board_m, params)
+    progress("lenses", len(sightings), len(sightings))
+    return _room(sightings, lenses, spec, floor_frame, params, notes, progress)
+
+
+def _sighting(
+    recording: Recording, spec: BoardSpec, stride: int, progress: Progress
+) -> tuple[Sighting, BoardSpec]:
+    step = max(1, recording.frames // (stride * _PROBES)) * stride
+    probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
+    spec = settled(spec, probes)
+    detector = BoardDetector(spec)
+    views: dict[int, BoardView] = {}
+    blank: list[tuple[int, Bytes]] = []
+    count = 0
+    total = max(1, -(-recording.frames // stride))
+    for index, pixels in recording.pictures(stride):
+        view = detector.find(pixels, index)
+        if view is not None:
+            views[index] = view
+        elif len(blank) < _ASKED:
+            blank.append((index, pixels))
+        count += 1
+        progress(f"board in {recording.name}", min(count, total), total)
+    reasons: tuple[NotSeen, ...] = ()
+    if len(views) < _ALONE.fewest_views:
+        reasons = tuple(why_not_seen(detector, pixels, index) for index, pixels in blank)
+    return Sighting(recording, views, count, reasons), spec
+
+
+def _difference(found: BoardSpec) -> str:
+    ink = "inverted" if found.inverted else "dark on light"
+    return f"{ink}, of the {'legacy' if found.legacy else 'present'} layout"
+
+
+def _refuse_blind(sightings: Sequence[Sighting]) -> None:
+    """Raises ConfigError for the first camera that hardly sees the board, with the commonest reason."""
+    for one in sightings:
+        if len(one.views) >= _ALONE.fewest_views:
+            continue
+        others = [other.recording.name for other in sightings if len(other.views) > len(one.views)]
+        where = str(one.recording.path)
+        what = f"the board is usable in {len(one.views)} of {one.pictures} pictures"
+        if others:
+            what += f" (it is seen by {', '.join(others)})"
+        if not one.not_seen:
+            raise ConfigError(what, where, "show the board in more pictures")
+        reason = Counter(told.reason for told in one.not_seen).most_common(1)[0][0]
+        detail = next((told.detail for told in one.not_seen if told.reason is reason), "")
+        what += f": {reason}" + (f", {detail}" if detail else "")
+        raise ConfigError(what, where, FIX[reason])
+
+
+def _lens(one: Sighting, board_m: Floats, params: FolderParams) -> Lens:
+    size_px = one.recording.size_px
+    views = chosen_views(list(one.views.values()), size_px, params.choice)
+    return solve_lens(views, board_m, size_px, one.recording.name, _ALONE)
+
+
+def _room(
+    sightings: Sequence[Sighting],
+    lenses: Mapping[str, Lens],
+    spec: BoardSpec,
+    floor_frame: int | None,
+    params: FolderParams,
+    notes: list[str],
+    progress: Progress,
+) -> Calibration:
+    names = [one.recording.name for one in sightings]
+    views = {one.recording.name: one.views for one in sightings}
+    known = sorted({i for name in names for i in views[name] if i not in lenses[name].thrown_out})
+    if floor_frame is not None and floor_frame not in known:
+        raise ConfigError(
+            "no camera sees the board in it",
+            f"--floor-frame {floor_frame}",
+            f"one of the frames with the board, such as {known[len(known) // 2]}",
+        )
+    progress("room", 0, 1)
+    sizes_px = [one.recording.size_px for one in sightings]
+    room = solve_room(names, sizes_px, lenses, views, spec, params.room)
+    progress("room", 1, 1)
+    made = placed(room, floor_frame, f"frame {floor_frame}", params.room)
+    notes += [made.note] if made.note else []
+    reports = {
+        one.recording.name: _report(
+            one, lenses[one.recording.name], made.cameras[one.recording.name]
+        )
+        for one in sightings
+    }
+    return Calibration(
+        made.rig, made.rms_px, reports, made.positions, made.play_area, spec, tuple(notes)
+    )
+
+
+def _report(one: Sighting, lens: Lens, fit: CameraFit) -> CameraReport:
+    return CameraReport(
+        fit.rms_px,
+        lens.held_out_px,
+        fit.views,
+        one.pictures,
+        covered(list(one.views.values()), one.recording.size_px),
+        fit.delay_frames,
+        fit.focal_deviation,
+        lens.thrown_out,
+        fit.refused_corners,
+    )

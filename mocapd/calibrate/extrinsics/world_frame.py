@@ -1,0 +1,142 @@
+"""The cameras' places in the world: floor, up, front; and how well the room agrees with itself."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.calibrate.extrinsics.reprojection import Observations, Scene
+from mocapd.errors import ConfigError
+from mocapd.geometry.cameras import normalised
+from mocapd.geometry.triangulation import triangulate
+from mocapd.types import Camera, Floats, Rig
+
+_FRONT = 0.2  # length of the mean direction to the cameras, above which there is a front
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class World:
+    """world_from_scene R (3,3), t_m (3,), and what must be said of where it comes from ("": nothing)."""
+
+    R: Floats
+    t_m: Floats
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PlayAreaError:
+    """Distance of corners, triangulated, from a rigid board laid through them [cm]."""
+
+    median_cm: float
+    p95_cm: float
+    corners: int
+
+
+def world_on_floor(scene: Scene, position: int, middle_m: Floats, where: str) -> World:
+    """The world of a board that lies on the floor, face up, at this position; its middle is the origin.
+
+    +Z points from there to the middle of the cameras: that is where a person at rest looks. Raises
+    ConfigError when cameras would be under the floor.
+    """
+    R, t_m = scene.board_turn[position], scene.board_t_m[position]
+    world = _world(scene, up=-R[:, 2], origin_m=R @ middle_m + t_m)
+    heights_m = (camera_centres(scene) @ world.R.T + world.t_m)[:, 1]
+    if heights_m.min() < 0.0:
+        raise ConfigError(
+            f"with this floor a camera is {-100 * heights_m.min():.0f} cm under it",
+            where,
+            "lay the board flat on the floor, printed side up, and give the frame in which it lies",
+        )
+    return world
+
+
+def world_guessed(scene: Scene, board_m: Floats) -> World:
+    """A world without a floor: up is what is up in most pictures, the floor under the lowest corner."""
+    up = -scene.camera_turn[:, 1].sum(axis=0)
+    corners = np.einsum("vij,nj->vni", scene.board_turn, board_m) + scene.board_t_m[:, None]
+    corners = corners.reshape(-1, 3)
+    world = _world(scene, up, corners.mean(axis=0))
+    lowest_m = float((corners @ world.R.T + world.t_m)[:, 1].min())
+    return World(
+        world.R,
+        world.t_m - np.array([0.0, lowest_m, 0.0]),
+        "no floor was given: up is guessed from the cameras, the floor is put under the lowest "
+        "place of the board; give the frame in which the board lies on the floor (--floor-frame)",
+    )
+
+
+def _world(scene: Scene, up: Floats, origin_m: Floats) -> World:
+    y = up / np.linalg.norm(up)
+    away = camera_centres(scene) - origin_m
+    level = away - np.outer(away @ y, y)
+    level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-9)
+    front = level.mean(axis=0)
+    # cameras all around: the first is the front
+    z = front if np.linalg.norm(front) > _FRONT else level[0]
+    z = z / np.linalg.norm(z)
+    R = np.stack([np.cross(y, z), y, z])
+    return World(R, -R @ origin_m)
+
+
+def camera_centres(scene: Scene) -> Floats:
+    """(C,3) where the cameras are [m, scene]."""
+    centres: Floats = -np.einsum("cji,cj->ci", scene.camera_turn, scene.camera_t_m)
+    return centres
+
+
+def rig_in(
+    world: World, scene: Scene, names: Sequence[str], sizes_px: Sequence[tuple[int, int]]
+) -> Rig:
+    """The cameras of the scene as a rig of this world."""
+    cameras = []
+    for i, (name, size_px) in enumerate(zip(names, sizes_px, strict=True)):
+        fx, fy, cx, cy = scene.lens[i, :4]
+        R = scene.camera_turn[i] @ world.R.T
+        # back onto the rotations, from which a thousand products drift
+        U, _, Vt = np.linalg.svd(R)
+        R = U @ Vt
+        cameras.append(
+            Camera(
+                name,
+                size_px,
+                np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]]),
+                scene.lens[i, 4:].copy(),
+                R,
+                scene.camera_t_m[i] - R @ world.t_m,
+            )
+        )
+    return Rig(tuple(cameras))
+
+
+def play_area_error(rig: Rig, seen: Observations) -> PlayAreaError | None:
+    """How far triangulated corners are from a rigid board, where two cameras and more see four.
+
+    None where no position of the board is seen so.
+    """
+    keys, corner = np.unique(
+        np.column_stack([seen.view, seen.point_m]), axis=0, return_inverse=True
+    )
+    xy = np.full((len(rig.cameras), len(keys), 2), np.nan)
+    for i, camera in enumerate(rig.cameras):
+        own = seen.camera == i
+        xy[i, corner.ravel()[own]] = normalised(camera, seen.pixels[own])
+    points_m, _ = triangulate(rig.cameras, xy)
+    known = np.isfinite(points_m).all(axis=1)
+    distances = []
+    for view in np.unique(keys[known, 0]):
+        own = known & (keys[:, 0] == view)
+        if own.sum() >= 4:
+            distances.append(_from_rigid(keys[own, 1:], points_m[own]))
+    if not distances:
+        return None
+    cm = 100.0 * np.concatenate(distances)
+    return PlayAreaError(float(np.median(cm)), float(np.percentile(cm, 95)), len(cm))
+
+
+def _from_rigid(board_m: Floats, points_m: Floats) -> Floats:
+    """Distances (n,) after the best turn and shift (Kabsch, Acta Cryst. A32, 1976)."""
+    a, b = board_m - board_m.mean(axis=0), points_m - points_m.mean(axis=0)
+    U, _, Vt = np.linalg.svd(a.T @ b)
+    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])
+    distances: Floats = np.linalg.norm(a @ U @ flip @ Vt - b, axis=1)
+    return distances

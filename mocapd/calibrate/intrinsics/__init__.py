@@ -1,0 +1,1 @@
+"""Focal length, centre and distortion of each camera, and which views they are solved from."""

@@ -1,0 +1,242 @@
+"""A camera's lens from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.errors import ConfigError
+from mocapd.types import Floats
+
+# Which of k1 k2 p1 p2 k3 are solved for, the simplest first: a board that never came near the
+# edges of the picture cannot tell the higher ones, and a wrong one is worse than none.
+_MODELS = (
+    (True, False, False, False, False),
+    (True, True, False, False, False),
+    (True, True, True, True, False),
+    (True, True, True, True, True),
+)
+_FOLDS = 4
+# its stubs do not know that the first guess may be left out
+_CALIBRATE: Any = cv2.calibrateCameraExtended
+_WORTH = 0.97  # a further coefficient must lower the held-out error to this part of it
+
+
+@dataclass(frozen=True, slots=True)
+class LensLimits:
+    """What a lens must reach to be used."""
+
+    fewest_views: int = 6
+    rms_px: float = 1.5
+    held_out_px: float = 2.0
+    least_tilt_rad: float = 0.17  # between the boards of the most different views
+    focal_deviation: float = 0.05  # standard deviation of the focal length, of itself
+    view_rms: float = 2.5  # a view is thrown out above this many times the median error
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lens:
+    """K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, of pictures of `size_px`; `free` (5,): which were solved for.
+
+    `rms_px`: of the views it was computed from. `held_out_px`: of views that were left out of a
+    solution in their turn, with only their board's pose fitted. `views`: indices of those used;
+    `thrown_out`: those that did not fit the others. `focal_deviation`: standard deviation of the
+    focal length as a part of it.
+    """
+
+    size_px: tuple[int, int]
+    K: Floats
+    dist: Floats
+    free: NDArray[np.bool_]
+    rms_px: float
+    held_out_px: float
+    views: tuple[int, ...]
+    thrown_out: tuple[int, ...]
+    focal_deviation: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Solution:
+    rms_px: float
+    K: Floats
+    dist: Floats
+    rotations: list[Floats]
+    deviations: Floats
+    per_view_px: Floats
+
+
+def solve_lens(
+    views: Sequence[BoardView],
+    board_m: Floats,
+    size_px: tuple[int, int],
+    where: str,
+    limits: LensLimits | None = None,
+) -> Lens:
+    """The lens of camera `where`. Raises ConfigError that says why these views do not give it.
+
+    `board_m` (n,3): the board's corners by id.
+    """
+    limits = limits or LensLimits()
+    if len(views) < limits.fewest_views:
+        raise ConfigError(
+            f"the board is usable in {len(views)} pictures, a lens needs {limits.fewest_views}",
+            where,
+            "show the board at more places and slants, in good light",
+        )
+    kept = list(views)
+    first = _solve(kept, board_m, size_px, _MODELS[1], where)
+    _refuse_parallel(first, where, limits)
+    bad = first.per_view_px > max(limits.view_rms * float(np.median(first.per_view_px)), 0.5)
+    kept = [view for view, out in zip(views, bad, strict=True) if not out]
+    if len(kept) < limits.fewest_views:
+        raise ConfigError(
+            f"{int(bad.sum())} of {len(views)} views contradict the others",
+            where,
+            "give the size of the board as it is printed, and keep the board flat",
+        )
+    model, held_out_px = _best_model(kept, board_m, size_px, where, first)
+    solution = _solve(kept, board_m, size_px, model, where, first)
+    deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
+    lens = Lens(
+        size_px,
+        solution.K,
+        solution.dist,
+        np.array(model),
+        solution.rms_px,
+        held_out_px,
+        tuple(view.index for view in kept),
+        tuple(view.index for view, out in zip(views, bad, strict=True) if out),
+        deviation,
+    )
+    _refuse_bad(lens, where, limits)
+    return lens
+
+
+def _solve(
+    views: Sequence[BoardView],
+    board_m: Floats,
+    size_px: tuple[int, int],
+    model: tuple[bool, ...],
+    where: str,
+    start: _Solution | None = None,
+) -> _Solution:
+    """`start`: a solution of nearly the same views, from which it is found sooner."""
+    k1, k2, p1, _, k3 = model
+    flags = 0 if k3 else cv2.CALIB_FIX_K3
+    flags |= (0 if k2 else cv2.CALIB_FIX_K2) | (0 if k1 else cv2.CALIB_FIX_K1)
+    flags |= 0 if p1 else cv2.CALIB_ZERO_TANGENT_DIST
+    K, dist = None, None
+    if start is not None:
+        flags |= cv2.CALIB_USE_INTRINSIC_GUESS
+        K, dist = start.K.copy(), np.where(model, start.dist, 0.0)
+    try:
+        found: Any = _CALIBRATE(
+            [board_m[view.ids].astype(np.float32) for view in views],
+            [view.corners_px.astype(np.float32) for view in views],
+            size_px,
+            K,
+            dist,
+            flags=flags,
+        )
+    except cv2.error:
+        raise _parallel(where) from None
+    rms_px, K, dist, rotations, _, deviations, _, per_view_px = found
+    assert K is not None
+    assert dist is not None
+    if not (np.isfinite(K).all() and np.isfinite(dist).all() and K[0, 0] > 0 and K[1, 1] > 0):
+        raise _parallel(where)
+    return _Solution(
+        float(rms_px),
+        K,
+        dist.ravel()[:5],
+        [cv2.Rodrigues(r)[0] for r in rotations],
+        deviations.ravel(),
+        per_view_px.ravel(),
+    )
+
+
+def _best_model(
+    views: Sequence[BoardView],
+    board_m: Floats,
+    size_px: tuple[int, int],
+    where: str,
+    start: _Solution,
+) -> tuple[tuple[bool, ...], float]:
+    """The simplest set of coefficients that views left out speak for, and the error of those [px]."""
+    best, error_px = _MODELS[0], np.inf
+    for model in _MODELS:
+        squares: list[Floats] = []
+        for fold in range(_FOLDS):
+            rest = [view for i, view in enumerate(views) if i % _FOLDS != fold]
+            solution = _solve(rest, board_m, size_px, model, where, start)
+            squares += [
+                pose_residuals_px(view, board_m, solution.K, solution.dist) ** 2
+                for i, view in enumerate(views)
+                if i % _FOLDS == fold
+            ]
+        held_out_px = float(np.sqrt(np.mean(np.concatenate(squares))))
+        if held_out_px < _WORTH * error_px:
+            best, error_px = model, held_out_px
+    return best, error_px
+
+
+def board_pose(
+    view: BoardView, board_m: Floats, K: Floats, dist: Floats
+) -> tuple[Floats, Floats] | None:
+    """camera_from_board R (3,3), t_m (3,) of one view; None where no pose fits."""
+    points_m = board_m[view.ids]
+    found, rotation, t_m = cv2.solvePnP(points_m, view.corners_px, K, dist, flags=cv2.SOLVEPNP_IPPE)
+    if not found:
+        return None
+    rotation, t_m = cv2.solvePnPRefineLM(points_m, view.corners_px, K, dist, rotation, t_m)
+    return cv2.Rodrigues(rotation)[0].astype(float), t_m.astype(float).ravel()
+
+
+def pose_residuals_px(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> Floats:
+    """Distances (n,) of the corners from where the lens puts them, with the board's pose fitted."""
+    pose = board_pose(view, board_m, K, dist)
+    if pose is None:
+        return np.full(len(view.ids), np.inf)
+    R, t_m = pose
+    seen = cv2.projectPoints(board_m[view.ids], cv2.Rodrigues(R)[0], t_m, K, dist)[0]
+    distances: Floats = np.linalg.norm(seen.reshape(-1, 2) - view.corners_px, axis=1)
+    return distances
+
+
+def _parallel(where: str) -> ConfigError:
+    return ConfigError(
+        "the board is parallel to itself in all views: they leave the focal length open",
+        where,
+        "tilt the board by 30 degrees and more, to the left and right, up and down",
+    )
+
+
+def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> None:
+    """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
+    normals = np.stack([R[:, 2] for R in solution.rotations])
+    cosines = np.clip(normals @ normals.T, -1.0, 1.0)
+    # of nine in ten, so that one wrong view does not pass for a tilt
+    if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
+        raise _parallel(where)
+
+
+def _refuse_bad(lens: Lens, where: str, limits: LensLimits) -> None:
+    if lens.rms_px > limits.rms_px or lens.held_out_px > limits.held_out_px:
+        raise ConfigError(
+            f"the board fits badly: {lens.rms_px:.2f} px, {lens.held_out_px:.2f} px held out",
+            where,
+            "keep the board flat and still, the focus locked, and check that --board-size, the "
+            "layout and the pictures (not cropped or stabilised) are right",
+        )
+    if lens.focal_deviation > limits.focal_deviation:
+        raise ConfigError(
+            f"the focal length is known to {100 * lens.focal_deviation:.1f} % only",
+            where,
+            "show the board nearer, and tilted by 30 degrees and more",
+        )

@@ -1,0 +1,150 @@
+"""Which live pictures of the board are kept for a lens, and what they lack as yet."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.intrinsics.intrinsics import board_pose
+from mocapd.calibrate.intrinsics.views import coverage
+from mocapd.types import Floats
+
+_USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to tell slants apart
+_TURN = 0.5  # a turn of 1 rad is as new as a shift by half the picture's width
+_SIZE = 0.3  # a board e times as large likewise
+
+
+@dataclass(frozen=True, slots=True)
+class PickingParams:
+    """When a picture is kept, and when those kept are enough to try.
+
+    most_motion: of corners, from picture to picture at 30 Hz [parts of the picture's width].
+    """
+
+    most_motion: float = 0.004
+    least_sharpness: float = 0.6  # of the sharper ones kept
+    new_place: float = 0.13  # distance from those kept [picture widths]
+    new_cells: int = 3  # of the coverage map, which make a picture worth keeping by themselves
+    most: int = 40
+    enough: int = 10
+    covered: float = 0.5
+    slant: float = 0.5  # spread of the board's normals, to the sides and up and down [rad, about]
+
+
+class Lack(StrEnum):
+    """What is missing most."""
+
+    PICTURES = "pictures"
+    PLACES = "places"
+    SIDEWAYS = "sideways"
+    UPWARDS = "upwards"
+    NOTHING = "nothing"
+
+
+class PickedViews:
+    """The pictures of one camera that were kept."""
+
+    def __init__(
+        self, size_px: tuple[int, int], board_m: Floats, params: PickingParams | None = None
+    ) -> None:
+        self.size_px = size_px
+        self.views: list[BoardView] = []
+        self._params = params or PickingParams()
+        self._board_m = board_m
+        self._places = np.zeros((0, 5))
+        self._counts: NDArray[np.int64] = coverage([], size_px)
+
+    @property
+    def counts(self) -> NDArray[np.int64]:
+        """(rows, columns): corners in each cell of the picture."""
+        return self._counts
+
+    @property
+    def covered(self) -> float:
+        """The part of the cells, 0..1, in which a corner was seen."""
+        return float(np.mean(self._counts > 0))
+
+    def still(self, motion_px: float) -> bool:
+        """Whether the board moves so little [px per 1/30 s] that the picture can be used."""
+        return motion_px <= self._params.most_motion * self.size_px[0]
+
+    def offer(self, view: BoardView, motion_px: float) -> bool:
+        """Keep this view if it adds to those before; whether it was kept."""
+        if not self.still(motion_px) or self._blurred(view):
+            return False
+        place = rough_place(view, self._board_m, self.size_px)
+        if place is None:
+            return False
+        own = coverage([view], self.size_px)
+        new_cells = int(((own > 0) & (self._counts == 0)).sum())
+        if len(self.views):
+            far = np.linalg.norm(self._places - place, axis=1)
+            nearest = int(np.argmin(far))
+            if far[nearest] < self._params.new_place and new_cells < self._params.new_cells:
+                return False
+        if len(self.views) >= self._params.most:
+            return False
+        self.views.append(view)
+        self._places = np.vstack([self._places, place])
+        self._counts = self._counts + own
+        return True
+
+    def lack(self) -> Lack:
+        """What to show next."""
+        p = self._params
+        if len(self.views) < p.enough // 2:
+            return Lack.PICTURES
+        x, y = self._spread()
+        if min(x, y) < p.slant:
+            return Lack.SIDEWAYS if x < y else Lack.UPWARDS
+        if self.covered < p.covered:
+            return Lack.PLACES
+        return Lack.NOTHING if len(self.views) >= p.enough else Lack.PICTURES
+
+    def progress(self) -> float:
+        """0..1, how much of what is enough there is."""
+        p = self._params
+        x, y = self._spread()
+        shares = (len(self.views) / p.enough, self.covered / p.covered, x / p.slant, y / p.slant)
+        return float(np.mean(np.minimum(shares, 1.0)))
+
+    def emptiest(self) -> tuple[int, int]:
+        """Row and column (each 0, 1 or 2) of the ninth of the picture with the fewest corners."""
+        rows, columns = self._counts.shape
+        ninths = np.zeros((3, 3))
+        row, column = np.indices((rows, columns))
+        np.add.at(ninths, (row * 3 // rows, column * 3 // columns), self._counts > 0)
+        at = int(np.argmin(ninths))
+        return at // 3, at % 3
+
+    def _blurred(self, view: BoardView) -> bool:
+        if not self.views:
+            return False
+        sharp = float(np.percentile([one.sharpness for one in self.views], 75))
+        return view.sharpness < self._params.least_sharpness * sharp
+
+    def _spread(self) -> tuple[float, float]:
+        """Of the normals' directions, to the sides and up and down; about an angle [rad]."""
+        if not len(self._places):
+            return 0.0, 0.0
+        x, y = np.ptp(self._places[:, 3:], axis=0) / _TURN
+        return float(x), float(y)
+
+
+def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> Floats | None:
+    """(5,): where the board is in the picture, how large, how slanted; None where no pose fits.
+
+    Distances between two tell how alike the views are [picture widths]. No lens is needed: a usual
+    one is good enough to tell slants apart.
+    """
+    focal = _USUAL_FOCAL * size_px[0]
+    K = np.array([[focal, 0.0, size_px[0] / 2], [0.0, focal, size_px[1] / 2], [0.0, 0.0, 1.0]])
+    pose = board_pose(view, board_m, K, np.zeros(5))
+    if pose is None:
+        return None
+    xy = view.corners_px / size_px[0]
+    spread = max(float(np.sqrt(xy.var(axis=0).sum())), 1e-6)
+    normal = pose[0][:, 2]
+    return np.array([*xy.mean(axis=0), _SIZE * np.log(spread), *(_TURN * normal[:2])])

@@ -1,0 +1,88 @@
+"""Which pictures of the board a lens is computed from: sharp ones that together fill the picture."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.types import Floats
+
+GRID = (8, 6)  # cells across and down in which coverage is counted
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """How many views at the most, and how much less sharp than the best ones they may be."""
+
+    most: int = 30
+    least_sharpness: float = 0.5  # of the 90th percentile of all views
+
+
+def coverage(views: Sequence[BoardView], size_px: tuple[int, int]) -> NDArray[np.int64]:
+    """(rows, columns) of the grid over the picture: how many corners are in each cell."""
+    counts = np.zeros((GRID[1], GRID[0]), np.int64)
+    for view in views:
+        column, row = _cells(view.corners_px, size_px)
+        np.add.at(counts, (row, column), 1)
+    return counts
+
+
+def covered(views: Sequence[BoardView], size_px: tuple[int, int]) -> float:
+    """The part of the picture's cells, 0..1, in which a corner was seen."""
+    return float(np.mean(coverage(views, size_px) > 0))
+
+
+def _cells(corners_px: Floats, size_px: tuple[int, int]) -> tuple[NDArray[np.int64], ...]:
+    cells = np.floor(corners_px / np.array(size_px) * np.array(GRID)).astype(np.int64)
+    cells = np.clip(cells, 0, np.array(GRID) - 1)
+    return cells[:, 0], cells[:, 1]
+
+
+def sharp_views(views: Sequence[BoardView], least: float) -> list[BoardView]:
+    """Those of at least `least` times the sharpness of the better ones (90th percentile)."""
+    if not views:
+        return []
+    limit = least * float(np.percentile([view.sharpness for view in views], 90))
+    return [view for view in views if view.sharpness >= limit]
+
+
+def chosen_views(
+    views: Sequence[BoardView], size_px: tuple[int, int], choice: Choice
+) -> list[BoardView]:
+    """At most `choice.most` sharp views, each the one that adds most to those before it.
+
+    What a view adds: corners in cells that have few as yet, and a shape of the board (its place,
+    size and slant in the picture) unlike those taken. In the order of their index.
+    """
+    rest = sharp_views(views, choice.least_sharpness)
+    if len(rest) <= choice.most:
+        return rest
+    shapes = np.stack([_shape(view, size_px) for view in rest])
+    counts = np.zeros((GRID[1], GRID[0]))
+    distance = np.full(len(rest), 1.0)  # from the nearest shape taken
+    taken: list[int] = []
+    for _ in range(choice.most):
+        gain = np.array([_gain(view, counts, size_px) for view in rest])
+        score = (0.2 + gain) * distance * [view.sharpness for view in rest]
+        score[taken] = -1.0
+        best = int(np.argmax(score))
+        taken.append(best)
+        column, row = _cells(rest[best].corners_px, size_px)
+        np.add.at(counts, (row, column), 1.0)
+        distance = np.minimum(distance, np.linalg.norm(shapes - shapes[best], axis=1))
+    return [rest[i] for i in sorted(taken)]
+
+
+def _gain(view: BoardView, counts: Floats, size_px: tuple[int, int]) -> float:
+    column, row = _cells(view.corners_px, size_px)
+    return float(np.mean(1.0 / (1.0 + counts[row, column])))
+
+
+def _shape(view: BoardView, size_px: tuple[int, int]) -> Floats:
+    """(5,): middle of the corners and the spread of them along and across, in picture widths."""
+    xy = view.corners_px / size_px[0]
+    spread = np.cov(xy.T)
+    root = np.sqrt(np.diag(spread))
+    return np.array([*xy.mean(axis=0), *root, spread[0, 1] / max(root.max(), 1e-9)])

@@ -1,0 +1,108 @@
+"""What one camera's classified picture says of pose, shape and of the camera's own place."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.fit.idmap_term import CameraRows, search_within
+from mocapd.fit.idmap_term_kernels import ComparedPictures, spiral
+from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.types import Camera, Floats
+
+N_CAMERA = 6  # world motion of a camera: v (3,) [m], then omega (3,) [rad]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyRows:
+    """Normal equations H (P,P), b (P,) by pose, then shape; at_m (3,): the hips as drawn; camera: its
+    index.
+
+    visible, matched, unexplained (21,) per patch as in `Fit`, in units of two work px; cost: of the
+    robust residuals.
+    """
+
+    camera: int
+    H: Floats
+    b: Floats
+    at_m: Floats
+    visible: Floats
+    matched: Floats
+    unexplained: Floats
+    cost: float
+
+    @property
+    def match(self) -> float:
+        """Share of the rendered shirt whose colour the picture has."""
+        return float(self.matched.sum() / max(self.visible.sum(), 1.0))
+
+
+class RowGatherer:
+    """Draws states into the views of one fitter and gathers their rows; holds buffers only."""
+
+    def __init__(self, fitter: Fitter, radius_px: int) -> None:
+        """radius_px: work px within which a colour is looked for."""
+        self.fitter = fitter
+        self._search = search_within(
+            spiral(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
+            stiffness=fitter.params.edge_stiffness,
+        )  # fmt: skip
+
+    def gather(self, state: MotionState, view: View) -> BodyRows:
+        """The rows of one camera, at every pixel."""
+        fitter, n_shape = self.fitter, self.fitter.model.n_shape
+        rows = CameraRows(fitter.model)
+        drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
+        drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
+        rows.gather(
+            drawing, body, ComparedPictures(*drawn, view.ids, view.softness), self._search,
+            n_shape, fitter.params.row_weight,
+        )  # fmt: skip
+        H, b = rows.system(fitter.model.n_pose + n_shape)
+        at_m = drawing.posed.joints[0].copy()
+        return BodyRows(
+            view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost
+        )
+
+
+def camera_columns(at_m: Floats) -> Floats:
+    """(6,6): a row's derivative by the camera's world motion from that by root and hips.
+
+    Moving the camera is moving the whole body before it: x -> x + omega x x + v. The root's columns
+    are g, those of the hips (x - at) x g, so by omega it is x x g = (x - at) x g + at x g.
+    """
+    x, y, z = at_m
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    out = np.eye(N_CAMERA)
+    out[3:, :3] = cross
+    return out
+
+
+def moved_camera(camera: Camera, motion: Floats) -> Camera:
+    """The camera after a motion (6,) of the world before it."""
+    turn = rotations.to_matrix(rotations.exp(motion[3:]))
+    return replace(camera, R=camera.R @ turn, t_m=camera.t_m + camera.R @ motion[:3])
+
+
+def mean_camera(cameras: Sequence[Camera]) -> Camera:
+    """Amid the places (t and R) of a camera that differ little."""
+    quats = rotations.from_matrix(np.stack([camera.R for camera in cameras]))
+    first = quats[0]
+    turns = rotations.log(rotations.multiply(quats, rotations.inverse(first)))
+    R = rotations.to_matrix(rotations.multiply(rotations.exp(turns.mean(axis=0)), first))
+    t_m = np.mean([camera.t_m for camera in cameras], axis=0)
+    return replace(cameras[0], R=R, t_m=t_m)
+
+
+def shift_px(rows: BodyRows, camera: Camera, factor: int) -> Floats:
+    """The way (2,) in work px that this camera alone would move the whole body.
+
+    It tells of a camera that was turned across the plane of both views, and of no other turn.
+    """
+    way_m = np.linalg.solve(rows.H[:3, :3] + 1e-3 * np.eye(3), rows.b[:3])
+    depth_m = float(camera.R[2] @ rows.at_m + camera.t_m[2])
+    focal_px = np.array([camera.K[0, 0], camera.K[1, 1]]) / factor
+    out: Floats = focal_px * (camera.R @ way_m)[:2] / max(depth_m, 0.2)
+    return out

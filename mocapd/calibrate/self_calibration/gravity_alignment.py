@@ -1,0 +1,78 @@
+"""Gravity, floor and origin from a person who stands and walks: the world's frame of a rig."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.body.model import build_model, shape_of
+from mocapd.body.shape import skeleton_of
+from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment
+from mocapd.errors import ConfigError
+from mocapd.geometry.triangulation import triangulate
+from mocapd.types import Camera, Floats, Rig
+
+_LEAN_RAD = 0.1  # a spine further from the usual one is bending, not standing
+_START = 15  # moments of the beginning, in which the person faces forwards
+_NAMES = ("hips", "neck", "leftUpperArm", "rightUpperArm")
+_PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
+
+
+def upright(rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats) -> Rig:
+    """The rig in the world of someone who stood and walked in it.
+
+    Up is the middle direction of the spine, once moments of bending are left out; the floor is where
+    the feet of a body with these proportions (n_shape,) are when it stands straight; the origin is
+    where the person stood first, facing +Z. Raises ConfigError when nobody was placed in it.
+    """
+    body = _bodies(rig, moments)
+    rest = skeleton_of(shape_of(build_model(stature_m), factors)).rest_m
+    spine = body[:, 1] - body[:, 0]
+    spine = spine / np.linalg.norm(spine, axis=1, keepdims=True)
+    up = _unit(np.median(spine, axis=0))
+    for _ in range(10):
+        standing = spine @ up > np.cos(_LEAN_RAD)
+        if not standing.any():
+            break
+        up = _unit(spine[standing].mean(axis=0))
+    hips = body[:, 0]
+    # knees bend now and then; they never make anybody taller
+    height = float(np.percentile(hips @ up, 75))
+    floor = height - rest[INDEX["hips"], 1]
+    across = _unit(np.median(body[:_START, 2] - body[:_START, 3], axis=0))  # right to left is +X
+    forwards = _unit(np.cross(across, up))
+    start = np.median(hips[:_START], axis=0)
+    to_world = np.stack([np.cross(up, forwards), up, forwards])
+    origin = start + (floor - start @ up) * up
+    return Rig(tuple(_in_world(camera, to_world, origin) for camera in rig.cameras))
+
+
+def _bodies(rig: Rig, moments: Sequence[Moment]) -> Floats:
+    """Hips, neck and shoulders (F,4,3) of every moment that at least two cameras saw."""
+    missing = np.full((len(_NAMES), 2), np.nan)
+    xy = np.array(
+        [
+            [m[c.name].marks_xy[_PLACES] if c.name in m else missing for m in moments]
+            for c in rig.cameras
+        ]
+    ).reshape(len(rig.cameras), -1, len(_NAMES), 2)
+    points, _ = triangulate(rig.cameras, xy)
+    good: Floats = points[np.isfinite(points).all(axis=(1, 2))]
+    if len(good) == 0:
+        raise ConfigError(
+            "nobody was seen by two cameras at once", "room", "walk where both see the shirt"
+        )
+    return good
+
+
+def _unit(v: Floats) -> Floats:
+    out: Floats = v / np.linalg.norm(v)
+    return out
+
+
+def _in_world(camera: Camera, to_world: Floats, origin: Floats) -> Camera:
+    """x_camera = R x + t with x = to_world^T x_world + origin."""
+    R: Floats = camera.R @ to_world.T
+    return Camera(
+        camera.name, camera.size_px, camera.K, camera.dist, R, camera.t_m + camera.R @ origin
+    )

@@ -1,0 +1,55 @@
+"""Where the cameras stand about: each next to one that saw the same bodies."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, unplaced
+from mocapd.calibrate.self_calibration.relative_pose import relative_pose
+from mocapd.errors import ConfigError
+from mocapd.types import Camera
+
+
+def first_placing(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
+    """The first camera where a lone webcam would stand, the others by the bodies seen in common.
+
+    Cameras that share nothing with the first are chained through others. Raises ConfigError naming
+    a camera that shares nothing with any.
+    """
+    alone = unplaced(lenses)
+    placed: dict[str, Camera] = {alone[0].name: alone[0]}
+    while len(placed) < len(alone):
+        candidates = [
+            (_shared(moments, a, b.name), a, b)
+            for a in placed
+            for b in alone
+            if b.name not in placed
+        ]
+        shared, known, new = max(candidates, key=lambda one: len(one[0]))
+        first = [m[known] for m in shared]
+        second = [m[new.name] for m in shared]
+        if not shared:
+            raise ConfigError(
+                "never saw the wearer together with another camera",
+                f"camera {new.name!r}",
+                "walk where both see the shirt, or turn the camera",
+            )
+        weights = np.array(
+            [
+                np.minimum(a.confidence[MARKS], b.confidence[MARKS])
+                for a, b in zip(first, second, strict=True)
+            ]
+        )
+        pose = relative_pose(
+            np.concatenate([s.joints_m[MARKS] for s in first]),
+            np.concatenate([s.joints_m[MARKS] for s in second]),
+            weights.ravel(),
+        )
+        old = placed[known]
+        placed[new.name] = replace(new, R=pose.R @ old.R, t_m=pose.R @ old.t_m + pose.t_m)
+    return [placed[camera.name] for camera in alone]
+
+
+def _shared(moments: Sequence[Moment], a: str, b: str) -> list[Moment]:
+    return [m for m in moments if a in m and b in m]

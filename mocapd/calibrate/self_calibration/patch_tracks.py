@@ -1,0 +1,128 @@
+"""The wearer as each camera sees them alone: body, classified patches and marks, before any room is known."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.skeleton import INDEX
+from mocapd.errors import ConfigError
+from mocapd.geometry import rotations
+from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Tracking
+
+# The body's own points that one camera can place in its picture: joint centres, because the middle
+# of what is seen of a patch is another point of the cloth from every side.
+MARKS = np.array(
+    [
+        INDEX[name]
+        for name in (
+            "hips", "neck", "leftUpperArm", "leftLowerArm", "leftHand",
+            "rightUpperArm", "rightLowerArm", "rightHand",
+        )
+    ]
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sighting:
+    """The body that one camera saw at one instant, in that camera's frame.
+
+    joints_m (J,3), quats_xyzw (J,4) from the T-pose's axes to the camera's, confidence (J,); ids (h,w): the classified
+    picture over roi_px (x0, y0, x1, y1 of the frame).
+    """
+
+    t_ns: int
+    joints_m: Floats
+    quats_xyzw: Floats
+    confidence: Floats
+    ids: Bytes
+    roi_px: tuple[int, int, int, int]
+
+    @property
+    def marks_xy(self) -> Floats:
+        """The marks (M,2) in undistorted normalised coordinates."""
+        points = self.joints_m[MARKS]
+        xy: Floats = points[:, :2] / points[:, 2:]
+        return xy
+
+
+Moment = Mapping[str, Sighting]  # by camera, of one frame set
+
+
+def unplaced(lenses: Sequence[Camera]) -> tuple[Camera, ...]:
+    """The cameras with their lenses alone: each where a lone webcam would stand."""
+    out = []
+    for lens in lenses:
+        guess = nominal_rig(lens.name, lens.size_px).cameras[0]
+        out.append(replace(lens, R=guess.R, t_m=guess.t_m))
+    return tuple(out)
+
+
+class PatchTracks:
+    """Follows the wearer in every camera by itself; fed frame sets, live or recorded."""
+
+    def __init__(
+        self,
+        lenses: Sequence[Camera],
+        stature_m: float,
+        colour_model: ColourModel,
+        white_balance: Mapping[str, Floats],
+        database: PoseDatabase,
+        rig: Rig | None = None,
+    ) -> None:
+        """Of `lenses` only name, size, K and dist are read. white_balance: W (3,3) by camera name.
+
+        rig: where the cameras stand nearly; then the wearer is followed by all together, which reads
+        the pictures better than each alone can.
+        """
+        if len(lenses) < 2:
+            raise ConfigError(
+                f"{len(lenses)} camera", "room", "two or more cameras make a room; one needs none"
+            )
+        self.cameras = unplaced(lenses) if rig is None else rig.cameras
+        rigs = [Rig((camera,)) for camera in self.cameras] if rig is None else [rig]
+        self._trackers = [
+            ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
+        ]
+        self.moments: list[Moment] = []
+
+    def add(self, frames: FrameSet) -> Moment:
+        """Follow one frame set: who saw the wearer, and how."""
+        seen: dict[str, Sighting] = {}
+        for tracker in self._trackers:
+            mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
+            if not mine:
+                continue
+            t_ns = frames.t_ns if len(tracker.rig.cameras) > 1 else next(iter(mine.values())).t_ns
+            track = tracker.step(FrameSet(t_ns, mine))
+            body = track.body
+            if body.tracking is not Tracking.LIVE or body.pose is None or body.joints_m is None:
+                continue
+            for camera in tracker.rig.cameras:
+                if camera.name not in track.evidence:
+                    continue
+                to_this = rotations.from_matrix(camera.R)
+                seen[camera.name] = Sighting(
+                    mine[camera.name].t_ns,
+                    to_camera(camera, body.joints_m),
+                    rotations.multiply(to_this, body.pose.quats_xyzw),
+                    body.confidence,
+                    track.evidence[camera.name],
+                    track.roi_px[camera.name],
+                )
+        self.moments.append(seen)
+        return seen
+
+    def add_all(
+        self, frames: Iterable[FrameSet], progress: Callable[[int], None] | None = None
+    ) -> None:
+        """Follow all of a recording."""
+        for i, one in enumerate(frames):
+            self.add(one)
+            if progress is not None:
+                progress(i + 1)

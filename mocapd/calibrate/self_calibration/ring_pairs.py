@@ -1,0 +1,96 @@
+"""The sleeve rings that two cameras saw at one instant."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.self_calibration.patch_tracks import Moment, Sighting
+from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, SIDES, sleeve_rings
+from mocapd.clock import nanoseconds
+from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.triangulation import triangulate
+from mocapd.types import Camera, Floats
+
+_ARMS = np.array([INDEX[s + b] for s in SIDES for b in ("UpperArm", "LowerArm", "Hand")])
+_SAME_NS = nanoseconds(1e-4)
+_USUAL = 65.0  # percentile of a ring's width: those seen narrower are half hidden
+_UNLIKE = 0.22
+_MOST = 160  # moments: 15 s of a core
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RingPairs:
+    """xy (2,G,P,2): rings of G arms in both cameras, undistorted normalised; seen (G,P): by both."""
+
+    xy: Floats
+    seen: NDArray[np.bool_]
+
+
+def ring_pairs(
+    moments: Sequence[Moment], pair: tuple[Camera, Camera], factors: tuple[int, int]
+) -> RingPairs:
+    """Of the moments in which both cameras saw the wearer; the second camera's rings are moved to
+    the first's instants. The cameras stand about where `pair` says."""
+    shared = [m for m in moments if all(camera.name in m for camera in pair)]
+    picked = np.unique(np.linspace(0, len(shared) - 1, min(_MOST, len(shared))).astype(np.int64))
+    n = len(picked)
+    xy, half_m = np.full((2, n, 2 * N_ALONG, 2), np.nan), np.full((2, n, 2 * N_ALONG), np.nan)
+    for row, k in enumerate(picked):
+        xy[0, row], half_m[0, row] = _rings(shared[k], 0, pair, factors)
+        second = _rings(shared[k], 1, pair, factors)
+        ahead_ns = shared[k][pair[0].name].t_ns - shared[k][pair[1].name].t_ns
+        if abs(ahead_ns) > _SAME_NS:
+            other = int(k) + (1 if ahead_ns > 0 else -1)
+            if not 0 <= other < len(shared):
+                continue
+            way_ns = shared[other][pair[1].name].t_ns - shared[k][pair[1].name].t_ns
+            share = ahead_ns / way_ns if way_ns else np.inf
+            if not 0.0 <= share <= 1.0:
+                continue
+            beside = _rings(shared[other], 1, pair, factors)
+            second = (
+                (1.0 - share) * second[0] + share * beside[0],
+                (1.0 - share) * second[1] + share * beside[1],
+            )
+        xy[1, row], half_m[1, row] = second
+    arms = xy.reshape(2, 2 * n, N_ALONG, 2)  # a view
+    width_m = half_m.reshape(2, 2 * n, N_ALONG)
+    for p in range(N_ALONG):
+        of_ring = width_m[..., p][np.isfinite(width_m[..., p])]
+        if len(of_ring):
+            usual = np.percentile(of_ring, _USUAL)
+            arms[..., p, :][~(np.abs(width_m[..., p] / usual - 1.0) < _UNLIKE)] = np.nan
+    seen = np.isfinite(arms).all(axis=(0, 3))
+    kept = seen.any(axis=1)
+    return RingPairs(np.where(seen[..., None], arms, 0.0)[:, kept], seen[kept])
+
+
+def _rings(
+    moment: Moment, i: int, pair: tuple[Camera, Camera], factors: tuple[int, int]
+) -> tuple[Floats, Floats]:
+    """Of one of both cameras, as `sleeve_rings`."""
+    sightings = [moment[camera.name] for camera in pair]
+    joints_m = _arms_in_depth(sightings, pair)[i]
+    return sleeve_rings(sightings[i], joints_m, pair[i], factors[i])
+
+
+def _arms_in_depth(sightings: Sequence[Sighting], pair: Sequence[Camera]) -> list[Floats]:
+    """Each camera's joints (J,3) with the arms as far off as both together place them.
+
+    A lone camera errs in how an arm points towards it, and may have it the wrong way round.
+    """
+    points = np.stack([s.joints_m[_ARMS] for s in sightings])
+    weights = np.stack([s.confidence[_ARMS] for s in sightings]) + 1e-3
+    placed, _ = triangulate(pair, points[..., :2] / points[..., 2:], weights)
+    out = []
+    for sighting, camera in zip(sightings, pair, strict=True):
+        joints = sighting.joints_m.copy()
+        depth = to_camera(camera, placed)[:, 2]
+        known = np.isfinite(depth) & (depth > 0.5)
+        arms = _ARMS[known]
+        joints[arms] *= (depth[known] / joints[arms, 2])[:, None]
+        out.append(joints)
+    return out

@@ -1,0 +1,241 @@
+"""`calibration.toml`, read and checked value by value, and written whole or not at all."""
+
+import hashlib
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+import cv2
+import msgspec
+
+from mocapd.boundary.files import MissingError, is_file, is_folder, read_file, read_text
+from mocapd.boundary.folders import private_folder
+from mocapd.boundary.messages import convert, parse_toml
+from mocapd.boundary.numbers import brief, check_numbers
+from mocapd.boundary.urls import is_masked
+from mocapd.calibration.saved_calibration import SCHEMA, ColourFit, SavedCalibration
+from mocapd.calibration.saved_sources import (
+    SECRETS,
+    complete_sources,
+    keep_sources,
+    known_sources,
+    passwords_of,
+    shown_sources,
+)
+from mocapd.calibration.toml_text import toml_text
+from mocapd.errors import (
+    CannotCreateError,
+    ConfigError,
+    InputError,
+    MalformedError,
+    MocapdError,
+)
+from mocapd.types import Bytes
+from mocapd.whole_file import tidy, whole_file
+
+FILE_NAME = "calibration.toml"
+COLOURS = "colours"
+
+_MOST_BYTES = 16 << 20
+_RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
+_HEADER = """\
+# The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
+# Lengths are in metres, pixels where a name ends in _px; y points up from the floor. The pictures
+# that the colours were read from lie in the folder colours/ beside this file, and show the wearer.
+# The one before is kept beside it under the same name with .previous: rename it to go back.
+
+"""
+_PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
+
+
+def calibration_path(place: Path) -> Path:
+    """The file of a state directory, or the file itself."""
+    return place / FILE_NAME if is_folder(place) else place
+
+
+def read_calibration(place: Path) -> SavedCalibration:
+    """The calibration in a file, or in a folder by its usual name; its sources with their passwords,
+    as far as those are kept beside it.
+
+    Raises InputError when there is none, ConfigError naming file and key when it is damaged.
+    """
+    path = calibration_path(place)
+    saved = _read(path)
+    if not any(is_masked(one.source) for one in saved.camera):
+        return saved
+    return complete_sources(saved, known_sources(path.parent))
+
+
+def _read(path: Path) -> SavedCalibration:
+    where = str(path)
+    data = _toml(path)
+    schema = data.get("schema")
+    if schema != SCHEMA:
+        told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
+        raise ConfigError(
+            f"{told}, this mocapd reads schema {SCHEMA}",
+            where,
+            "use the mocapd that wrote it, or calibrate again (`mocapd calibrate`)",
+        )
+    try:
+        check_numbers(data)
+        saved: SavedCalibration = convert(data, SavedCalibration)
+    except MalformedError as error:
+        what, _, key = error.what.partition(" - at ")
+        named = key.strip("`").removeprefix("$").removeprefix(".")
+        what = what[0].lower() + what[1:]
+        raise ConfigError(f"{named}: {what}" if named else what, where, _RECALIBRATE) from None
+    except ConfigError as error:  # the board's own check
+        raise ConfigError(error.what, f"{where}, {error.where}", error.fix) from None
+    ids = [camera.id for camera in saved.camera]
+    if len(set(ids)) != len(ids):
+        raise ConfigError("two cameras have one id", where, "rename one of them")
+    saved.rig(where)
+    return saved
+
+
+def write_calibration(
+    path: Path,
+    saved: SavedCalibration,
+    pictures: Mapping[str, tuple[Bytes, Bytes]],
+    own_folder: bool = True,
+) -> None:
+    """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml.
+
+    pictures: by camera id the picture (h,w,3) BGR and the strokes (h,w) that its `colour` is from.
+    Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
+    The file comes last, so what was there stays in force until all is written.
+    Raises CannotCreateError, or ConfigError where passwords are kept and cannot be read.
+    """
+    folder = path.parent
+    known = {**known_sources(folder), **passwords_of(saved)}
+    try:
+        if own_folder:
+            private_folder(folder)
+        private_folder(folder / COLOURS)
+        cameras = []
+        for camera in saved.camera:
+            colour = camera.colour
+            if colour is not None:
+                colour = _with_files(folder, camera.id, *pictures[camera.id], colour)
+            cameras.append(msgspec.structs.replace(camera, colour=colour))
+        text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
+        if path.exists():
+            before, kept = _without_passwords(path)
+            known = {**kept, **known}
+            with whole_file(_previous(path), private=True) as partial:
+                partial.write_bytes(before)
+        _write(path, text, known)
+        _tidy(path)
+    except OSError as error:
+        raise _cannot_write(error, path) from None
+
+
+def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
+    """Give cameras of the saved calibration, by id, another source: they were plugged in elsewhere.
+
+    Raises InputError, ConfigError or CannotCreateError; the file stays as it was then.
+    """
+    saved = read_calibration(path)
+    cameras = tuple(
+        msgspec.structs.replace(one, source=sources.get(one.id, one.source)) for one in saved.camera
+    )
+    saved = msgspec.structs.replace(saved, camera=cameras)
+    known = {**known_sources(path.parent), **passwords_of(saved)}
+    try:
+        _write(path, _text(saved), known)
+    except OSError as error:
+        raise _cannot_write(error, path) from None
+
+
+def _write(path: Path, text: str, known: Mapping[tuple[str, str], str]) -> None:
+    """The passwords first: without them the file would say too little."""
+    keep_sources(path.parent, known, text + _named(path.parent))
+    with whole_file(path, private=True) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def _without_passwords(path: Path) -> tuple[bytes, dict[tuple[str, str], str]]:
+    """The bytes of the calibration that is there, and what earlier versions kept within it."""
+    try:
+        saved = _read(path)
+    except MocapdError:  # damaged: kept as it is, for whoever mends it
+        return path.read_bytes(), {}
+    kept = dict(passwords_of(saved))
+    return _text(saved).encode() if kept else path.read_bytes(), kept
+
+
+def _previous(path: Path) -> Path:
+    return path.with_name(f"{path.stem}.previous{path.suffix}")
+
+
+def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
+    return CannotCreateError(
+        f"the calibration cannot be written ({error.strerror})",
+        str(error.filename or path),
+        "make room or the folder writable, or set state_dir; what was saved before is untouched",
+    )
+
+
+def _text(saved: SavedCalibration) -> str:
+    tables: dict[str, Any] = msgspec.to_builtins(shown_sources(saved), builtin_types=(datetime,))
+    return _HEADER + toml_text(tables)
+
+
+def _with_files(
+    folder: Path, camera: str, pixels: Bytes, strokes: Bytes, colour: ColourFit
+) -> ColourFit:
+    """Pictures are named by their content: one that is there already is the same one."""
+    picture, drawn = _png(pixels), _png(strokes)
+    stem = re.sub(r"[^\w.-]", "_", camera)
+    mark = hashlib.sha256(picture + drawn).hexdigest()[:12]
+    names = f"{stem}-{mark}.png", f"{stem}-{mark}_strokes.png"
+    for name, data in zip(names, (picture, drawn), strict=True):
+        path = folder / COLOURS / name
+        if is_file(path) and path.read_bytes() == data:
+            path.chmod(0o600)  # an earlier version let everybody read it
+            continue
+        with whole_file(path, private=True) as partial:
+            partial.write_bytes(data)
+    return msgspec.structs.replace(
+        colour, picture=f"{COLOURS}/{names[0]}", strokes=f"{COLOURS}/{names[1]}"
+    )
+
+
+def _png(pixels: Bytes) -> bytes:
+    return bytes(cv2.imencode(".png", pixels)[1])
+
+
+def _named(folder: Path) -> str:
+    """What the calibrations of a folder say."""
+    said = b""
+    for path in folder.glob("*.toml"):
+        if path.name != SECRETS:
+            with suppress(InputError):  # none of ours
+                said += read_file(path, _MOST_BYTES)
+    return said.decode("utf-8", "replace")
+
+
+def _tidy(path: Path) -> None:
+    """Remove what was half written, and pictures of ours that no calibration here names any more."""
+    folder, now_s = path.parent, path.stat().st_mtime
+    tidy(folder, now_s)
+    tidy(folder / COLOURS, now_s)
+    named = _named(folder)
+    for picture in (folder / COLOURS).iterdir():
+        if _PICTURE.fullmatch(picture.name) and picture.name not in named:
+            picture.unlink()
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        return parse_toml(read_text(path, _MOST_BYTES))
+    except MissingError:
+        raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
+    except MalformedError as error:
+        raise ConfigError(f"not valid TOML ({error.what})", str(path), _RECALIBRATE) from None

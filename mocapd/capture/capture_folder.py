@@ -1,0 +1,207 @@
+"""A folder in the capture format: rig.json, camN.mp4, subject.json, scribble/, model/."""
+
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from mocapd.boundary.files import is_folder
+from mocapd.boundary.numbers import brief, finite_number
+from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
+from mocapd.capture.pace import Pace
+from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
+from mocapd.geometry.rig_file import load_rig, read_json
+from mocapd.shirt.colour.strokes import stroked_pictures, strokes_beside
+from mocapd.types import Frame, FrameSet, Rig
+
+_LOG = logging.getLogger(__name__)
+_MOST_OFFSET_S = 86_400.0  # of a camera's clock from the others'
+_STATURES_M = (0.5, 2.6)
+
+
+@dataclass(frozen=True, slots=True)
+class StrokedImage:
+    """An image and a user's strokes on it (PNG: 0 none, 1..10 the colour id)."""
+
+    image: Path
+    strokes: Path
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedCamera:
+    """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble` is None when there is none."""
+
+    name: str
+    video: Path
+    size_px: tuple[int, int]  # width, height
+    fps_hz: float
+    time_offset_s: float
+    frames: int
+    scribble: StrokedImage | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaptureFolder:
+    """A recorded session; `cameras` in the rig's order. `stature_m` is None where no subject is given.
+
+    `model`: images of the shirt in neutral light with strokes, for the offline colour model.
+    """
+
+    path: Path
+    rig: Rig
+    cameras: tuple[RecordedCamera, ...]
+    stature_m: float | None
+    model: tuple[StrokedImage, ...]
+
+    @property
+    def fps_hz(self) -> float:
+        """The common rate of the cameras."""
+        return self.cameras[0].fps_hz
+
+
+def load_folder(path: Path) -> CaptureFolder:
+    """Read and check a capture folder; every video is opened once.
+
+    Raises InputError (something is missing or damaged) or ConfigError (a value is wrong, a video's
+    size is not that of its calibration, or the cameras' rates differ).
+    """
+    if not is_folder(path):
+        raise InputError("no such capture folder", str(path), "check the path")
+    rig_path = path / "rig.json"
+    rig = load_rig(rig_path)
+    entries = read_json(rig_path)["cameras"]
+    cameras = tuple(
+        _camera(path, entry, camera.size_px)
+        for entry, camera in zip(entries, rig.cameras, strict=True)
+    )
+    rates = sorted({camera.fps_hz for camera in cameras})
+    if len(rates) > 1:
+        raise ConfigError(
+            f"the cameras run at different rates ({rates} Hz)",
+            str(rig_path),
+            "frames of one index must belong together: convert the videos to one rate",
+        )
+    return CaptureFolder(
+        path, rig, cameras, _stature_m(path / "subject.json"), _model(path / "model")
+    )
+
+
+def _number(value: object, key: str, low: float, high: float, where: str) -> float:
+    try:
+        return finite_number(value, low, high)
+    except MalformedError as error:
+        raise ConfigError(f"{key!r}: {error.what}", where, "correct the file") from None
+
+
+def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> RecordedCamera:
+    name: str = entry["name"]
+    where = f"{folder / 'rig.json'}, camera {name!r}"
+    file = entry.get("file", f"{name}.mp4")
+    if not isinstance(file, str):
+        raise ConfigError(
+            f"'file' must be a file name, is {brief(file)}", where, "correct the file"
+        )
+    video = folder / file
+    info = probe_video(video)
+    if info.size_px != size_px:
+        raise size_error(str(video), name, info.size_px, size_px)
+    offset_s = entry.get("time_offset_s", 0.0)
+    return RecordedCamera(
+        name=name,
+        video=video,
+        size_px=size_px,
+        fps_hz=_number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where),
+        time_offset_s=_number(offset_s, "time_offset_s", -_MOST_OFFSET_S, _MOST_OFFSET_S, where),
+        frames=info.frames,
+        scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
+    )
+
+
+def _stature_m(path: Path) -> float | None:
+    if not path.exists():
+        return None
+    fix = 'write the person\'s height in metres, as {"stature_m": 1.72}'
+    subject = read_json(path)
+    if not isinstance(subject, dict) or "stature_m" not in subject:
+        raise ConfigError("the field 'stature_m' is missing", str(path), fix)
+    try:
+        return finite_number(subject["stature_m"], *_STATURES_M)
+    except MalformedError as error:
+        raise ConfigError(f"'stature_m': {error.what}", str(path), fix) from None
+
+
+def _stroked(image: Path) -> StrokedImage | None:
+    """The image and its `_strokes.png`; None without an image. Raises InputError for one alone."""
+    if not image.exists():
+        return None
+    strokes = strokes_beside(image)
+    if not strokes.exists():
+        raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
+    return StrokedImage(image, strokes)
+
+
+def _model(folder: Path) -> tuple[StrokedImage, ...]:
+    pairs = (_stroked(image) for image in stroked_pictures(folder))
+    return tuple(pair for pair in pairs if pair is not None)
+
+
+def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -> FileSource:
+    """The source of one camera, under its own name if no other is given.
+
+    A live `pace` is shared by the cameras of a folder, so that they stay in step.
+    """
+    return FileSource(
+        name or camera.name,
+        camera.video,
+        camera.fps_hz,
+        camera.time_offset_s,
+        pace=pace,
+        size_px=camera.size_px,
+    )
+
+
+def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
+    """Frame f of every camera, for f = 0, 1, ...: every frame, from time 0, as fast as they decode.
+
+    Each frame carries its own time f / fps + time_offset_s; a camera that ended early is absent.
+    """
+    pace = Pace(live=False)
+    return sources_in_step([folder_source(camera, pace) for camera in folder.cameras])
+
+
+def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
+    """The same for any offline video sources, as videos without a rig; closes them at the end.
+
+    A frame that does not decode is absent from its set; the frames after it keep their index.
+    """
+    with ExitStack() as opened:
+        for source in sources:
+            opened.callback(source.close)
+            source.open()
+        running = list(sources)
+        ahead: dict[str, Frame] = {}  # per camera its next whole frame, not yet due
+        for index in count():
+            for source in tuple(running):
+                if source.name in ahead:
+                    continue
+                try:
+                    ahead[source.name] = source.read()
+                except EndOfStream as end:
+                    running.remove(source)
+                    if end.fix:  # it ended before its time
+                        _LOG.warning("%s", end)
+            if not ahead:
+                return
+            due = [s.name for s in sources if s.name in ahead and ahead[s.name].seq == index]
+            if due:
+                yield as_set({name: ahead.pop(name) for name in due})
+
+
+def as_set(frames: dict[str, Frame]) -> FrameSet:
+    """Frames in the rig's order as a set: its time is that of the first camera that is present."""
+    t_ns = next(iter(frames.values())).t_ns
+    spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
+    return FrameSet(t_ns, frames, spread_ns)

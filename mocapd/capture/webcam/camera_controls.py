@@ -1,0 +1,112 @@
+"""The controls of a webcam by name, read and set beside whoever streams from it.
+
+V4L2 answers control questions on a second descriptor of a node that streams (V4L2 API, "Opening and
+Closing Devices"). The descriptor lives for one question only: held over an unplugging it would keep
+the node's number taken, and the camera would come back under another.
+"""
+
+import errno
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path
+from types import MappingProxyType
+from typing import Protocol
+
+from mocapd.capture.webcam.node_access import opened_node
+from mocapd.capture.webcam.v4l2_ioctl import ControlRange, get_control, query_control, set_control
+from mocapd.errors import UnavailableError
+
+
+class Control(StrEnum):
+    """The controls that decide whether two pictures of one scene are alike."""
+
+    AUTO_EXPOSURE = "auto_exposure"  # 1 manual, 3 the camera's own (0 and 2 are rare)
+    EXPOSURE = "exposure_time_absolute"  # [100 us]
+    DYNAMIC_FRAMERATE = "exposure_dynamic_framerate"  # 1: longer exposures at a lower rate
+    GAIN = "gain"
+    AUTO_WB = "white_balance_automatic"
+    WB_TEMPERATURE = "white_balance_temperature"  # [K]
+    AUTOFOCUS = "focus_automatic_continuous"
+    FOCUS = "focus_absolute"
+    POWER_LINE = "power_line_frequency"  # 0 off, 1 50 Hz, 2 60 Hz, 3 automatic
+
+
+_IDS: Mapping[Control, int] = MappingProxyType(
+    {  # <linux/v4l2-controls.h>
+        Control.AUTO_EXPOSURE: 0x009A0901,
+        Control.EXPOSURE: 0x009A0902,
+        Control.DYNAMIC_FRAMERATE: 0x009A0903,
+        Control.GAIN: 0x00980913,
+        Control.AUTO_WB: 0x0098090C,
+        Control.WB_TEMPERATURE: 0x0098091A,
+        Control.AUTOFOCUS: 0x009A090C,
+        Control.FOCUS: 0x009A090A,
+        Control.POWER_LINE: 0x00980918,
+    }
+)
+_POWER_LINE_CODES: Mapping[int, int] = MappingProxyType({0: 0, 50: 1, 60: 2})
+_REFUSED = (errno.EACCES, errno.EINVAL, errno.EIO, errno.ENOTTY, errno.ERANGE, errno.EPIPE)
+
+
+def power_line_code(mains_hz: int) -> int:
+    """The value of POWER_LINE for 0 (no filter), 50 or 60 Hz."""
+    return _POWER_LINE_CODES[mains_hz]
+
+
+class ControlDevice(Protocol):
+    """Where controls are read and set. Every method raises UnavailableError when the camera is gone."""
+
+    def range(self, control: Control) -> ControlRange | None:
+        """What it takes; None when the camera does not have it."""
+        ...
+
+    def read(self, control: Control) -> int | None:
+        """What it holds; None when the camera does not have it or does not tell."""
+        ...
+
+    def write(self, control: Control, value: int) -> int | None:
+        """Set it; what it holds then, which need not be `value`: drivers clip and refuse."""
+        ...
+
+
+class NodeControls:
+    """The controls of a /dev/video node."""
+
+    def __init__(self, node: Path) -> None:
+        self._node = node
+
+    def range(self, control: Control) -> ControlRange | None:
+        """See ControlDevice."""
+        with opened_node(self._node) as fd:
+            try:
+                return query_control(fd, _IDS[control])
+            except OSError as error:
+                raise self._gone(error) from None
+
+    def read(self, control: Control) -> int | None:
+        """See ControlDevice."""
+        with opened_node(self._node) as fd:
+            return self._read(fd, control)
+
+    def write(self, control: Control, value: int) -> int | None:
+        """See ControlDevice."""
+        with opened_node(self._node) as fd:
+            try:
+                set_control(fd, _IDS[control], value)
+            except OSError as error:
+                if error.errno not in _REFUSED:
+                    raise self._gone(error) from None
+            return self._read(fd, control)
+
+    def _read(self, fd: int, control: Control) -> int | None:
+        try:
+            return get_control(fd, _IDS[control])
+        except OSError as error:
+            if error.errno in _REFUSED:
+                return None
+            raise self._gone(error) from None
+
+    def _gone(self, error: OSError) -> UnavailableError:
+        return UnavailableError(
+            f"its controls do not answer ({error.strerror})", str(self._node), "plug it in again"
+        )

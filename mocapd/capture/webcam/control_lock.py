@@ -1,0 +1,169 @@
+"""A camera's automatics: set free to find their values, locked at what they found, given back at last.
+
+All of it works on a `ControlDevice`, so beside the thread that streams. UVC cameras set a value only
+while its automatic is off, so an automatic goes before its value, each way.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from mocapd.capture.webcam.camera_controls import Control, ControlDevice, power_line_code
+from mocapd.capture.webcam.controls import Controls
+from mocapd.capture.webcam.v4l2 import WebcamSettings
+
+MANUAL_EXPOSURE, AUTO_EXPOSURE, _AUTO_EVERYTHING = 1, 3, 0
+UNITS_PER_S = 10_000
+"""Of the control EXPOSURE, which counts 100 us."""
+
+
+@runtime_checkable
+class Lockable(Protocol):
+    """A source whose camera can be set from outside while its thread reads it."""
+
+    @property
+    def settings(self) -> WebcamSettings:
+        """What it asks for at each opening."""
+        ...
+
+    def device(self) -> ControlDevice | None:
+        """Its controls; None while it is not open."""
+        ...
+
+    def change(self, settings: WebcamSettings) -> None:
+        """Ask for this from the next opening on; another size or rate makes it open anew at once."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class _Automatic:
+    """An automatic, its code for off, and the value that it drives."""
+
+    switch: Control
+    off: int
+    on: int
+    value: Control
+
+
+_AUTOMATICS = (
+    _Automatic(Control.AUTO_EXPOSURE, MANUAL_EXPOSURE, AUTO_EXPOSURE, Control.EXPOSURE),
+    _Automatic(Control.AUTO_WB, 0, 1, Control.WB_TEMPERATURE),
+    _Automatic(Control.AUTOFOCUS, 0, 1, Control.FOCUS),
+)
+
+
+Held = Mapping[Control, int]
+"""The controls that a camera has, and their values."""
+
+
+def read_held(device: ControlDevice) -> Held:
+    """Everything that a lock may change. Raises UnavailableError."""
+    values = {}
+    for control in Control:
+        value = device.read(control) if device.range(control) is not None else None
+        if value is not None:
+            values[control] = value
+    return values
+
+
+def set_free(device: ControlDevice, held: Held) -> None:
+    """Switch the automatics on, but for the one that would lower the rate. Raises UnavailableError."""
+    if Control.DYNAMIC_FRAMERATE in held:
+        device.write(Control.DYNAMIC_FRAMERATE, 0)
+    for one in _AUTOMATICS:
+        # one that cannot be switched back would leave the camera with a value of nobody's choice
+        if one.switch not in held or one.value not in held:
+            continue
+        now = device.write(one.switch, one.on)
+        if now == one.off and one.switch is Control.AUTO_EXPOSURE:
+            device.write(one.switch, _AUTO_EVERYTHING)  # the few that steer an iris too
+
+
+def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None = None) -> Controls:
+    """Switch the automatics off and keep the values they have found.
+
+    held: what the camera has; fps_hz: its rate, which no exposure may lower; mains_hz: 50 or 60 when
+    lamps are seen to flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
+    Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
+    """
+    found = {one.value: device.read(one.value) for one in _AUTOMATICS if one.value in held}
+    gain = device.read(Control.GAIN) if Control.GAIN in held else None
+    for one in _AUTOMATICS:
+        if one.switch in held:
+            device.write(one.switch, one.off)
+        value = found.get(one.value)
+        if value is not None:
+            if one.value is Control.EXPOSURE:
+                value = exposure_units(value, fps_hz, mains_hz)
+            device.write(one.value, value)
+    if gain is not None:
+        device.write(Control.GAIN, gain)
+    if mains_hz is not None and Control.POWER_LINE in held:
+        device.write(Control.POWER_LINE, power_line_code(mains_hz))
+    return as_controls(device, held, mains_hz)
+
+
+def exposure_units(wanted: int, fps_hz: float, mains_hz: int | None) -> int:
+    """An exposure [100 us] that fits in a frame at `fps_hz` and, with `mains_hz`, does not flicker.
+
+    Light from the mains pulses at twice their frequency; whole pulses always add up to the same. An
+    exposure under half a pulse stays as it is: a whole one would be white.
+    """
+    longest = int(UNITS_PER_S / fps_hz)
+    if mains_hz is None:
+        return max(1, min(wanted, longest))
+    pulse = UNITS_PER_S / (2 * mains_hz)
+    if wanted < pulse / 2:
+        return max(1, wanted)
+    pulses = max(1, min(round(wanted / pulse), int(longest / pulse + 1e-9)))
+    return round(pulses * pulse)
+
+
+def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) -> Controls:
+    """What the camera holds now, for its next opening: only controls that it has."""
+
+    def value(control: Control) -> int | None:
+        return device.read(control) if control in held else None
+
+    def off(control: Control) -> bool | None:
+        return False if control in held else None
+
+    return Controls(
+        auto_exposure=off(Control.AUTO_EXPOSURE),
+        exposure=value(Control.EXPOSURE),
+        gain=value(Control.GAIN),
+        auto_wb=off(Control.AUTO_WB),
+        wb_temperature=value(Control.WB_TEMPERATURE),
+        autofocus=off(Control.AUTOFOCUS),
+        focus=value(Control.FOCUS),
+        dynamic_framerate=off(Control.DYNAMIC_FRAMERATE),
+        power_line_hz=mains_hz if Control.POWER_LINE in held else None,
+    )
+
+
+def as_held(controls: Controls) -> Held:
+    """The values that a lock had found, for `restore`, which switches their automatics off."""
+    rate, mains_hz = controls.dynamic_framerate, controls.power_line_hz
+    values = {
+        Control.EXPOSURE: controls.exposure,
+        Control.WB_TEMPERATURE: controls.wb_temperature,
+        Control.FOCUS: controls.focus,
+        Control.GAIN: controls.gain,
+        Control.DYNAMIC_FRAMERATE: None if rate is None else int(rate),
+        Control.POWER_LINE: None if mains_hz is None else power_line_code(mains_hz),
+    }
+    return {control: value for control, value in values.items() if value is not None}
+
+
+def restore(device: ControlDevice, before: Held) -> None:
+    """Give back what was held before. Raises UnavailableError."""
+    for one in _AUTOMATICS:
+        was = before.get(one.switch)
+        if was in (None, one.off) and one.value in before:
+            device.write(one.switch, one.off)
+            device.write(one.value, before[one.value])
+        if was is not None:
+            device.write(one.switch, was)
+    for control in (Control.GAIN, Control.DYNAMIC_FRAMERATE, Control.POWER_LINE):
+        if control in before:
+            device.write(control, before[control])

@@ -1,0 +1,117 @@
+"""What cameras this machine has, and for each that cannot be used the reason (`mocapd cameras`)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.node_access import check_usable, opened_node
+from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
+from mocapd.capture.webcam.v4l2_ioctl import (
+    CAP_VIDEO_CAPTURE,
+    PixelFormat,
+    enumerate_formats,
+    query_capability,
+)
+from mocapd.capture.webcam.webcams import DEV, SYSFS, VideoNode, video_nodes
+from mocapd.errors import MocapdError
+
+
+@dataclass(frozen=True, slots=True)
+class CameraInfo:
+    """One V4L2 node, or (`node` None) a USB webcam that no driver has taken.
+
+    `spec`: what to write into the config, a `usb:` identity where there is one. `formats`: MJPG
+    first. `problem`: empty when it can be used, else what is wrong; `fix`: how to mend it. `note`:
+    something to know of a camera that can be used. `captures`: whether it is a camera's own node; its
+    metadata node is not.
+    """
+
+    node: Path | None
+    name: str
+    identity: WebcamIdentity | None
+    spec: str
+    formats: tuple[PixelFormat, ...]
+    problem: str
+    fix: str
+    note: str = ""
+    captures: bool = True
+
+    @property
+    def usable(self) -> bool:
+        return not self.problem
+
+    @property
+    def usb_id(self) -> str:
+        """vid:pid:serial, empty off USB."""
+        return ":".join(self.identity.model) if self.identity else ""
+
+    @property
+    def port_path(self) -> str:
+        """The USB port path, empty off USB."""
+        return self.identity.port_path if self.identity else ""
+
+
+def list_cameras(
+    sysfs: Path = SYSFS,
+    dev: Path = DEV,
+    usb: Callable[[], tuple[UsbWebcam, ...]] = usb_webcams,
+) -> tuple[CameraInfo, ...]:
+    """Every camera of the machine, usable or not; opens the nodes for questions, streams from none."""
+    nodes = video_nodes(sysfs, dev)
+    taken = {node.identity.port_path for node in nodes if node.identity}
+    rows = [_node_info(node) for node in nodes]
+    rows += [_without_node(one) for one in usb() if one.identity.port_path not in taken]
+    return tuple(_with_twin_note(row, rows) for row in rows)
+
+
+def _node_info(node: VideoNode) -> CameraInfo:
+    spec = str(node.identity) if node.identity and node.index == 0 else str(node.node)
+    formats: tuple[PixelFormat, ...] = ()
+    problem = fix = note = ""
+    captures = node.index == 0 or node.identity is None  # a guess, until the node tells
+    try:
+        with opened_node(node.node) as fd:
+            captures = _captures(fd, captures)
+            formats = tuple(sorted(enumerate_formats(fd), key=lambda one: one.fourcc != "MJPG"))
+            check_usable(node.node, fd)
+        fourccs = {one.fourcc for one in formats}
+        if "MJPG" not in fourccs and "YUYV" in fourccs:
+            note = "YUYV only, no MJPG: it fills a USB 2 bus; expect low rates and one such camera"
+        elif "MJPG" not in fourccs:
+            problem = (
+                f"delivers neither MJPG nor YUYV, only {', '.join(sorted(fourccs)) or 'nothing'}"
+            )
+            fix = "use another camera"
+    except MocapdError as error:
+        problem, fix = error.what, error.fix
+    return CameraInfo(
+        node.node, node.name, node.identity, spec, formats, problem, fix, note, captures
+    )
+
+
+def _captures(fd: int, guess: bool) -> bool:
+    try:
+        return bool(query_capability(fd).caps & CAP_VIDEO_CAPTURE)
+    except OSError:  # `check_usable` tells what is wrong
+        return guess
+
+
+def _without_node(webcam: UsbWebcam) -> CameraInfo:
+    return CameraInfo(
+        node=None,
+        name=webcam.product,
+        identity=webcam.identity,
+        spec=str(webcam.identity),
+        formats=(),
+        problem="a USB webcam without a /dev/video node",
+        fix="load its driver: sudo modprobe uvcvideo",
+    )
+
+
+def _with_twin_note(row: CameraInfo, rows: list[CameraInfo]) -> CameraInfo:
+    """Webcams of one vid:pid:serial can only be told apart by their sockets: say so."""
+    ports = {one.port_path for one in rows if row.identity and one.usb_id == row.usb_id}
+    if len(ports) < 2 or row.note or row.problem:
+        return row
+    return replace(row, note="has a twin with the same vid:pid:serial: keep each in its USB port")

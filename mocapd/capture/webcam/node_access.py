@@ -1,0 +1,113 @@
+"""Why a /dev/video node cannot be used, said so that it can be mended."""
+
+import errno
+import grp
+import os
+import pwd
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from mocapd.capture.webcam.v4l2_ioctl import (
+    CAP_VIDEO_CAPTURE,
+    Capability,
+    is_streaming_elsewhere,
+    query_capability,
+)
+from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
+
+PROC = Path("/proc")
+
+
+@contextmanager
+def opened_node(node: Path) -> Iterator[int]:
+    """A file descriptor of the node, for questions only.
+
+    Raises UnavailableError (gone) or PermissionDeniedError (with the line that grants the right).
+    """
+    try:
+        fd = os.open(node, os.O_RDWR | os.O_NONBLOCK)
+    except OSError as error:
+        raise _open_error(node, error) from None
+    try:
+        yield fd
+    finally:
+        os.close(fd)
+
+
+def check_usable(node: Path, fd: int) -> Capability:
+    """Raises UnavailableError when the node does not capture video or somebody streams from it."""
+    try:
+        capability = query_capability(fd)
+    except OSError as error:
+        if error.errno == errno.ENOTTY:
+            raise UnavailableError("not a video node", str(node), "see `mocapd cameras`") from None
+        raise UnavailableError(f"does not answer ({error.strerror})", str(node), _REPLUG) from None
+    if not capability.caps & CAP_VIDEO_CAPTURE:
+        raise UnavailableError(
+            "a metadata node: it delivers no pictures",
+            str(node),
+            "use the camera's other node, or better its usb: identity",
+        )
+    if is_streaming_elsewhere(fd):
+        raise UnavailableError(
+            f"busy: {_holders_text(node)}", str(node), "end that program, or name another camera"
+        )
+    return capability
+
+
+_REPLUG = "unplug the camera and plug it in again"
+
+
+def _open_error(node: Path, error: OSError) -> MocapdError:
+    if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
+        return UnavailableError("no such camera", str(node), "plug it in; see `mocapd cameras`")
+    if error.errno == errno.EACCES:
+        return PermissionDeniedError("no permission", str(node), _group_fix(node))
+    if error.errno == errno.EPERM:  # the rights would do, the service's device policy forbids it
+        return PermissionDeniedError(
+            "forbidden by the device policy of the service",
+            str(node),
+            "the unit needs DeviceAllow=char-video4linux and modprobe@videodev.service; restart it",
+        )
+    if error.errno == errno.EBUSY:
+        return UnavailableError(
+            f"busy: {_holders_text(node)}", str(node), "end that program, or name another camera"
+        )
+    return UnavailableError(f"cannot be opened ({error.strerror})", str(node), _REPLUG)
+
+
+def _group_fix(node: Path) -> str:
+    try:
+        group = grp.getgrgid(node.stat().st_gid).gr_name
+    except (OSError, KeyError):
+        group = "video"
+    try:
+        user = pwd.getpwuid(os.getuid()).pw_name
+    except KeyError:
+        user = "$USER"
+    return f"sudo usermod -aG {group} {user}, then log in again"
+
+
+def holders(node: Path, proc: Path = PROC) -> tuple[tuple[int, str], ...]:
+    """(pid, command) of each process that has the node open, as far as this user may see.
+
+    This process is left out: it has the node open to ask.
+    """
+    found: list[tuple[int, str]] = []
+    for process in proc.glob("[0-9]*"):
+        try:
+            held = any(link.readlink() == node for link in (process / "fd").iterdir())
+            command = (process / "comm").read_text(encoding="utf-8", errors="replace").strip()
+        except OSError:  # another user's, or ended while we looked
+            continue
+        if held and int(process.name) != os.getpid():
+            found.append((int(process.name), command))
+    return tuple(sorted(found))
+
+
+def _holders_text(node: Path) -> str:
+    found = holders(node)
+    if not found:
+        return "used by a process of another user, or already by this one"
+    return "used by " + ", ".join(f"pid {pid} ({command})" for pid, command in found)

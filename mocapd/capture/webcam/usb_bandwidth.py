@@ -1,0 +1,98 @@
+"""Whether the webcams of one USB bus fit on it, by estimate, and which lower mode would.
+
+A camera reserves its share of the bus when it begins to stream; the one that comes too late gets
+nothing. Reservations are not told anywhere, so they are estimated from what is asked for.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.webcams import SYSFS
+
+_JPEG_SHARE = 0.2  # of the bytes of YUYV: webcams reserve for their worst picture
+# What webcams can reserve together [bytes/s]. High speed: 80 % of 60 MB/s may be periodic (USB 2.0
+# specification, §5.6.4), of which packet overhead and coarse alternate settings take a quarter.
+_USABLE: Mapping[int, float] = {12: 0.9e6, 480: 36e6, 5000: 320e6}
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """What a webcam is asked to send."""
+
+    fourcc: str
+    size_px: tuple[int, int]  # width, height
+    fps_hz: float
+
+    @property
+    def bytes_per_s(self) -> float:
+        """What it takes of the bus: YUYV has two bytes a pixel, MJPG about a fifth of that."""
+        share = _JPEG_SHARE if self.fourcc == "MJPG" else 1.0
+        return 2.0 * share * self.size_px[0] * self.size_px[1] * self.fps_hz
+
+
+@dataclass(frozen=True, slots=True)
+class CrowdedBus:
+    """A bus that is asked for more than it has. `cameras`: names, in the order given."""
+
+    bus: str
+    cameras: tuple[str, ...]
+    asked_bytes_per_s: float
+    usable_bytes_per_s: float
+
+
+def usable_bytes_per_s(port_path: str, sysfs: Path = SYSFS) -> float:
+    """What webcams can have together of the bus that this port belongs to; USB 2's when unknown."""
+    try:
+        text = (sysfs / "bus/usb/devices" / port_path / "speed").read_text(encoding="ascii")
+        speed = float(text)
+    except (OSError, ValueError):
+        speed = 480.0
+    return max(
+        (usable for mbit, usable in _USABLE.items() if mbit <= speed), default=min(_USABLE.values())
+    )
+
+
+def crowded_buses(
+    cameras: Mapping[str, tuple[str, Mode]], sysfs: Path = SYSFS
+) -> tuple[CrowdedBus, ...]:
+    """The buses that do not carry what is asked for: by camera name, its port path and its mode."""
+    by_bus: dict[str, list[str]] = {}
+    for name, (port_path, _mode) in cameras.items():
+        by_bus.setdefault(port_path.partition("-")[0], []).append(name)
+    found = []
+    for bus, names in by_bus.items():
+        asked = sum(cameras[name][1].bytes_per_s for name in names)
+        usable = min(usable_bytes_per_s(cameras[name][0], sysfs) for name in names)
+        if asked > usable:
+            found.append(CrowdedBus(bus, tuple(names), asked, usable))
+    return tuple(found)
+
+
+def lower_mode(
+    formats: Sequence[PixelFormat], asked: Mode, budget_bytes_per_s: float
+) -> Mode | None:
+    """The best mode within a budget, not above `asked` in size or rate; None when there is none.
+
+    MJPG where there is any, as the camera will be opened with it. The best has the most of
+    sqrt(pixels) times rate; of equals, the faster. Under 320x240 or 10 Hz nothing is tracked.
+    """
+    fourcc = "MJPG" if any(one.fourcc == "MJPG" for one in formats) else "YUYV"
+    fitting = [
+        mode
+        for one in formats
+        if one.fourcc == fourcc and one.size_px[0] >= 320 and one.size_px[1] >= 240
+        for mode in (Mode(fourcc, one.size_px, rate_hz) for rate_hz in one.rates_hz)
+        if mode.bytes_per_s <= budget_bytes_per_s
+        and 10.0 <= mode.fps_hz <= asked.fps_hz + 0.5
+        and mode.size_px[0] <= asked.size_px[0]
+        and mode.size_px[1] <= asked.size_px[1]
+        and (mode.size_px, mode.fps_hz) != (asked.size_px, asked.fps_hz)
+    ]
+    return max(
+        fitting,
+        key=lambda mode: (math.sqrt(math.prod(mode.size_px)) * mode.fps_hz, mode.fps_hz),
+        default=None,
+    )

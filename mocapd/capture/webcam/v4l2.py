@@ -1,0 +1,272 @@
+"""A webcam through OpenCV and V4L2, opened by identity and let go at the first failure."""
+
+import logging
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import mocapd.capture.environment as environment  # isort: skip  before cv2
+
+import cv2
+import numpy as np
+from cv2.typing import MatLike
+
+from mocapd.boundary.pictures import decode_picture
+from mocapd.capture.file import size_error
+from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.webcam.camera_controls import NodeControls
+from mocapd.capture.webcam.controls import (
+    ControlResult,
+    Controls,
+    HasProperties,
+    apply_controls,
+    apply_unknown_to_opencv,
+)
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.node_access import check_usable, opened_node
+from mocapd.capture.webcam.webcams import DEV, SYSFS, find_webcam
+from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.errors import CameraLost, MalformedError, UnavailableError
+from mocapd.types import Bytes, Frame
+
+_LOG = logging.getLogger(__name__)
+_OLDEST_STAMP_NS = 5 * NS_PER_S  # a driver's stamp older than this is of another clock
+_TORN_LIMIT_NS = 2 * NS_PER_S  # without one whole frame: the cable or the hub is bad
+_MJPG = "MJPG"
+_YUYV = "YUYV"
+
+
+@dataclass(frozen=True, slots=True)
+class WebcamSettings:
+    """What to ask of a webcam. `size_px` (width, height) must be got: the calibration belongs to it."""
+
+    size_px: tuple[int, int] = (640, 480)
+    fps_hz: float = 30.0
+    controls: Controls = field(default_factory=Controls)
+
+
+@dataclass(frozen=True, slots=True)
+class Negotiated:
+    """What the webcam says after opening; everything is read back, nothing assumed."""
+
+    node: Path
+    moved: bool  # found by vid:pid:serial in another socket than configured
+    fourcc: str
+    size_px: tuple[int, int]
+    fps_hz: float
+    buffers: int
+    controls: tuple[ControlResult, ...]
+
+
+class V4l2Source:
+    """One webcam, named by its USB identity or (what is not on USB) by its node.
+
+    `others`: identities of the other configured webcams, which are never taken for this one.
+    `torn` counts frames that came damaged and were left out; each is a gap in `seq`.
+    """
+
+    recorded = False
+
+    def __init__(
+        self,
+        name: str,
+        where: WebcamIdentity | Path,
+        settings: WebcamSettings | None = None,
+        others: tuple[WebcamIdentity, ...] = (),
+        sysfs: Path = SYSFS,
+        dev: Path = DEV,
+    ) -> None:
+        self.name = name
+        self.torn = 0
+        self.negotiated: Negotiated | None = None
+        self._where = where
+        self._settings = settings if settings is not None else WebcamSettings()
+        self._others = others
+        self._sysfs, self._dev = sysfs, dev
+        self._seq = 0
+        self._capture: GuardedCapture | None = None
+        self._delivered = False  # since it was opened
+
+    @property
+    def settings(self) -> WebcamSettings:
+        """See Lockable."""
+        return self._settings
+
+    def device(self) -> NodeControls | None:
+        """See Lockable."""
+        negotiated, capture = self.negotiated, self._capture
+        if negotiated is None or capture is None or capture.closing:
+            return None
+        return NodeControls(negotiated.node)
+
+    def change(self, settings: WebcamSettings) -> None:
+        """See Lockable. From any thread."""
+        before, self._settings = self._settings, settings
+        if _other_mode(before, settings):
+            self.close()
+
+    def open(self) -> None:
+        """Find the webcam, open it and set it up.
+
+        Raises UnavailableError (absent, busy, metadata node), PermissionDeniedError, or ConfigError
+        when it does not deliver the size of its calibration.
+        """
+        self.close()
+        node, moved = self._resolve()
+        with opened_node(node) as fd:  # OpenCV only says "no": ask for the reason first
+            check_usable(node, fd)
+        with ExitStack() as undo:
+            capture = cv2.VideoCapture(str(node), cv2.CAP_V4L2)
+            undo.callback(capture.release)
+            if not capture.isOpened():
+                raise UnavailableError("OpenCV cannot open it", str(node), "see `mocapd cameras`")
+            settings = self._settings
+            got = negotiate(capture, settings, self.name, node, moved)
+            further = apply_unknown_to_opencv(NodeControls(node), settings.controls)
+            self.negotiated = replace(got, controls=got.controls + further)
+            undo.pop_all()
+        self._warn(self.negotiated)
+        self._capture = GuardedCapture(capture)
+        self._delivered = False
+        if _other_mode(settings, self._settings):  # asked for from another thread meanwhile
+            self.close()
+
+    def read(self) -> Frame:
+        """The next whole frame; damaged ones are counted and skipped.
+
+        Raises CameraLost when the webcam was unplugged, stalls, or sends only damage; it is let go
+        of by then, so that the same node can come back.
+        """
+        guarded = self._capture
+        if guarded is None or self.negotiated is None:
+            raise CameraLost("not open", self.name, "call open first")
+        began_ns = monotonic_ns()
+        while True:
+            with guarded as capture:
+                if guarded.closing or not capture.grab():
+                    break
+                grabbed_ns = monotonic_ns()
+                t_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
+                good, raw = capture.retrieve()
+            seq, self._seq = self._seq, self._seq + 1
+            pixels = decode(raw, self.negotiated.fourcc, self.negotiated.size_px) if good else None
+            if pixels is not None:
+                self._delivered = True
+                return Frame(self.name, seq, t_ns, pixels)
+            self.torn += 1
+            if grabbed_ns - began_ns > _TORN_LIMIT_NS:
+                self.close()
+                raise CameraLost(
+                    "only damaged frames arrive", str(self.negotiated.node), "check cable and hub"
+                )
+        closed = guarded.closing
+        self.close()
+        waited_s = (monotonic_ns() - began_ns) / NS_PER_S
+        where = f"{self.name} ({self._where})"
+        if closed:
+            raise CameraLost("was closed", where, "it is opened again by itself")
+        if waited_s > 0.5:
+            raise CameraLost(f"sent nothing for {waited_s:.1f} s", where, "unplug and replug it")
+        if not self._delivered and self.negotiated.node.exists():  # ENOSPC, which OpenCV swallows
+            raise CameraLost(
+                "cannot start: its USB bus has no room left, or another program was faster",
+                where,
+                "plug it into a port of another USB controller, or ask for a smaller size or rate",
+            )
+        raise CameraLost("was unplugged", where, "plug it in again")
+
+    def close(self) -> None:
+        """Let go; a blocked `read` ends after the stall timeout of `environment` at the latest."""
+        if self._capture is not None:
+            self._capture.close()
+
+    def _resolve(self) -> tuple[Path, bool]:
+        if isinstance(self._where, Path):
+            return self._where, False
+        match, node = find_webcam(self._where, self._others, self._sysfs, self._dev)
+        return node, match.moved
+
+    def _warn(self, got: Negotiated) -> None:
+        if environment.CV2_CAME_FIRST:
+            _LOG.warning("%s: cv2 was imported before mocapd: a stall takes 10 s to see", self.name)
+        if got.moved:
+            _LOG.warning("%s: found in another USB port than configured (%s)", self.name, got.node)
+        if got.fourcc != _MJPG:
+            _LOG.warning("%s: has no MJPG, uses %s: expect low rates", self.name, got.fourcc)
+        if abs(got.fps_hz - self._settings.fps_hz) > 0.5:
+            _LOG.warning(
+                "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
+            )
+        for one in got.controls:
+            if not one.applied:
+                _LOG.warning("%s: %s is %g, asked for %g", self.name, one.name, one.got, one.asked)
+
+
+def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:
+    return (one.size_px, one.fps_hz) != (other.size_px, other.fps_hz)
+
+
+def negotiate(
+    capture: HasProperties, asked: WebcamSettings, name: str, node: Path, moved: bool
+) -> Negotiated:
+    """Set format, size, rate, buffers and controls, and read all of it back.
+
+    Raises UnavailableError (unplugged meanwhile, no usable format) or ConfigError (another size).
+    """
+    # In this order: the format decides which sizes there are, the size which rates. Left alone
+    # OpenCV takes YUYV, which fills the bus at a third of the rate.
+    capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter.fourcc(*_MJPG))
+    capture.set(cv2.CAP_PROP_FRAME_WIDTH, asked.size_px[0])
+    capture.set(cv2.CAP_PROP_FRAME_HEIGHT, asked.size_px[1])
+    capture.set(cv2.CAP_PROP_FPS, asked.fps_hz)
+    capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)  # of 4, four would be stale after a pause
+    capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)  # we decode: OpenCV hides torn frames
+    controls = apply_controls(capture, asked.controls)
+    code, width, height = (
+        int(capture.get(number))
+        for number in (cv2.CAP_PROP_FOURCC, cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
+    )
+    if min(code, width, height) < 0:  # what a dead handle says of everything
+        raise UnavailableError("was unplugged while it was opened", str(node), "plug it in again")
+    if (width, height) != asked.size_px:
+        raise size_error(str(node), name, (width, height), asked.size_px)
+    fourcc = code.to_bytes(4, "little").decode("latin-1")
+    if fourcc not in (_MJPG, _YUYV):
+        raise UnavailableError(
+            f"delivers {fourcc!r}, neither MJPG nor YUYV", str(node), "use another camera"
+        )
+    return Negotiated(
+        node=node,
+        moved=moved,
+        fourcc=fourcc,
+        size_px=(width, height),
+        fps_hz=capture.get(cv2.CAP_PROP_FPS),
+        buffers=int(capture.get(cv2.CAP_PROP_BUFFERSIZE)),
+        controls=controls,
+    )
+
+
+def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
+    """A buffer of the driver as BGR (height, width, 3), read-only; None when it is torn.
+
+    MJPG: a JPEG file, of which a cut one is refused here, not half decoded, and one of another size
+    before it takes memory. YUYV: two bytes a pixel.
+    """
+    width, height = size_px
+    if fourcc == _YUYV:
+        if raw.size != width * height * 2:
+            return None
+        return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
+    try:
+        decoded = decode_picture(np.asarray(raw, dtype=np.uint8), cv2.IMREAD_COLOR, size_px)
+    except MalformedError:
+        return None
+    # one that says it was taken upright is turned by the decoder
+    return frozen_pixels(decoded) if decoded.shape == (height, width, 3) else None
+
+
+def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int:
+    """The driver's time of capture, if it is of CLOCK_MONOTONIC and not absurd; else of the grab."""
+    t_ns = round(driver_ms * 1e6)
+    return t_ns if 0 <= grabbed_ns - t_ns < _OLDEST_STAMP_NS else grabbed_ns

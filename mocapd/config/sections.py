@@ -1,0 +1,167 @@
+"""The sections of the configuration: the parts' own parameters, composed."""
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+import platformdirs
+from msgspec import Meta
+
+from mocapd.capture.webcam.controls import Controls
+from mocapd.config import web_params
+from mocapd.errors import ConfigError
+from mocapd.outputs.osc import osc_sink
+from mocapd.outputs.zenoh import zenoh_config
+from mocapd.pipeline.smoothing import PRESETS
+from mocapd.trackers.registry import entry
+from mocapd.trackers.tracking_state import TrackingStateParams
+
+
+def default_cache_dir() -> Path:
+    """Under systemd $CACHE_DIRECTORY, else XDG."""
+    given = os.environ.get("CACHE_DIRECTORY", "").partition(":")[0]
+    return Path(given) if given else platformdirs.user_cache_path("mocapd")
+
+
+def default_state_dir() -> Path:
+    """Where calibrations are kept: under systemd $STATE_DIRECTORY, else XDG."""
+    given = os.environ.get("STATE_DIRECTORY", "").partition(":")[0]
+    return Path(given) if given else platformdirs.user_state_path("mocapd")
+
+
+@dataclass(frozen=True, slots=True)
+class ControlsSection(Controls):
+    """What to set in a webcam; a value that is not given stays the camera's own.
+
+    auto_exposure, auto_wb, autofocus: whether the camera does it itself
+    exposure: in the camera's unit, mostly 100 us
+    gain: without a unit
+    wb_temperature: [K]
+    focus: without a unit
+    dynamic_framerate: whether the camera may lower its rate in dim light
+    power_line_hz: the mains whose flicker the camera filters: 50 or 60, 0 for none
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class CameraSection:
+    """One camera.
+
+    id: its name in the rig file
+    source: what `mocapd cameras` prints, a video file, a capture folder's FOLDER#camN, a URL, or sim:SCENARIO#camN
+    fps_hz: rate to ask a webcam for [Hz]
+    white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
+    """
+
+    id: Annotated[str, Meta(min_length=1)]
+    source: Annotated[str, Meta(min_length=1)]
+    fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
+    white_balance: Path | None = None
+    controls: ControlsSection = field(default_factory=ControlsSection)
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerSection(TrackingStateParams):
+    """Which tracker, and what it needs to know of the wearer.
+
+    name: the tracker: colour, or canned, a pose that moves by itself
+    variant: how the colour tracker works: full, paper (the method as published) or baseline
+    stature_m: the wearer's height without shoes [m]
+    colour_model: folder of images of the shirt with strokes
+    coast_s: how long after the last evidence a pose is still predicted [s]
+    confirm_s: how long evidence must persist before a lost person is believed to be back [s]
+    """
+
+    name: str = "colour"
+    variant: str = "full"
+    stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
+    colour_model: Path | None = None
+
+    def __post_init__(self) -> None:
+        # a class with slots is made twice, which a bare super() does not survive
+        TrackingStateParams.__post_init__(self)
+        entry(self.name, self.variant)
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothingSection:
+    """How much the pose is smoothed after tracking.
+
+    preset: off, responsive, balanced or smooth; the smoother, the later
+    """
+
+    preset: str = "balanced"
+
+    def __post_init__(self) -> None:
+        if self.preset not in PRESETS:
+            raise ConfigError(
+                f"no preset {self.preset!r}", "smoothing.preset", f"one of: {', '.join(PRESETS)}"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class ZenohSection(zenoh_config.Params):
+    """See zenoh_config.Params.
+
+    enabled: publish on Zenoh
+    """
+
+    enabled: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class OscSection(osc_sink.Params):
+    """See osc_sink.Params.
+
+    enabled: send OSC over UDP
+    destinations: list of `address:port`, numeric addresses only
+    """
+
+    enabled: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class WebSection(web_params.Params):
+    """See web_params.Params.
+
+    enabled: serve the page with the setup and the live view, to this machine only
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """Everything a user may set.
+
+    instance: this daemon's name in the Zenoh keys; empty: the machine's name
+    rig: the calibration of the cameras: a rig file, a calibration.toml or a folder with one; without it that of state_dir
+    log_level: how much is logged on stderr
+    cache_dir: where what can be made again is kept (compiled code, pose database)
+    state_dir: where the calibration is kept that `mocapd calibrate` saves
+    camera: the cameras, one [[camera]] section each
+    """
+
+    instance: Annotated[str, Meta(max_length=64)] = ""
+    rig: Path | None = None
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    cache_dir: Annotated[
+        Path, Meta(extra={"default": "$CACHE_DIRECTORY or $XDG_CACHE_HOME/mocapd"})
+    ] = field(default_factory=default_cache_dir)
+    state_dir: Annotated[
+        Path, Meta(extra={"default": "$STATE_DIRECTORY or $XDG_STATE_HOME/mocapd"})
+    ] = field(default_factory=default_state_dir)
+    camera: tuple[CameraSection, ...] = ()
+    tracker: TrackerSection = field(default_factory=TrackerSection)
+    smoothing: SmoothingSection = field(default_factory=SmoothingSection)
+    zenoh: ZenohSection = field(default_factory=ZenohSection)
+    osc: OscSection = field(default_factory=OscSection)
+    web: WebSection = field(default_factory=WebSection)
+
+
+# Set by the top-level key `instance`.
+HIDDEN = ("zenoh.instance",)
+# Paths that their part keeps as text; like every path in a file they are relative to that file.
+TEXT_PATHS = tuple(
+    f"zenoh.{name}"
+    for name in ("tls_certificate", "tls_private_key", "tls_root_ca", "password_file")
+)

@@ -1,0 +1,1 @@
+"""What a step, a live daemon and a long run cost."""

@@ -1,0 +1,90 @@
+"""Benchmarks of one recording: which trackers, built how, and what was found."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from mocapd.errors import ConfigError
+from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
+from mocapd.evaluate.bench.bench_input import BenchInput
+from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
+from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
+from mocapd.session.tracker_setup import Progress, build_tracker, with_cache
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import TRACKERS
+from mocapd.trackers.tracking_state import TrackingStateParams
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Findings:
+    """What was measured, by tracker; `skipped` says why a tracker is absent."""
+
+    recording: str
+    steps: dict[str, StepFigures] = field(default_factory=dict)
+    endurance: dict[str, EnduranceFigures] = field(default_factory=dict)
+    live: dict[str, LiveFigures] = field(default_factory=dict)
+    skipped: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bench:
+    """`tracker`: its name; None: every tracker that the recording suits."""
+
+    recording: BenchInput
+    tracker: str | None
+    cache_dir: Path
+    tracking: TrackingStateParams
+    progress: Progress
+
+    def steps(self) -> Findings:
+        """Time every step of the whole recording. Raises ConfigError for what a tracker lacks."""
+        found = Findings(self.recording.name)
+        for name, tracker in self._trackers(found):
+            tell = partial(self.progress, f"timing {name}")
+            found.steps[name] = bench_tracker(tracker, self.recording, tell)
+        return found
+
+    def endurance(self, minutes: float) -> Findings:
+        """Run each tracker for so long [min]. Raises ConfigError for what a tracker lacks."""
+        found = Findings(self.recording.name)
+        for name, tracker in self._trackers(found):
+            tell = partial(self.progress, f"running {name}, seconds")
+            found.endurance[name] = endure(tracker, self.recording, minutes, tell)
+        return found
+
+    def live(
+        self, command: Sequence[str], duration_s: float, watching: Watching | None = None
+    ) -> Findings:
+        """Run the daemon for so long [s] with each tracker; see `bench_live` for the command and
+        for who is watching.
+
+        Each tracker is built and stepped here first, so that the daemon finds its caches warm.
+        Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
+        """
+        found = Findings(self.recording.name)
+        rig = self.recording.inputs.rig
+        for name, tracker in self._trackers(found):
+            for one in next(self.recording.chunks()):
+                tracker.step(one)
+            self.progress(f"running the daemon with {name} for {duration_s:.0f} s", 0, 1)
+            found.live[name] = bench_live(
+                (*command, "--tracker", name),
+                len(rig.cameras) if rig else 0,
+                duration_s,
+                watching,
+            )
+        return found
+
+    def _trackers(self, found: Findings) -> Iterator[tuple[str, Tracker]]:
+        """Each when it is its turn; only one is in memory."""
+        for name in (self.tracker,) if self.tracker else TRACKERS:
+            known = replace(self.recording.inputs, tracking=self.tracking)
+            try:
+                tracker = build_tracker(name, with_cache(known, self.cache_dir, self.progress))
+            except ConfigError as error:
+                if self.tracker:
+                    raise
+                found.skipped[name] = str(error)
+                continue
+            yield name, tracker

@@ -1,0 +1,159 @@
+"""What one step of a tracker costs: time, processor time, memory, and how the time is spent."""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+import psutil
+
+from mocapd.evaluate.bench.bench_input import BenchInput
+from mocapd.pipeline.idle_collection import IdleCollection
+from mocapd.trackers.base import Tracker
+from mocapd.types import FrameSet
+
+REST = "rest"  # what is left of a step after its last named stage
+NS_PER_MS = 1e6
+BYTES_PER_MB = 1e6
+
+
+@runtime_checkable
+class Probed(Protocol):
+    """A tracker that says when a stage of its step ends, by calling `probe` with its name."""
+
+    probe: Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class StageFigures:
+    """median_ms and p95_ms [ms] over the sets in which the stage ran, which are `share` of all.
+
+    mean_ms: over all sets, so that the stages add up to the step's mean [ms].
+    """
+
+    median_ms: float
+    p95_ms: float
+    mean_ms: float
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class StepFigures:
+    """A tracker's step over all `sets` of a recording.
+
+    median_ms, p95_ms, mean_ms: by the clock [ms]; cpu_ms, cpu_mean_ms: of the whole process, all
+    threads, median and mean [ms]; rss_mb: resident memory of the process, with the decoded frames
+    at hand [MB]; tracked: share of the sets that gave a body.
+    """
+
+    sets: int
+    median_ms: float
+    p95_ms: float
+    mean_ms: float
+    cpu_ms: float
+    cpu_mean_ms: float
+    rss_mb: float
+    tracked: float
+    stages: dict[str, StageFigures]
+
+
+class StageClock:
+    """Sums the time of each stage within a step. One step at a time."""
+
+    def __init__(self) -> None:
+        self._stages: dict[str, int] = {}
+        self._last_ns = 0
+
+    def start(self) -> None:
+        """A step begins."""
+        self._stages = {}
+        self._last_ns = time.perf_counter_ns()
+
+    def mark(self, stage: str) -> None:
+        """The stage ends now; it began when the one before ended."""
+        now_ns = time.perf_counter_ns()
+        self._stages[stage] = self._stages.get(stage, 0) + now_ns - self._last_ns
+        self._last_ns = now_ns
+
+    def taken(self) -> dict[str, int]:
+        """What each stage of this step took [ns]."""
+        return self._stages
+
+
+def bench_tracker(
+    tracker: Tracker, recording: BenchInput, tell: Callable[[int, int], None]
+) -> StepFigures:
+    """Run it through the recording twice and time the second run; `tell` hears of sets done, in all.
+
+    The first run compiles what is not compiled yet and touches all memory; in between the tracker
+    is reset, so that the second finds the person anew.
+    """
+    done = 0
+    for chunk in recording.chunks():
+        for one in chunk:
+            tracker.step(one)
+        done += len(chunk)
+        tell(done, 2 * recording.count)
+    tracker.reset()
+    samples = _Samples()
+    with IdleCollection() as garbage:
+        for chunk in recording.chunks():
+            samples.add(tracker, chunk)
+            garbage.idle(time.monotonic_ns())
+            done += len(chunk)
+            tell(done, 2 * recording.count)
+    return samples.figures()
+
+
+class _Samples:
+    """What each step took."""
+
+    def __init__(self) -> None:
+        self._wall_ns: list[int] = []
+        self._cpu_ns: list[int] = []
+        self._stages: list[dict[str, int]] = []
+        self._tracked = 0
+        self._rss_bytes = 0
+
+    def add(self, tracker: Tracker, sets: Iterable[FrameSet]) -> None:
+        clock = StageClock()
+        if isinstance(tracker, Probed):
+            tracker.probe = clock.mark
+        for one in sets:
+            cpu_ns = time.process_time_ns()
+            start_ns = time.perf_counter_ns()
+            clock.start()
+            track = tracker.step(one)
+            clock.mark(REST)
+            self._wall_ns.append(time.perf_counter_ns() - start_ns)
+            self._cpu_ns.append(time.process_time_ns() - cpu_ns)
+            self._stages.append(clock.taken())
+            self._tracked += track.body.pose is not None
+        self._rss_bytes = max(self._rss_bytes, psutil.Process().memory_info().rss)
+
+    def figures(self) -> StepFigures:
+        n = len(self._wall_ns)
+        wall_ms, cpu_ms = np.array(self._wall_ns) / NS_PER_MS, np.array(self._cpu_ns) / NS_PER_MS
+        names = {name: None for step in self._stages for name in step if name != REST}
+        return StepFigures(
+            sets=n,
+            median_ms=float(np.median(wall_ms)),
+            p95_ms=float(np.percentile(wall_ms, 95.0)),
+            mean_ms=float(wall_ms.mean()),
+            cpu_ms=float(np.median(cpu_ms)),
+            cpu_mean_ms=float(cpu_ms.mean()),
+            rss_mb=self._rss_bytes / BYTES_PER_MB,
+            tracked=self._tracked / n,
+            stages={name: self._stage(name) for name in (*names, REST)},
+        )
+
+    def _stage(self, name: str) -> StageFigures:
+        ran_ms = np.array([step[name] for step in self._stages if name in step]) / NS_PER_MS
+        n = len(self._stages)
+        return StageFigures(
+            float(np.median(ran_ms)),
+            float(np.percentile(ran_ms, 95.0)),
+            float(ran_ms.sum() / n),
+            len(ran_ms) / n,
+        )

@@ -1,0 +1,78 @@
+"""A subscriber that keeps every frame with its arrival, and asks for the daemon's health."""
+
+import json
+from contextlib import ExitStack
+from dataclasses import dataclass
+from types import TracebackType
+
+import msgspec
+import zenoh
+
+from mocapd.clock import monotonic_ns
+from mocapd.errors import UnavailableError
+from mocapd.outputs import wire
+from mocapd.outputs.messages import Health
+from mocapd.outputs.wire import SkeletonFrame
+from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_config import client_config
+
+CONNECT_S = 1.0
+ANSWER_S = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """A frame and when it arrived, CLOCK_MONOTONIC [ns]."""
+
+    frame: SkeletonFrame
+    arrival_ns: int
+
+
+class Subscriber:
+    """Used by one thread; frames arrive on Zenoh's, and are decoded when they are asked for."""
+
+    def __init__(self, endpoint: str, instance: str) -> None:
+        config = client_config(endpoint, timeout_s=CONNECT_S)
+        self._config = zenoh.Config.from_json5(json.dumps(config))
+        self._instance = instance
+        self._session: zenoh.Session | None = None
+        self._opened = ExitStack()
+        self._received: list[tuple[int, bytes]] = []
+
+    def __enter__(self) -> "Subscriber":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._session = None
+        self._opened.close()
+
+    def connect(self) -> bool:
+        """Try once, unless connected; whether it is."""
+        if self._session is None:
+            try:
+                self._session = self._opened.enter_context(zenoh.open(self._config))
+            except zenoh.ZError:
+                return False
+            handler = zenoh.handlers.Callback(self._arrived, indirect=False)
+            self._session.declare_subscriber(keys.skeleton(self._instance, 0), handler)
+        return True
+
+    def _arrived(self, sample: zenoh.Sample) -> None:
+        self._received.append((monotonic_ns(), sample.payload.to_bytes()))
+
+    def heard(self) -> list[Heard]:
+        """Every frame so far, in order of arrival."""
+        return [Heard(wire.decode(data), at_ns) for at_ns, data in tuple(self._received)]
+
+    def health(self) -> Health:
+        """The daemon's last word on itself, at most a second old. Raises UnavailableError."""
+        if self._session is not None:
+            for reply in self._session.get(keys.health(self._instance), timeout=ANSWER_S):
+                if reply.ok is not None:
+                    return msgspec.msgpack.decode(reply.ok.payload.to_bytes(), type=Health)
+        raise UnavailableError("the daemon does not tell its health", "bench", "try `mocapd run`")

@@ -1,0 +1,172 @@
+"""The body model drawn into one camera's work picture, at that camera's own instant."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays
+from mocapd.body.model import BodyModel
+from mocapd.body.posing_kernels import forward_kinematics, pose_and_project
+from mocapd.body.shaping import Shaped, Shaper
+from mocapd.body.skeleton import N_JOINTS
+from mocapd.fit.motion_state import MotionState, moved
+from mocapd.types import Camera, Floats, Ints
+from mocapd.vision.raster_kernels import label_triangles, rasterise
+
+Roi = tuple[int, int, int, int]  # x0, y0, x1, y1 [work px], x1 and y1 excluded
+_MAX_SIDE_PX = 480  # of a work picture
+_MAX_WORK_PX = _MAX_SIDE_PX**2
+
+
+def work_factors(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
+    """By how much each camera's frames are averaged down to work pictures about `work_width_px` wide.
+
+    Pictures that are upright or of odd sizes come out smaller, so that they fit into the buffers.
+    """
+    return [
+        max(1, round(camera.size_px[0] / work_width_px), -(-max(camera.size_px) // _MAX_SIDE_PX))
+        for camera in cameras
+    ]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PartialRender:
+    """Part of the body drawn in one camera, with the posed joints."""
+
+    ids: NDArray[np.uint8]
+    zbuffer: NDArray[np.float32]
+    posed: PosedJoints
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outline:
+    """Where the vertices of the body were drawn: xy (V,2) px of the region; triangles (T,3), their
+    colour (T,), and those of the sleeves (S,)."""
+
+    xy: Floats
+    triangles: NDArray[np.int32]
+    colour: NDArray[np.uint8]
+    sleeves: Ints
+
+
+class Drawing:
+    """Draws one body into one camera. Results are in its own buffers, until the next drawing."""
+
+    def __init__(self, shaper: Shaper, camera: Camera, factor: int) -> None:
+        """factor: by how much the camera's frames are averaged down to work pictures."""
+        self.model: BodyModel = shaper.model
+        self.camera, self.factor, self._shaper = camera, factor, shaper
+        self.projection = camera_arrays(camera)
+        self.pinhole = pinhole_arrays(self.projection, factor)
+        self.posed = PosedJoints(
+            self.model.rest_m,
+            np.zeros((N_JOINTS, 3, 3)),
+            np.zeros((N_JOINTS, 3)),
+            np.zeros((N_JOINTS, 4)),
+        )
+        self.xy = np.empty((len(self.model.vertices_m), 2))
+        self._depth = np.empty(len(self.model.vertices_m))
+        self._zbuffer = np.empty(_MAX_WORK_PX, np.float32)
+        self._triangle_at = np.empty(_MAX_WORK_PX, np.int32)
+        self._ids = np.empty(_MAX_WORK_PX, np.uint8)
+        self.coarse_xy = np.empty_like(self.xy)
+        self._coarse_at = np.empty(_MAX_WORK_PX // 2, np.int32)
+        self._coarse_ids = np.empty(_MAX_WORK_PX // 2, np.uint8)
+
+    def region(self, state: MotionState, dt_s: float, margin: int) -> Roi | None:
+        """The work-picture region around the body as this camera sees it; None when it is not in view."""
+        w, h = self.camera.size_px[0] // self.factor, self.camera.size_px[1] // self.factor
+        body = self._shaper(state.factors)
+        self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
+        seen = self._depth > 0.2
+        if seen.sum() < len(seen) // 2:
+            return None
+        lo, hi = self.xy[seen].min(axis=0), self.xy[seen].max(axis=0)
+        x0, y0 = max(0, int(lo[0]) - margin) & ~1, max(0, int(lo[1]) - margin) & ~1
+        x1, y1 = min(w, int(hi[0]) + margin), min(h, int(hi[1]) + margin)
+        return (x0, y0, x1, y1) if x1 - x0 >= 16 and y1 - y0 >= 16 else None
+
+    def render(self, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:
+        """The id map (h,w) of the state dt_s after its instant."""
+        return self.draw(*moved(self.model, state, dt_s), self._shaper(state.factors), roi)[0]
+
+    def last(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        """Id map and triangles (h,w) that were drawn last in this region."""
+        h, w = roi[3] - roi[1], roi[2] - roi[0]
+        return self._ids[: h * w].reshape(h, w), self._triangle_at[: h * w].reshape(h, w)
+
+    def outline(self) -> Outline:
+        """Of what `draw` drew last."""
+        return Outline(self.xy, self.model.triangles, self.model.colour, self.model.sleeves)
+
+    def render_parts(
+        self, state: MotionState, dt_s: float, roi: Roi, triangles: NDArray[np.int64]
+    ) -> PartialRender:
+        """Only these triangles of the body."""
+        m = self.model
+        self._project(*moved(m, state, dt_s), self._shaper(state.factors), roi)
+        ids, triangle_at = self.last(roi)
+        zbuffer = self._raster(
+            self.xy, m.triangles[triangles], m.colour[triangles], ids, triangle_at
+        )
+        return PartialRender(ids, zbuffer, self.posed)
+
+    def draw(
+        self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi
+    ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        """Id map and triangles (h,w) of a pose of this body."""
+        self._project(root_m, local_xyzw, body, roi)
+        ids, triangle_at = self.last(roi)
+        self._raster(self.xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        return ids, triangle_at
+
+    def draw_coarse(
+        self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi
+    ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        """As `draw`, at every second pixel each way: (h+1)//2, (w+1)//2."""
+        self._project(root_m, local_xyzw, body, roi)
+        np.multiply(self.xy, 0.5, out=self.coarse_xy)
+        h, w = (roi[3] - roi[1] + 1) // 2, (roi[2] - roi[0] + 1) // 2
+        ids = self._coarse_ids[: h * w].reshape(h, w)
+        triangle_at = self._coarse_at[: h * w].reshape(h, w)
+        self._raster(self.coarse_xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        return ids, triangle_at
+
+    def last_coarse(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
+        """Every second pixel of what `draw` drew last in this region."""
+        ids, triangle_at = self.last(roi)
+        np.multiply(self.xy, 0.5, out=self.coarse_xy)
+        return np.ascontiguousarray(ids[::2, ::2]), np.ascontiguousarray(triangle_at[::2, ::2])
+
+    def pose(self, root_m: Floats, local_xyzw: Floats, rest: Floats) -> None:
+        """Pose the joints (`posed`) without drawing."""
+        if self.posed.rest is not rest:
+            self.posed = self.posed._replace(rest=rest)
+        _, R, joints, quats = self.posed
+        forward_kinematics(self.model.parents, rest, root_m, local_xyzw, R, joints, quats)
+
+    def _raster(
+        self,
+        xy: Floats,
+        triangles: NDArray[np.int32],
+        colour: NDArray[np.uint8],
+        ids: NDArray[np.uint8],
+        triangle_at: NDArray[np.int32],
+    ) -> NDArray[np.float32]:
+        """Fill ids and triangle_at (h,w) with the projected vertices; returns their depths (h,w) [m]."""
+        zbuffer = self._zbuffer[: ids.size].reshape(ids.shape)
+        rasterise(xy, self._depth, triangles, zbuffer, triangle_at)
+        label_triangles(triangle_at, colour, ids)
+        return zbuffer
+
+    def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
+        factor, m = self.factor, self.model
+        if self.posed.rest is not body.rest:
+            self.posed = self.posed._replace(rest=body.rest)
+        pose_and_project(
+            m.parents, root_m, local_xyzw, self.posed, body.vertices, m.skin, self.projection,
+            np.array([float(roi[0] * factor), float(roi[1] * factor)]), 1.0 / factor,
+            self.xy, self._depth,
+        )  # fmt: skip

@@ -1,0 +1,235 @@
+"""When an arm does not agree with the pictures: other poses of it are tried, the best is kept.
+
+A tracked arm can slip into a pose that looks right to one camera. Candidates are its mirror images
+in depth along each camera's view (the two poses of a segment that project alike, Sminchisescu and
+Triggs 2003), and a low-discrepancy cloud about the present pose and about rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.joint_limits import from_swing_twist
+from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES, PoseSpace
+from mocapd.body.shirt import SLEEVE_PATCHES
+from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.geometry import rotations
+from mocapd.types import Floats, Ints
+
+_LIBRARY = 2048
+_IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arm:
+    """One arm of the body model: its chain of joints (collar, upper, lower, hand) and surface samples (S,...)."""
+
+    side: str
+    chain: Ints
+    sample: Ints  # triangles of the samples
+    corners: NDArray[np.int32]  # (S,3) their vertices
+    link: Ints  # (S,2) two bones, as places in `chain`
+    weights: Floats  # (S,2)
+    colour: NDArray[np.uint8]
+    others: Ints  # all triangles but this arm's
+
+
+def arm_of(model: BodyModel, side: str) -> Arm:
+    """Cut one arm out of the body model; every third triangle of its sleeve is a sample."""
+    mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
+    chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_arm"].joints])
+    sample = np.flatnonzero(mine & (model.colour > 0))[::3]
+    bones, weights = model.triangle_bones[sample, :2], model.triangle_weights[sample, :2]
+    place = np.zeros(int(model.parents.size), dtype=np.int64)
+    place[chain] = np.arange(len(chain))
+    weights = np.where(np.isin(bones, chain), weights, 0.0)
+    return Arm(
+        side, chain, sample, model.triangles[sample], place[bones],
+        weights / weights.sum(axis=1, keepdims=True), model.colour[sample], np.flatnonzero(~mine),
+    )  # fmt: skip
+
+
+def candidates(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    cloud: Floats,
+    library: Floats,
+) -> Floats:
+    """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose.
+
+    cloud (C,6): rotation vectors to turn upper arm and forearm by; library (L,3,4): poses to try as they are.
+    """
+    joints, globals_ = fitter.joints(state)
+    collar, upper, lower, hand = arm.chain
+    present = state.local_xyzw[[collar, upper, lower]]
+    out = [present]
+    a, b = joints[lower] - joints[upper], joints[hand] - joints[lower]
+    for view in views:
+        camera = fitter.drawings[view.index].camera
+        ray = joints[lower] + camera.R.T @ camera.t_m
+        ray = ray / np.linalg.norm(ray)
+        a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
+        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip)):
+            q_upper = rotations.multiply(_shortest(a, new_a), globals_[upper])
+            q_lower = rotations.multiply(_shortest(b, new_b), globals_[lower])
+            local = present.copy()
+            local[1] = rotations.multiply(rotations.inverse(globals_[collar]), q_upper)
+            local[2] = rotations.multiply(rotations.inverse(q_upper), q_lower)
+            out.append(local)
+    turned = np.repeat(present[None], len(cloud), axis=0)
+    turned[:, 1] = rotations.multiply(rotations.exp(cloud[:, :3]), turned[:, 1])
+    turned[:, 2] = rotations.multiply(rotations.exp(cloud[:, 3:]), turned[:, 2])
+    return np.concatenate([np.array(out), turned, library])
+
+
+def _shortest(a: Floats, b: Floats) -> Floats:
+    """The smallest rotation (4,) that turns direction a into direction b."""
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    w = 1.0 + a @ b
+    if w < 1e-6:
+        axis = np.cross(a, [1.0, 0.0, 0.0] if abs(a[0]) < 0.9 else [0.0, 1.0, 0.0])
+        return np.append(axis / np.linalg.norm(axis), 0.0)
+    return rotations.canonical(np.append(np.cross(a, b), w))
+
+
+def best_arm_poses(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    keep: int,
+) -> list[MotionState]:
+    """The `keep` best of the hypotheses, as states, best first."""
+    model = fitter.model
+    body = fitter.shaper(state.factors)
+    corners = body.vertices[arm.corners]
+    points = corners.mean(axis=1)
+    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    normals /= area[:, None]
+    samples = ArmSamples(arm.chain, points, normals, area, arm.colour, arm.link, arm.weights)
+    scores = np.zeros(len(hypotheses))
+    for view in views:
+        drawing = fitter.drawings[view.index]
+        base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
+        factor = drawing.factor
+        score_arms(
+            hypotheses, samples, model.parents, base.posed, drawing.projection,
+            np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,
+            base.zbuffer, view.ids, view.softness, scores,
+        )  # fmt: skip
+    out: list[MotionState] = []
+    for n in np.argsort(-scores, kind="stable"):
+        if n == 0 or len(out) == keep:
+            break  # none below the present pose is worth a try
+        local = state.local_xyzw.copy()
+        local[arm.chain[:3]] = hypotheses[n]
+        # a hypothesis close to one already kept would end where that one ends
+        if any(
+            np.abs((local[arm.chain[1:3]] * kept.local_xyzw[arm.chain[1:3]]).sum(axis=1)).min()
+            > 0.985
+            for kept in out
+        ):
+            continue
+        out.append(replace(state, local_xyzw=local))
+    return out
+
+
+def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
+    """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
+    limits = space.limits
+    upper, fore = space.group(side + "UpperArm"), space.group(side + "LowerArm")
+    u = _halton(size)
+    out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
+    for place, group, span in ((1, upper, slice(0, 3)), (2, fore, slice(3, 6))):
+        low, high = limits.lower_rad[group], limits.upper_rad[group]
+        angles = low + (high - low) * u[:, span]
+        out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
+    return out
+
+
+class ArmSearch:
+    """Tries other poses of arms that the pictures do not confirm."""
+
+    def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
+        self.fitter, self.params = fitter, params
+        self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
+        self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
+        u = _halton(_LIBRARY)
+        near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
+        self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
+
+    def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
+        """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
+        doubtful arm must not wait for them to be compiled or loaded."""
+        for side, arm in self.arms.items():
+            tries = candidates(
+                self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
+            )
+            best_arm_poses(self.fitter, state, arm, views, tries, 1)
+
+    def improve(
+        self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """A better fit, if another pose of a doubtful arm gives one, and the sides that changed.
+
+        turn: a running number; each turn tries another part of the low-discrepancy sets.
+        """
+        p = self.params
+        changed = []
+        for side, arm in self.arms.items():
+            if not doubtful(side, fit, p):
+                continue
+            tries = candidates(
+                self.fitter, fit.state, arm, views,
+                _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
+            )  # fmt: skip
+            best = fit
+            for state in best_arm_poses(self.fitter, fit.state, arm, views, tries, p.arm_fits):
+                other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
+                if other.cost < best.cost - p.arm_gain:
+                    best = other
+            if best is not fit:
+                fit = best
+                changed.append(side)
+        return fit, tuple(changed)
+
+
+def confirmed(side: str, fit: Fit) -> float:
+    """0..1: share of an arm's patches that the pictures confirm; an arm out of sight is not confirmed."""
+    p = SLEEVE_PATCHES[side]
+    asked = fit.visible[p].sum() + fit.unexplained[p].sum()
+    return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
+
+
+def doubtful(side: str, fit: Fit, params: LimbSearchParams) -> bool:
+    """Whether too little of an arm is confirmed by the pictures."""
+    return confirmed(side, fit) < params.doubtful_arm
+
+
+def _part(rows: Floats, turn: int, size: int) -> Floats:
+    first = (turn * size) % len(rows)
+    return rows[first : first + size]
+
+
+def _halton(size: int) -> Floats:
+    """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960)."""
+    out = np.zeros((size, 6))
+    for column, base in enumerate((2, 3, 5, 7, 11, 13)):
+        n, f = np.arange(1, size + 1), 1.0
+        while n.any():
+            f /= base
+            out[:, column] += f * (n % base)
+            n //= base
+    return out

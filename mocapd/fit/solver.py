@@ -1,0 +1,241 @@
+"""Fit pose and body shape to the classified pictures of all cameras at once, by Gauss-Newton.
+
+Every iteration renders the body's id map into each camera at that camera's own instant, gathers
+the rows of `CameraRows`, adds the priors and solves one small normal equation.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.model import BodyModel
+from mocapd.body.posing_kernels import forward_kinematics
+from mocapd.body.shaping import Shaped, Shaper
+from mocapd.body.shirt import standard_shirt
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.body_drawing import Drawing, Roi
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.idmap_term import CameraRows, search_within
+from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, spiral
+from mocapd.fit.motion_state import MotionState, moved, stepped
+from mocapd.fit.step_kernels import PosePriors, gauss_newton_step
+from mocapd.geometry import rotations
+from mocapd.geometry.rotations import IDENTITY_XYZW
+from mocapd.types import Camera, Floats, Ints
+
+_CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """One camera's evidence: ids and softness (h,w) over `roi`, taken dt_s after the asked instant."""
+
+    index: int
+    roi: Roi
+    ids: NDArray[np.uint8]
+    softness: NDArray[np.uint8]
+    dt_s: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit:
+    """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
+    information of the evidence alone on pose and shape."""
+
+    state: MotionState
+    visible: Floats
+    matched: Floats
+    unexplained: Floats
+    H: Floats
+    cost: float
+
+    @property
+    def match(self) -> float:
+        """Share of the rendered shirt whose colour the pictures have."""
+        return float(self.matched.sum() / max(self.visible.sum(), 1.0))
+
+    @property
+    def explained(self) -> float:
+        """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
+        return float(self.matched.sum() / max(self.visible.sum() + self.unexplained.sum(), 1.0))
+
+    def confirmed_colours(self) -> int:
+        """How many colours of the shirt are confirmed in one of their patches."""
+        patches = confirmed_parts(self.matched, self.visible)
+        return int(np.count_nonzero(np.unique(standard_shirt().colour_of_patch[patches])))
+
+
+def confirmed_parts(matched: Floats | Ints, visible: Floats | Ints) -> NDArray[np.bool_]:
+    """Of which patches, or colours, so much of what is rendered is seen that it cannot be chance."""
+    return (matched >= _CONFIRMED_PX) & (matched >= _CONFIRMED * visible)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pass:
+    """What is the same for all cameras in one iteration."""
+
+    state: MotionState
+    body: Shaped
+    search: Search
+    n_shape: int
+    redraw: bool
+
+
+def _coarse(view: View) -> View:
+    """Every second pixel each way."""
+    return replace(
+        view,
+        ids=np.ascontiguousarray(view.ids[::2, ::2]),
+        softness=np.ascontiguousarray(view.softness[::2, ::2]),
+    )
+
+
+class Fitter:
+    """Buffers and constants for fitting one body in one rig; holds no state between calls."""
+
+    def __init__(
+        self, model: BodyModel, cameras: Sequence[Camera], factors: Sequence[int], params: FitParams
+    ) -> None:
+        """`factors`: by how much each camera's frames are averaged down to work pictures."""
+        self.model, self.params = model, params
+        self.shaper = Shaper(model)
+        self.drawings = [Drawing(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)]
+        self._rows = [CameraRows(model) for _ in cameras]
+        self._spiral = spiral(params.first_radius_px)
+        self._spiral_r2 = (self._spiral**2).sum(axis=1)
+        p = params
+        self._prediction_sd = np.concatenate([
+            np.full(3, p.root_sd_m),
+            model.space.by_group({
+                "hips": (p.hips_sd_rad,) * 3, "spine": (p.spine_sd_rad,) * 3,
+                "leftShoulder": (p.collar_sd_rad,) * 3, "rightShoulder": (p.collar_sd_rad,) * 3,
+                "leftUpperArm": (p.arm_sd_rad,) * 3, "rightUpperArm": (p.arm_sd_rad,) * 3,
+            }, p.arm_sd_rad),
+        ])  # fmt: skip
+        # where a joint is drawn to when nothing is seen of it
+        self._rest_information = np.concatenate([
+            np.zeros(3),
+            1.0 / model.space.by_group({
+                "hips": (1e3, 1e3, 1e3), "spine": (0.5, 0.5, 0.4),
+                "leftShoulder": (0.2, 0.2, 0.2), "rightShoulder": (0.2, 0.2, 0.2),
+                "leftUpperArm": (p.upper_arm_sd_rad,) * 3, "rightUpperArm": (p.upper_arm_sd_rad,) * 3,
+                # an elbow bends about y, twists about x, and hardly about z
+                "leftLowerArm": p.elbow_sd_rad, "rightLowerArm": p.elbow_sd_rad,
+            }, 1.0) ** 2,
+        ])  # fmt: skip
+        rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
+        for side, mirror in (("left", 1.0), ("right", -1.0)):
+            for bone, (x, y, z) in (
+                ("UpperArm", p.upper_arm_rest_rad),
+                ("LowerArm", p.elbow_rest_rad),
+            ):
+                vector = np.array([x, mirror * y, mirror * z])
+                rest[INDEX[side + bone]] = rotations.exp(vector)
+        self._priors = PosePriors(
+            rest, self._rest_information, model.space.limits, 1.0 / p.limit_sd_rad**2
+        )
+
+    def joints(self, state: MotionState) -> tuple[Floats, Floats]:
+        """Joint centres (J,3) and global rotations (J,4) of a state."""
+        rest = self.shaper(state.factors).rest
+        R, joints = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3))
+        quats = np.empty((N_JOINTS, 4))
+        forward_kinematics(
+            self.model.parents, rest, state.root_m, state.local_xyzw, R, joints, quats
+        )
+        return joints, quats
+
+    def fit(
+        self,
+        prediction: MotionState,
+        views: Sequence[View],
+        dt_s: float,
+        iterations: int,
+        learn_shape: bool,
+        rendered: bool = False,
+        fine: int | None = None,
+    ) -> Fit:
+        """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
+
+        rendered: the prediction was drawn last into every view, so that the first iteration need
+        not draw it again. fine: how many of the iterations, the last ones, look at all pixels
+        (None: as many as the parameters say).
+        """
+        p, m = self.params, self.model
+        state = prediction
+        n_shape = m.n_shape if learn_shape else 0
+        P = m.n_pose + n_shape
+        prior = 1.0 / (self._prediction_sd**2 * max(dt_s * 30.0, 0.5))
+        fine = p.fine_iterations if fine is None else fine
+        H = np.zeros((P, P))
+        coarse = [_coarse(view) for view in views]
+        for iteration in range(iterations):
+            along = iteration / max(iterations - 1, 1)
+            radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
+            is_fine = iteration >= iterations - fine
+            one = _Pass(
+                state,
+                self.shaper(state.factors),
+                self._search(radius, is_fine, phase=iteration & 1),
+                n_shape,
+                redraw=not rendered or iteration > 0,
+            )
+            H = np.zeros((P, P))
+            b = np.zeros(P)
+            for view in views if is_fine else coarse:
+                self._gather(one, view)
+                mine = self._rows[view.index].system(P)
+                H += mine[0]
+                b += mine[1]
+            step = gauss_newton_step(
+                H, b, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
+                prior, self._priors, prediction.factors - state.factors, prediction.information,
+            )  # fmt: skip
+            root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
+            factors = state.factors
+            if learn_shape:
+                factors = np.clip(factors + step[m.n_pose :], 0.6, 1.6)
+            state = replace(state, root_m=root, local_xyzw=local, factors=factors)
+        rows = [self._rows[view.index] for view in views]
+        return Fit(
+            state,
+            np.sum([r.visible for r in rows], axis=0),
+            np.sum([r.matched for r in rows], axis=0),
+            np.sum([r.unexplained for r in rows], axis=0),
+            H,
+            sum(r.cost for r in rows),
+        )
+
+    def _gather(self, one: _Pass, view: View) -> None:
+        """The rows of one camera."""
+        m, state, coarse = self.model, one.state, one.search.grid_px > 1.0
+        drawing, rows = self.drawings[view.index], self._rows[view.index]
+        root, local = moved(m, state, view.dt_s)
+        if one.redraw:
+            draw = drawing.draw_coarse if coarse else drawing.draw
+            drawn = draw(root, local, one.body, view.roi)
+        else:
+            drawn = drawing.last_coarse(view.roi) if coarse else drawing.last(view.roi)
+            drawing.pose(root, local, one.body.rest)
+        rows.gather(
+            drawing, one.body, ComparedPictures(*drawn, view.ids, view.softness), one.search,
+            one.n_shape, self.params.row_weight,
+        )  # fmt: skip
+
+    def _search(self, radius_px: float, fine: bool, phase: int) -> Search:
+        """Half of all pixels, or, not `fine`, a quarter: every second each way."""
+        grid_px = 1.0 if fine else 2.0
+        n = np.searchsorted(self._spiral_r2, (radius_px / grid_px) ** 2, side="right")
+        return search_within(
+            self._spiral[:n], radius_px, grid_px,
+            every=2 if fine else 1, phase=phase, stiffness=self.params.edge_stiffness if fine else 0.0,
+        )  # fmt: skip
+
+    def shape_information(self, H: Floats) -> Floats:
+        """What the evidence says of the shape factors when the pose is free: Schur complement (n_shape,n_shape)."""
+        n = self.model.n_pose
+        Hpp = H[:n, :n] + np.diag(self._rest_information + 1e-3)
+        Hps = H[:n, n:]
+        return H[n:, n:] - Hps.T @ np.linalg.solve(Hpp, Hps)

@@ -1,0 +1,1 @@
+"""Skeleton frames as OSC bundles over UDP."""

@@ -1,0 +1,118 @@
+"""The native OSC address space: a skeleton frame as bundles.
+
+Every bundle begins with `/mocapd/v1/frame`; its joints follow as `/mocapd/v1/joint/<VRM name>`.
+A frame that does not fit one datagram is spread over several of nearly equal size. Whatever a
+frame's strings are, one joint and its header fit: longer strings are cut.
+"""
+
+import struct
+from itertools import pairwise
+
+from mocapd.outputs.osc import osc_encoding as osc
+from mocapd.outputs.wire import SkeletonFrame
+
+FRAME = "/mocapd/v1/frame"
+FRAME_TYPES = "iiiiiiifssss"
+FRAME_ARGUMENTS = (
+    ("person", "i", "number of the person"),
+    ("seq", "i", "counts the frames, modulo 2^31"),
+    ("part", "i", "which bundle of the frame this is, from 0"),
+    ("parts", "i", "how many bundles the frame has"),
+    ("joints", "i", "how many joints the whole frame has; 0 when lost"),
+    ("capture_s", "i", "capture time, whole seconds of Unix time, unsigned"),
+    ("capture_ns", "i", "capture time, nanoseconds within the second"),
+    ("latency_s", "f", "capture to publish [s]"),
+    ("tracking", "s", "`live`, `coasting` or `lost`"),
+    ("tracker", "s", "which tracker"),
+    ("cameras", "s", "cameras whose evidence was used, joined by commas"),
+    ("instance", "s", "name of the sending daemon"),
+)
+JOINT = "/mocapd/v1/joint/"
+JOINT_TYPES = "f" * 12
+JOINT_ARGUMENTS = (
+    ("px py pz", "fff", "position in the world [m]"),
+    ("rx ry rz rw", "ffff", "global rotation relative to the T-pose, w >= 0"),
+    ("lx ly lz lw", "ffff", "rotation relative to the parent bone, w >= 0"),
+    ("c", "f", "confidence 0..1"),
+)
+# UTF-8 that is sent of each string [bytes]; with a joint, at most 808 of a datagram's 1472
+MAX_TRACKING_BYTES = 32
+MAX_TRACKER_BYTES = 64
+MAX_CAMERAS_BYTES = 200
+MAX_INSTANCE_BYTES = 256  # 64 characters
+MAX_JOINT_BYTES = 64
+
+_frame_numbers = struct.Struct(">iiiiiIIf")  # the arguments before the strings
+_joint_numbers = struct.Struct(">12f")
+
+Shape = tuple[str, str, tuple[str, ...], str, tuple[str, ...]]
+
+
+def shape_of(frame: SkeletonFrame) -> Shape:
+    """What the layout of a frame's bundles depends on: its strings and its joints' names."""
+    return frame.tracking, frame.tracker, frame.cameras, frame.instance, tuple(frame.joints)
+
+
+class FrameBundles:
+    """The bundles of all frames of one shape: laid out once, the numbers overwritten per frame."""
+
+    def __init__(self, frame: SkeletonFrame, limit_bytes: int = osc.MAX_DATAGRAM_BYTES) -> None:
+        header = osc.message(
+            FRAME,
+            FRAME_TYPES,
+            *(0, 0, 0, 0, 0, 0, 0, 0.0),
+            osc.shortened(frame.tracking, MAX_TRACKING_BYTES),
+            osc.shortened(frame.tracker, MAX_TRACKER_BYTES),
+            osc.shortened(",".join(frame.cameras), MAX_CAMERAS_BYTES),
+            osc.shortened(frame.instance, MAX_INSTANCE_BYTES),
+        )
+        header_at = osc.arguments_offset(FRAME, FRAME_TYPES)
+        self._bundles: list[tuple[bytearray, int, tuple[int, ...]]] = []
+        for names in _runs(tuple(frame.joints), header, limit_bytes):
+            data, starts = osc.bundle([header, *map(_joint_message, names)])
+            joints_at = tuple(
+                start + osc.arguments_offset(_address(name), JOINT_TYPES)
+                for start, name in zip(starts[1:], names, strict=True)
+            )
+            self._bundles.append((data, starts[0] + header_at, joints_at))
+
+    def filled(self, frame: SkeletonFrame) -> list[bytearray]:
+        """The datagrams of a frame of this shape; they are overwritten by the next call."""
+        second, nanosecond = divmod(frame.capture_unix_ns, 1_000_000_000)
+        latency_s = (frame.publish_monotonic_ns - frame.capture_monotonic_ns) * 1e-9
+        joints = iter(frame.joints.values())
+        for part, (data, frame_at, joints_at) in enumerate(self._bundles):
+            _frame_numbers.pack_into(
+                data,
+                frame_at,
+                frame.person,
+                frame.seq & 0x7FFFFFFF,
+                part,
+                len(self._bundles),
+                len(frame.joints),
+                second & 0xFFFFFFFF,
+                nanosecond,
+                latency_s,
+            )
+            # not strict: each bundle takes its own share of the joints, in order
+            for offset, joint in zip(joints_at, joints, strict=False):
+                _joint_numbers.pack_into(data, offset, *joint.p, *joint.r, *joint.l, joint.c)
+        return [data for data, _, _ in self._bundles]
+
+
+def _address(joint: str) -> str:
+    return JOINT + osc.shortened(joint, MAX_JOINT_BYTES)
+
+
+def _joint_message(name: str) -> bytes:
+    return osc.message(_address(name), JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
+
+
+def _runs(names: tuple[str, ...], header: bytes, limit_bytes: int) -> list[tuple[str, ...]]:
+    """The fewest runs of joints, of nearly equal length, each of which fits with the header."""
+    for count in range(1, max(len(names), 1) + 1):
+        cuts = [len(names) * k // count for k in range(count + 1)]
+        runs = [names[a:b] for a, b in pairwise(cuts)]
+        if all(osc.bundle_size([header, *map(_joint_message, run)]) <= limit_bytes for run in runs):
+            return runs
+    raise ValueError(f"one joint and its header do not fit {limit_bytes} bytes")

@@ -1,0 +1,1 @@
+"""Skeleton frames and state on Zenoh."""

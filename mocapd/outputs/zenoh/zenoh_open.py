@@ -1,0 +1,61 @@
+"""Opening the daemon's Zenoh session, with every refusal said in one line."""
+
+import json
+import os
+from pathlib import Path
+
+import zenoh
+
+from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
+from mocapd.outputs.socket_owners import holder_of
+from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints, session_config
+from mocapd.outputs.zenoh.zenoh_limits import RUNTIME, RUNTIME_VARIABLE
+from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
+
+# Zenoh reads it when the first session of the process opens. What the user has set is left alone.
+os.environ.setdefault(RUNTIME_VARIABLE, RUNTIME)
+
+TAKEN = "os error 98"  # EADDRINUSE in the text of Zenoh's errors, which have no code
+FORBIDDEN = "os error 13"  # EACCES
+
+
+def open_session(params: Params) -> zenoh.Session:
+    """The session. Raises UnavailableError or PermissionDeniedError with the mend.
+
+    A taken port names the process that holds it. Raises ConfigError when the password file changed
+    into one that does not do since the parameters were made.
+    """
+    if params.password_file:
+        check_password_file(Path(params.password_file))
+    try:
+        return zenoh.open(zenoh.Config.from_json5(json.dumps(session_config(params))))
+    except zenoh.ZError as error:
+        raise _explained(params, str(error)) from error
+
+
+def _explained(params: Params, text: str) -> MocapdError:
+    if params.connect:
+        return UnavailableError(
+            "no Zenoh router answers",
+            ", ".join(params.connect),
+            "start it, or leave zenoh.connect empty to be reached without a router",
+        )
+    where = ", ".join(listen_endpoints(params))
+    if TAKEN in text:
+        taken = next((e for e in listen_endpoints(params) if e in text), where)
+        port = int(taken.rpartition(":")[2])
+        holder = holder_of(port)
+        return UnavailableError(
+            f"port {port} is taken by {holder}" if holder else f"port {port} is taken",
+            taken,
+            f'join it with zenoh.connect = ["tcp/127.0.0.1:{port}"] if it is a Zenoh router, '
+            "or choose another zenoh.port",
+        )
+    if FORBIDDEN in text:
+        return PermissionDeniedError(
+            "not allowed to listen there", where, "choose a zenoh.port above 1023"
+        )
+    # past the sentence itself Zenoh appends the place in its own source
+    return UnavailableError(
+        f"Zenoh does not open: {text.partition(' at /')[0]}", where, "mend zenoh.listen"
+    )

@@ -1,0 +1,122 @@
+"""Skeleton frames on Zenoh: key `mocapd/v1/<instance>/skeleton/<person>`."""
+
+import logging
+from contextlib import ExitStack
+from typing import Any
+
+import zenoh
+
+from mocapd.outputs import wire
+from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import Message
+from mocapd.outputs.wire import SkeletonFrame
+from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_close import close_soon
+from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints
+from mocapd.outputs.zenoh.zenoh_listeners import ListenerNames, subscribers
+from mocapd.outputs.zenoh.zenoh_open import open_session
+from mocapd.outputs.zenoh.zenoh_state import ZenohState
+from mocapd.outputs.zenoh.zenoh_warnings import warnings
+
+_log = logging.getLogger(__name__)
+
+
+class ZenohSink:
+    """Publishes frames, answers late joiners, and shows that it lives by a liveliness token.
+
+    `send` from one thread; `set_state` and `status` from any. While nobody subscribes a frame is
+    not even encoded.
+    """
+
+    name = "zenoh"
+
+    def __init__(self, params: Params) -> None:
+        self._params = params
+        self.instance = keys.chunk(params.instance) if params.instance else keys.default_instance()
+        self._json = params.format == "json"
+        self._state = ZenohState(self.instance, params.format)
+        self._listener_names = ListenerNames()
+        self._session: zenoh.Session | None = None
+        self._opened = ExitStack()
+        self._publishers: dict[int, zenoh.Publisher] = {}
+        self._sent = 0
+        self._unheard = 0
+
+    def open(self) -> None:
+        """Open the session. Raises UnavailableError; a taken port names its holder and the mend."""
+        for text in warnings(self._params):
+            _log.warning("%s", text)
+        session = self._opened.enter_context(open_session(self._params))
+        self._state.attach(session, self._opened)
+        # forgetting a publisher speaks to everybody who is connected, so it belongs to the end
+        self._opened.callback(self._publishers.clear)
+        self._publishers[0] = self._declare(session, 0)
+        # last in and so first out: whoever sees the token finds everything else in place
+        self._opened.enter_context(session.liveliness().declare_token(keys.alive(self.instance)))
+        self._session = session
+
+    def _declare(self, session: zenoh.Session, person: int) -> zenoh.Publisher:
+        return session.declare_publisher(
+            keys.skeleton(self.instance, person),
+            encoding=wire.JSON if self._json else wire.MSGPACK,
+            # a frame that cannot leave now is worthless in a moment: drop it, never wait; and do
+            # not hold it back to fill a batch
+            congestion_control=zenoh.CongestionControl.DROP,
+            priority=zenoh.Priority.REAL_TIME,
+            express=True,
+        )
+
+    def send(self, frame: SkeletonFrame) -> None:
+        """Publish one frame if somebody subscribes to its person; before `open` nobody does."""
+        session = self._session
+        if session is None:
+            return
+        publisher = self._publishers.get(frame.person)
+        if publisher is None:
+            publisher = self._publishers[frame.person] = self._declare(session, frame.person)
+        if not _is_heard(publisher):
+            self._unheard += 1
+            return
+        publisher.put(wire.encode_json(frame) if self._json else wire.encode_msgpack(frame))
+        self._sent += 1
+
+    def set_state(self, message: Message) -> None:
+        """Publish health, a camera's status or the calibration, and keep it for late joiners."""
+        self._state.set(message)
+
+    def status(self) -> SinkStatus:
+        """`refused` counts the frames made while nobody listened."""
+        session = self._session
+        if session is None:
+            return SinkStatus(self._sent, self._unheard, 0, "closed")
+        if self._params.connect:
+            # the router knows who listens behind it, we only know whether anybody does
+            heard = any(_is_heard(publisher) for publisher in list(self._publishers.values()))
+            detail = f"joined {', '.join(self._params.connect)}"
+            return SinkStatus(
+                self._sent,
+                self._unheard,
+                -1 if heard else 0,
+                detail if heard else f"{detail}, nobody listens",
+            )
+        zids = subscribers(session, keys.skeleton(self.instance, keys.ANY))
+        names = ", ".join(self._listener_names.of(session, zids))
+        where = ", ".join(listen_endpoints(self._params))
+        return SinkStatus(
+            self._sent, self._unheard, len(zids), names or f"nobody listens on {where}"
+        )
+
+    def close(self) -> None:
+        """Take back the token, so that clients learn of the end, then everything else.
+
+        Within about a second, whatever the clients do.
+        """
+        self._session = None
+        self._publishers = {}
+        self._state.detach()
+        close_soon(self._opened)
+
+
+def _is_heard(publisher: zenoh.Publisher) -> bool:
+    status: Any = publisher.matching_status  # Zenoh's stub calls it a bool; it is an object
+    return bool(status.matching)

@@ -1,0 +1,1 @@
+"""The composition root: cameras, pipeline and outputs of a running daemon."""

@@ -1,0 +1,76 @@
+"""From the state of threads and sinks to the messages that late joiners ask for."""
+
+import math
+import os
+
+import mocapd
+from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
+from mocapd.pipeline.metrics import CameraMetrics, Metrics
+from mocapd.session.camera_inputs import CameraInput
+
+# the wire's words for the states of a capture thread
+_STATES = {
+    CaptureState.OPENING: "starting",
+    CaptureState.LIVE: "live",
+    CaptureState.LOST: "lost",
+    CaptureState.ENDED: "ended",
+}
+
+
+def health_message(
+    instance: str,
+    started_unix_ns: int,
+    now_unix_ns: int,
+    metrics: Metrics,
+    outputs: dict[str, SinkStatus],
+) -> Health:
+    """How the daemon fares; figures that nobody measured yet are 0."""
+    return Health(
+        instance=instance,
+        version=mocapd.__version__,
+        pid=os.getpid(),
+        started_unix_ns=started_unix_ns,
+        now_unix_ns=now_unix_ns,
+        tracker=metrics.tracker,
+        tracking=metrics.tracking.value,
+        rate_hz=metrics.rate_hz,
+        latency_median_ms=_number(metrics.latency_ms.median),
+        latency_p95_ms=_number(metrics.latency_ms.p95),
+        frame_sets=metrics.sets_made,
+        dropped=metrics.sets_dropped,
+        outputs=tuple(
+            OutputHealth(name, s.sent, s.refused, s.listeners, s.detail)
+            for name, s in outputs.items()
+        ),
+    )
+
+
+def camera_message(
+    instance: str,
+    camera: CameraInput,
+    status: CaptureStatus,
+    metrics: CameraMetrics,
+    mounting: Mounting,
+) -> CameraStatus:
+    """How one camera fares."""
+    return CameraStatus(
+        instance=instance,
+        camera=status.camera,
+        state=_STATES[status.state],
+        detail=status.trouble,
+        source=camera.spec,
+        identity=camera.spec.removeprefix("usb:") if camera.spec.startswith("usb:") else "",
+        size_px=camera.size_px,
+        rate_hz=status.fps_hz,
+        frames=status.frames,
+        lost_frames=metrics.counts.lost + status.torn,
+        reopened=status.reopens,
+        mounting=mounting.value,
+    )
+
+
+def _number(value: float) -> float:
+    return 0.0 if math.isnan(value) else value

@@ -1,0 +1,1 @@
+"""What one run works on: cameras, calibration and tracker, from the configuration."""

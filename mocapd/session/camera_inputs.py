@@ -1,0 +1,87 @@
+"""From the cameras of the configuration to sources, in the order of the rig."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+
+from mocapd.boundary.urls import without_password
+from mocapd.capture.base import Source
+from mocapd.capture.from_config import open_source
+from mocapd.capture.pace import Pace
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
+from mocapd.config.sections import CameraSection
+from mocapd.errors import ConfigError
+from mocapd.types import Rig
+
+
+@dataclass(frozen=True, slots=True)
+class CameraInput:
+    """A camera of the daemon.
+
+    address: what it is read from, which may hold a password: it is never shown, sent or logged, `spec`
+    is; size_px: of its pictures, (0, 0) if not known before; expected_hz: warned about when the
+    camera is slower.
+    """
+
+    source: Source
+    address: str = field(repr=False)
+    size_px: tuple[int, int] = (0, 0)
+    expected_hz: float | None = None
+
+    @property
+    def spec(self) -> str:
+        """What it is read from, as shown to people."""
+        return without_password(self.address)
+
+
+def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraInput, ...]:
+    """Sources for these cameras, checked but not opened. Raises ConfigError or InputError."""
+    sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
+    identities = {c.id: parse_identity(c.source) for c in cameras if c.source.startswith(PREFIX)}
+    pace = Pace(live=True)  # recordings start together and keep their own time
+    inputs = []
+    for camera in in_rig_order(cameras, rig):
+        size_px = sizes.get(camera.id)
+        settings = WebcamSettings(
+            size_px=size_px or WebcamSettings().size_px,
+            fps_hz=camera.fps_hz,
+            controls=camera.controls,
+        )
+        source = open_source(
+            camera.source,
+            camera.id,
+            size_px=size_px,
+            settings=settings,
+            others=tuple(one for name, one in identities.items() if name != camera.id),
+            pace=pace,
+        )
+        expected_hz = None if source.recorded else camera.fps_hz
+        inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
+    return tuple(inputs)
+
+
+def picture_size(camera: CameraSection) -> tuple[int, int]:
+    """Width and height [px] of the pictures to come: a recording or network camera is asked, a webcam
+    will be told. Raises MocapdError when there is no picture."""
+    source = open_source(camera.source, camera.id)
+    if isinstance(source, V4l2Source):
+        return WebcamSettings().size_px
+    with closing(source):
+        source.open()
+        height, width = source.read().pixels.shape[:2]
+    return width, height
+
+
+def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[CameraSection]:
+    """The cameras as the rig has them. Raises ConfigError for one that it has not."""
+    if rig is None:
+        return list(cameras)
+    for camera in cameras:
+        if camera.id not in rig.names:
+            raise ConfigError(
+                f"the rig has no camera {camera.id!r}",
+                "camera",
+                f"it has {', '.join(rig.names)}: correct the id, or calibrate again",
+            )
+    return sorted(cameras, key=lambda camera: rig.names.index(camera.id))

@@ -1,0 +1,116 @@
+"""Which saved calibration a configuration runs on, and the cameras that it names."""
+
+import logging
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from mocapd.boundary.files import is_file, is_folder
+from mocapd.boundary.urls import without_password
+from mocapd.calibrate.calibrated_inputs import (
+    Calibrated,
+    inputs_of_calibration,
+    read_calibrated,
+)
+from mocapd.calibration.calibration_file import FILE_NAME, calibration_path, read_calibration
+from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
+from mocapd.calibration.saved_sources import require_password
+from mocapd.capture.capture_folder import CaptureFolder
+from mocapd.capture.file import size_error
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.config.sections import CameraSection, Config, ControlsSection, TrackerSection
+from mocapd.errors import ConfigError
+from mocapd.trackers.registry import TrackerInputs
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Saved:
+    """A calibration as its file has it, and as a tracker takes it."""
+
+    path: Path
+    tables: SavedCalibration
+    known: Calibrated
+
+
+def calibration_of(config: Config) -> Saved | None:
+    """The calibration that `rig` names; else that of the state directory, for its own cameras.
+
+    None for a rig in the capture format, for cameras that bring a rig with them, and for others than
+    those that were calibrated. Raises InputError or ConfigError.
+    """
+    if config.rig is not None:
+        return load_saved(config.rig) if is_calibration(config.rig) else None
+    place = config.state_dir / FILE_NAME
+    if not is_file(place) or any("#" in camera.source for camera in config.camera):
+        return None
+    saved = load_saved(place)
+    if config.camera and not fits(config.camera, saved.tables):
+        _log.warning(
+            "%s is of other cameras than those configured (%s), and not used",
+            *(place, ", ".join(map(_named, saved.tables.camera))),
+        )
+        return None
+    return saved
+
+
+def is_calibration(path: Path) -> bool:
+    """Whether it is a saved calibration, or a folder for one, and not a rig in the capture format."""
+    return is_folder(path) or path.suffix == ".toml"
+
+
+def load_saved(place: Path) -> Saved:
+    """The calibration of a file or folder, with its pictures. Raises InputError or ConfigError."""
+    path = calibration_path(place)
+    tables = read_calibration(path)
+    return Saved(path, tables, read_calibrated(tables, path))
+
+
+def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
+    """Whether each of these is one of the calibrated cameras by id and source; a webcam may have been
+    moved to another USB port since."""
+    calibrated = {one.id: _model(one.source) for one in tables.camera}
+    return all(calibrated.get(one.id) == _model(one.source) for one in cameras)
+
+
+def _model(source: str) -> object:
+    """A password may be written in one place and hidden in the other."""
+    return parse_identity(source).model if source.startswith(PREFIX) else without_password(source)
+
+
+def _named(camera: SavedCamera) -> str:
+    return f"{camera.id} = {without_password(camera.source)}"
+
+
+def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
+    """The calibrated cameras as a configuration has them. Raises ConfigError where a password is
+    missing."""
+    place = str(saved.path.parent)
+    return tuple(
+        CameraSection(
+            one.id,
+            require_password(one.id, one.source, place),
+            one.fps_hz,
+            controls=ControlsSection(**asdict(one.controls)),
+        )
+        for one in saved.tables.camera
+    )
+
+
+def inputs_of_saved(saved: Saved, folder: CaptureFolder, tracker: TrackerSection) -> TrackerInputs:
+    """What the calibration tells a tracker of a capture that its cameras recorded. Raises ConfigError
+    when they did not."""
+    sizes = {camera.id: camera.size_px for camera in saved.tables.camera}
+    for camera in folder.cameras:
+        if camera.name not in sizes:
+            raise ConfigError(
+                f"the calibration has no camera {camera.name!r}",
+                str(saved.path),
+                f"it has {', '.join(sizes)}: name the capture's cameras so, or calibrate them",
+            )
+        if sizes[camera.name] != camera.size_px:
+            raise size_error(str(camera.video), camera.name, camera.size_px, sizes[camera.name])
+    stature_m = folder.stature_m or tracker.stature_m
+    inputs = inputs_of_calibration(saved.known, stature_m)
+    return replace(inputs, variant=tracker.variant, tracking=tracker)

@@ -1,0 +1,164 @@
+"""What one run of the daemon works on: cameras, rig and tracker, from the configuration.
+
+The saved calibration gives cameras, rig, wearer and colours. So do cameras that are all of one capture
+folder, or all of one simulated scenario. What the configuration gives itself wins.
+"""
+
+import logging
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
+from mocapd.capture.capture_folder import load_folder
+from mocapd.capture.url import is_url
+from mocapd.config.sections import CameraSection, Config
+from mocapd.errors import ConfigError
+from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
+from mocapd.geometry.rig_file import load_rig
+from mocapd.pipeline.rehearsal import rehearse
+from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
+from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
+from mocapd.session.tracker_setup import (
+    Progress,
+    build_tracker,
+    inputs_of_capture,
+    inputs_of_config,
+    with_cache,
+)
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.registry import TrackerInputs, entry
+from mocapd.types import Rig
+
+_log = logging.getLogger(__name__)
+
+SIM = "sim:"  # the renderer is imported for such cameras only: it takes a second
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Session:
+    """`rig_source`: the file or scenario that the rig is from, for people."""
+
+    cameras: tuple[CameraInput, ...]
+    rig: Rig | None
+    rig_source: str
+    tracker: Tracker
+
+
+def cameras_of(capture: str) -> tuple[CameraSection, ...]:
+    """Every camera of a capture folder or of `sim:SCENARIO`. Raises InputError or ConfigError."""
+    if capture.startswith(SIM):
+        from mocapd.session import simulation
+
+        names = simulation.camera_names(capture)
+    else:
+        names = load_rig(Path(capture) / "rig.json").names
+    return tuple(CameraSection(name, f"{capture}#{name}") for name in names)
+
+
+def open_session(config: Config, progress: Progress) -> Session:
+    """Check and prepare everything; `progress` is told while something long is made for the first
+    time. Raises ConfigError, InputError or CannotCreateError."""
+    saved = calibration_of(config)
+    cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
+    if not cameras:
+        raise ConfigError(
+            "no camera is configured, and no calibration is saved",
+            str(config.state_dir),
+            "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
+            "--camera ID=SOURCE",
+        )
+    config = replace(config, camera=cameras)
+    origin = _common_origin(cameras)
+    if origin.startswith(SIM):
+        return _simulated(config, origin, saved, progress)
+    rig, rig_source = _given_rig(config, saved)
+    if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
+        rig, rig_source = _assumed_rig(cameras[0]), "assumed"
+    inputs = _own_inputs(config, rig, saved)
+    if origin and saved is None:
+        folder = load_folder(Path(origin))
+        told = inputs_of_capture(folder, config.tracker.stature_m)
+        inputs = _merged(inputs, told)
+        rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
+    return Session(
+        camera_inputs(cameras, rig), rig, rig_source, _ready_tracker(config, inputs, progress)
+    )
+
+
+def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
+    """The rig of the calibration or the rig file, and which file that is."""
+    if saved is not None:
+        return saved.known.rig, str(saved.path)
+    return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
+
+
+def _own_inputs(config: Config, rig: Rig | None, saved: Saved | None) -> TrackerInputs:
+    """What configuration and calibration tell a tracker."""
+    own = inputs_of_config(config.tracker, config.camera, rig)
+    if saved is None:
+        return own
+    return _merged(own, inputs_of_calibration(saved.known, config.tracker.stature_m))
+
+
+def _assumed_rig(camera: CameraSection) -> Rig:
+    """Where one camera without calibration probably is; says so."""
+    _log.warning(
+        "camera %r is not calibrated: assumed are a field of view of %.0f degrees and a place %.1f m"
+        " high and %.1f m before the person, so distances and sizes will be off -- give a rig file"
+        " (rig = ..., or --rig)",
+        *(camera.id, FIELD_OF_VIEW_DEG, HEIGHT_M, DISTANCE_M),
+    )
+    return nominal_rig(camera.id, picture_size(camera))
+
+
+def _simulated(config: Config, source: str, saved: Saved | None, progress: Progress) -> Session:
+    from mocapd.session import simulation
+
+    film = simulation.open_film(source, config.cache_dir, progress)
+    if saved is None:
+        rig, rig_source = film.setup.rig, source
+        inputs = _merged(
+            _own_inputs(config, None, None), simulation.inputs_of_simulation(film.setup)
+        )
+    else:
+        rig, rig_source = saved.known.rig, str(saved.path)
+        inputs = _own_inputs(config, rig, saved)
+    tracker = _ready_tracker(config, inputs, progress)
+    # last, as they begin to play now
+    cameras = simulation.simulated_inputs(config.camera, film)
+    return Session(cameras, rig, rig_source, tracker)
+
+
+def _ready_tracker(config: Config, inputs: TrackerInputs, progress: Progress) -> Tracker:
+    """Built, and its kernels warm."""
+    tracker = build_tracker(config.tracker.name, with_cache(inputs, config.cache_dir, progress))
+    pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
+    rehearse(tracker, inputs.rig, pictures, partial(progress, "preparing the tracker"))
+    return tracker
+
+
+def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
+    """The one capture folder or scenario that all cameras are of; empty when there is none."""
+    # a URL is no folder, also where its password or fragment has a `#`
+    origins = {"" if is_url(one.source) else one.source.rpartition("#")[0] for one in cameras}
+    simulated = any(camera.source.startswith(SIM) for camera in cameras)
+    if simulated and (len(origins) > 1 or origins == {""}):
+        raise ConfigError(
+            "simulated cameras must all be of one scenario",
+            "camera",
+            "write source = sim:SCENARIO#CAMERA for each",
+        )
+    return origins.pop() if len(origins) == 1 else ""
+
+
+def _merged(own: TrackerInputs, told: TrackerInputs) -> TrackerInputs:
+    """What the configuration itself gives goes before what came with the cameras."""
+    return replace(
+        told,
+        rig=own.rig or told.rig,
+        model=own.model or told.model,
+        white_balance={**told.white_balance, **own.white_balance},
+        variant=own.variant,
+        tracking=own.tracking,
+    )

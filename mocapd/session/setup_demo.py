@@ -1,0 +1,62 @@
+"""A first setup without cameras: simulated webcams, a simulated board and a simulated wearer."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from mocapd.assets import asset_path
+from mocapd.capture.stage import SceneSource, Stage
+from mocapd.clock import monotonic_ns
+from mocapd.session.tracker_setup import Progress
+from mocapd.sim.board.board_clips import load_board_clips
+from mocapd.sim.board.board_picture import PrintedBoard
+from mocapd.sim.clips import wearer_clips
+from mocapd.sim.film import load_film
+from mocapd.sim.scenario import load_scenario
+from mocapd.sim.setup_scenes import SETUP_BOARD
+from mocapd.types import Rig
+
+SCENARIO = "first_setup"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Demo:
+    """The cameras (id, source) before one stage; `stage.play(scene)` tells what happens there.
+
+    source_of(id) is what a configuration calls the camera afterwards. board: the one that is shown;
+    rig: where the cameras truly are, which the setup is to find out.
+    """
+
+    cameras: tuple[tuple[str, SceneSource], ...]
+    stage: Stage
+    board: PrintedBoard
+    stature_m: float
+    rig: Rig
+
+    @staticmethod
+    def source_of(camera: str) -> str:
+        """`sim:...`: the same camera, with the wearer's motion over and over."""
+        return f"sim:{SCENARIO}#{camera}"
+
+    @property
+    def fps_hz(self) -> float:
+        """Of all cameras."""
+        return self.stage.scenario.fps_hz
+
+
+def open_demo(cache_dir: Path, progress: Progress) -> Demo:
+    """The demonstration, its pictures rendered when they are not in the cache. Raises MocapdError."""
+    scenario = load_scenario(asset_path(f"scenarios/{SCENARIO}.toml"))
+    film = load_film(
+        scenario, cache_dir, lambda done, total: progress("rendering the wearer", done, total)
+    )
+    boards = load_board_clips(
+        scenario, cache_dir, lambda done, total: progress("rendering the board", done, total)
+    )
+    stage = Stage(scenario, boards | wearer_clips(film), monotonic_ns())
+    return Demo(
+        cameras=tuple((spec.name, SceneSource(stage, spec.name)) for spec in scenario.cameras),
+        stage=stage,
+        board=SETUP_BOARD,
+        stature_m=scenario.body.stature_m,
+        rig=film.setup.rig,
+    )

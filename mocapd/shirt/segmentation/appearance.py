@@ -1,0 +1,112 @@
+"""What the shirt's ten colours look like to one camera now: learned means and covariances over a prior from W.
+
+The colour model (paper section 5.1) lives in white-balanced RGB; W maps the camera's colours to it.
+Within a light, each colour is followed in the camera's own space, because a 3x3 matrix cannot
+follow shadow, interreflection and the camera's response; colours not seen keep what W says.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.shirt.segmentation import appearance_kernels as kernels
+from mocapd.types import Floats, Singles
+
+N = 10
+_BGR = np.array([2, 1, 0])
+_SEEN_PX = 12.0  # pixels a colour needs to count as seen
+_PRIOR_PX = 60.0  # weight of the prior against learned pixels
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Appearance:
+    """W (3,3), model_from_camera on RGB 0..1; sums (10,4): decayed count and BGR sums of each colour."""
+
+    W: Floats
+    sums: Floats
+
+
+def fresh(W: Floats) -> Appearance:
+    """Nothing learned yet under this white balance."""
+    return Appearance(W, np.zeros((N, 4)))
+
+
+def learn(appearance: Appearance, sums: Floats, dt_s: float, memory_s: float) -> Appearance:
+    """Blend in the statistics of a new frame; a colour that was not seen keeps its memory."""
+    keep = np.exp(-dt_s / memory_s)
+    seen = sums[:, :1] >= _SEEN_PX
+    # each frame weighs at most so many pixels that an old memory of few can be outvoted
+    blended = np.where(seen, keep * appearance.sums + (1.0 - keep) * sums, appearance.sums)
+    return replace(appearance, sums=blended)
+
+
+def gaussians(
+    appearance: Appearance,
+    model_mean: Floats,
+    model_covariance: Floats,
+    cloth_sd: float,
+    noise_sd: float,
+    shading_sd: float,
+) -> tuple[Floats, Floats]:
+    """Means (10,3) and covariances (10,3,3) in the camera's BGR 0..1."""
+    # the mean is the camera's own once the colour is well seen; a spread learned from what was
+    # classified would grow by itself until it swallows skin and trousers, so the model's is kept
+    mean, covariance = np.empty((N, 3)), np.empty((N, 3, 3))
+    kernels.gaussians(
+        appearance.W, appearance.sums, _PRIOR_PX, model_mean, model_covariance,
+        cloth_sd, noise_sd, shading_sd, mean, covariance,
+    )  # fmt: skip
+    return mean, covariance
+
+
+def whitening(mean: Floats, covariance: Floats) -> Singles:
+    """affine (10,3,4) for `classify`: |A (b,g,r,1)| is the Mahalanobis distance of a BGR 0..255 pixel."""
+    out = np.empty((len(mean), 3, 4), np.float32)
+    kernels.whitening(mean, covariance, out)
+    return out
+
+
+def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.02) -> Floats:
+    """W (3,3) from the learned means of the colours seen (paper section 5.2, step 5), pulled to the last W."""
+    n = appearance.sums[:, 0]
+    seen = n >= _SEEN_PX
+    if seen.sum() < 3:
+        return appearance.W
+    image = (appearance.sums[seen, 1:4] / n[seen, None])[:, _BGR]
+    # normal equations: three unknowns a row, and the ridge keeps them well conditioned
+    weighted = (np.minimum(n[seen], 400.0) / 400.0)[:, None] * image
+    moments = weighted.T @ image + ridge * np.eye(3)
+    target = weighted.T @ model_mean[seen] + ridge * appearance.W.T
+    W: Floats = np.asarray(np.linalg.solve(moments, target)).T
+    return W
+
+
+def transported(appearance: Appearance, observed: Floats, model_mean: Floats) -> Appearance:
+    """The appearance in a new light, from what is seen now where each colour is expected.
+
+    One matrix M carries the known colours to the observed ones (10,4 statistics of the predicted
+    patches, classified or not): least squares drawn towards a plain change of brightness, so that
+    few colours suffice.
+    """
+    inverse = np.linalg.inv(appearance.W)
+    known = (model_mean @ inverse.T)[:, _BGR]
+    n = appearance.sums[:, 0]
+    learned = n >= _SEEN_PX
+    known[learned] = appearance.sums[learned, 1:4] / n[learned, None]
+    seen = observed[:, 0] >= _SEEN_PX
+    if seen.sum() < 2:
+        return appearance
+    now = observed[seen, 1:4] / observed[seen, :1]
+    gain = float(np.median(now.sum(axis=1) / known[seen].sum(axis=1)))
+    weight = np.sqrt(np.minimum(observed[seen, :1], 200.0) / 200.0)
+    ridge = 0.15
+    A = np.concatenate([weight * known[seen], ridge * np.eye(3)])
+    b = np.concatenate([weight * now, ridge * gain * np.eye(3)])
+    M = np.linalg.lstsq(A, b, rcond=None)[0].T
+    stretch = np.linalg.svd(M, compute_uv=False)
+    if np.linalg.det(M) <= 0.0 or stretch[0] > 5.0 or stretch[-1] < 0.1:
+        return appearance  # no lamp does that: the pose is wrong, not the light
+    W = appearance.W @ np.linalg.inv(M[::-1, ::-1])
+    sums = appearance.sums.copy()
+    sums[:, 1:4] = sums[:, 1:4] @ M.T
+    return Appearance(W, sums)

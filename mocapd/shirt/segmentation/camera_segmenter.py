@@ -1,0 +1,280 @@
+"""One camera's eye: work pictures, colour ids under the present light, and what is learned of light and background."""
+
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.fit.body_drawing import Outline, Roi
+from mocapd.fit.fit_params import TICK_S
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.lut_kernels import classify_by_table
+from mocapd.shirt.colour.white_balance import remember_illumination
+from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.cell_kernels import (
+    CELL,
+    ClassifierWeights,
+    LearnedPixels,
+    classify,
+    colour_distances,
+)
+from mocapd.shirt.segmentation.locate_kernels import find_shirt, suppress_background
+from mocapd.shirt.segmentation.segmentation_kernels import (
+    agreement,
+    colour_statistics,
+    count_colours,
+)
+from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
+from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.vision.background_kernels import changed, learn_background
+from mocapd.vision.background_light import relight_background
+
+Ids = NDArray[np.uint8]
+_WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
+_NO_DOUBT = np.ones(10, np.int64)
+_GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
+_FARTHEST = 7  # cells from its predicted place at which a colour is looked for
+_NEW_LOOKS = 90
+_WHITE_BALANCE_EVERY = 4  # looks; between them the learned means alone follow the light
+_NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
+
+
+@dataclass(slots=True)
+class Memory:
+    """What was learned of one camera since the last reset."""
+
+    appearance: Appearance
+    references: tuple[Floats, ...]  # reference illuminations, paper section 5.2
+    background_mean: NDArray[np.float32]
+    background_age: Ids
+    body: Ids  # where the body was last, widened: not background
+    shirt_count: NDArray[np.float32]
+    other_count: NDArray[np.float32]
+    usual: float = 0.0  # share of the rendered shirt that is usually classified
+    looks: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """A place where a shirt may be: the region, its ids (h,w), and the light they were read in."""
+
+    roi: Roi
+    ids: Ids
+    W: Floats
+    evenness: float
+
+
+@dataclass(slots=True)
+class Eye:
+    """One camera. Buffers are its own; `memory` is all that it remembers."""
+
+    camera: Camera
+    factor: int  # frames are averaged down by
+    model: ColourModel
+    W: Floats  # of the strokes
+    params: SegmentationParams
+    memory: Memory = field(init=False)
+    picture: Bytes = field(init=False)
+    _ids: Ids = field(init=False)
+    _softness: Ids = field(init=False)
+    _distance: Ids = field(init=False)
+    _tables: ColourTables = field(init=False)
+
+    def __post_init__(self) -> None:
+        w, h = self.size
+        self._ids, self._softness = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
+        self._distance = np.empty((h // CELL + 1) * (w // CELL + 1) * 10, np.uint8)
+        self._tables = ColourTables()
+        self.reset()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the work picture."""
+        return self.camera.size_px[0] // self.factor, self.camera.size_px[1] // self.factor
+
+    def reset(self) -> None:
+        """Forget everything but the strokes."""
+        w, h = self.size
+        self.memory = Memory(
+            appearance=looks.fresh(self.W),
+            references=(self.W,),
+            background_mean=np.zeros((h, w, 3), np.float32),
+            background_age=np.zeros((h, w), np.uint8),
+            body=np.zeros((h, w), np.uint8),
+            shirt_count=np.zeros(1 << 15, np.float32),
+            other_count=np.zeros(1 << 15, np.float32),
+        )
+        self.picture = np.zeros((h, w, 3), np.uint8)
+
+    def look(self, pixels: Bytes) -> None:
+        """Take a frame (height,width,3): the work picture is its average over blocks."""
+        w, h = self.size
+        crop = pixels[: h * self.factor, : w * self.factor]
+        cv2.resize(crop, (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
+        self.memory.looks += 1
+
+    # --- with a pose ---
+
+    def classify(
+        self, predicted: Ids, outline: Outline, roi: Roi, doubted: Ints, may_relight: bool
+    ) -> tuple[Ids, Ids]:
+        """ids and softness (h,w) over the region, given the predicted id map and where its vertices
+        are (buffers of this eye).
+
+        doubted: colours (0..9) whose place is in doubt. When the shirt is badly classified, or much
+        worse than usual, other lights are tried and the best is kept: the light that carries the
+        known colours to what is seen where they are expected, and each reference illumination.
+        """
+        p, memory = self.params, self.memory
+        rendered = int(np.count_nonzero(predicted))
+        prior = p.prior_weight / (1.6 * np.sqrt(rendered) + 1.0)
+        divisor = _NO_DOUBT.copy()
+        divisor[doubted] = 3
+        distance = self._distances(
+            predicted, outline, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
+        )
+        ids, softness = self._classified(memory.appearance, roi, distance, prior)
+        if rendered == 0:
+            return ids, softness
+        inside = agreement(predicted, ids)[1] / rendered
+        usual = memory.usual if memory.usual > 0 else inside
+        keep = float(np.exp(-TICK_S / p.usual_s))
+        memory.usual = keep * usual + (1.0 - keep) * inside
+        if may_relight and (inside < p.poor_classification or inside < p.sudden_loss * usual):
+            best = self._relit(predicted, ids, roi, distance, prior)
+            if best is not memory.appearance:
+                memory.appearance = best
+            ids, softness = self._classified(best, roi, distance, prior)
+        return ids, softness
+
+    def _relit(self, predicted: Ids, ids: Ids, roi: Roi, distance: Ids, prior: float) -> Appearance:
+        memory = self.memory
+        seen = np.zeros((10, 4))
+        colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, seen)
+        best, most = memory.appearance, agreement(predicted, ids)[1]
+        lights = [looks.transported(memory.appearance, seen, self.model.mean)]
+        if most < self.params.poor_classification * np.count_nonzero(predicted):
+            lights += [looks.fresh(W) for W in memory.references]
+        for light in lights:
+            tried, _ = self._classified(light, roi, distance, prior)
+            same = agreement(predicted, tried)[1]
+            if same > 1.02 * most:
+                best, most = light, same
+        return best
+
+    def _classified(
+        self, appearance: Appearance, roi: Roi, distance: Ids, prior: float
+    ) -> tuple[Ids, Ids]:
+        p, memory = self.params, self.memory
+        h, w = roi[3] - roi[1], roi[2] - roi[0]
+        ids, softness = self._ids[: h * w].reshape(h, w), self._softness[: h * w].reshape(h, w)
+        mean, covariance = looks.gaussians(
+            appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
+        )
+        classify(
+            self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance),
+            LearnedPixels(
+                memory.background_mean, memory.background_age, memory.shirt_count, memory.other_count
+            ),
+            ClassifierWeights(
+                prior, p.threshold, p.background_tolerance, p.background_penalty, p.other_penalty,
+                p.soft_unclassified, p.soft_unknown,
+            ),
+            ids, softness,
+        )  # fmt: skip
+        return ids, softness
+
+    def _distances(self, predicted: Ids, outline: Outline, limit: int, divisor: Ints) -> Ids:
+        h, w = predicted.shape
+        h4, w4 = -(-h // CELL), -(-w // CELL)
+        out = self._distance[: h4 * w4 * 10].reshape(h4, w4, 10)
+        colour_distances(
+            predicted, outline.xy, outline.triangles, outline.sleeves, outline.colour,
+            limit, divisor, out,
+        )  # fmt: skip
+        return out
+
+    def learn(self, final: Ids, ids: Ids, softness: Ids, roi: Roi, dt_s: float, sure: bool) -> None:
+        """Follow the light from the id map of the final pose (paper section 5.2, step 5).
+
+        sure: the pose agrees well enough to tell shirt from other things.
+        """
+        p, memory = self.params, self.memory
+        sums = np.zeros((10, 4))
+        colour_statistics(self.picture, roi[0], roi[1], final, ids, True, sums)
+        learned = looks.learn(memory.appearance, sums, dt_s, p.colour_memory_s)
+        W = learned.W
+        if memory.looks % _WHITE_BALANCE_EVERY == 0:
+            W = looks.white_balance(learned, self.model.mean)
+        memory.appearance = Appearance(W, learned.sums)
+        if sure:
+            memory.references = remember_illumination(memory.references, W)
+            count_colours(
+                self.picture, roi[0], roi[1], memory.body, final, ids, softness,
+                memory.shirt_count, memory.other_count,
+            )  # fmt: skip
+        if memory.looks % 8 == 0:
+            keep = np.float32(np.exp(-8 * dt_s / p.count_memory_s))
+            memory.shirt_count *= keep
+            memory.other_count *= keep
+
+    def mark_body(self, final: Ids | None, roi: Roi) -> None:
+        """Where the body is now, so that it is not learned as background; None: nobody is known."""
+        self.memory.body[:] = 0
+        if final is not None:
+            x0, y0, x1, y1 = roi
+            solid = (final > 0).astype(np.uint8)
+            self.memory.body[y0:y1, x0:x1] = cv2.dilate(solid, _NEAR)
+
+    def learn_background(self) -> None:
+        """Follow the static background, at once when the light on it jumps."""
+        p, memory = self.params, self.memory
+        arrays = (memory.background_mean, memory.background_age)
+        share = changed(self.picture, memory.body, *arrays, p.background_tolerance)
+        if share > p.background_jump:
+            # a lamp went on or off: what is seen beside the body now is the background in its new
+            # light, and colours counted in the old light say nothing
+            relight_background(self.picture, memory.body, *arrays)
+            memory.shirt_count *= 0.25
+            memory.other_count *= 0.25
+        # every second row while it is new, then half as often for twice as much
+        rate, step = (0.02, 2) if memory.looks < _NEW_LOOKS else (0.04, 4)
+        learn_background(self.picture, memory.body, *arrays, rate, memory.looks % step, step)
+
+    # --- without a pose ---
+
+    def find(self, sizes: Ints) -> Found | None:
+        """Where the shirt's colours are together, under each known light; None when nowhere enough."""
+        p, memory = self.params, self.memory
+        model = self.model.tolerating(p.shading_sd, p.cloth_sd)
+        w, h = self.size
+        best: Found | None = None
+        lights = [W * gain for gain in _GAINS for W in memory.references]
+        for W in lights:
+            self._tables.refill(model, W, p.first_threshold, p.first_threshold)
+            ids = np.empty((h, w), np.uint8)
+            classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
+            suppress_background(
+                self.picture,
+                memory.background_mean,
+                memory.background_age,
+                p.background_tolerance,
+                ids,
+            )
+            x0, y0, x1, y1, evenness = find_shirt(ids, sizes)
+            if evenness >= p.found_evenness and (best is None or evenness > best.evenness):
+                grow = (x1 - x0) // 2
+                roi = (
+                    max(0, x0 - grow) & ~1, max(0, y0 - grow) & ~1,
+                    min(w, x1 + grow), min(h, y1 + grow),
+                )  # fmt: skip
+                best = Found(roi, ids[roi[1] : roi[3], roi[0] : roi[2]].copy(), W, evenness)
+        return best
+
+    def relight(self, W: Floats) -> None:
+        """Read the pictures in this light from now on."""
+        self.memory.appearance = looks.fresh(W)
+        self.memory.usual = 0.0

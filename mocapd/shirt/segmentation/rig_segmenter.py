@@ -1,0 +1,120 @@
+"""The eyes of all cameras together: what they see of the predicted body, and what they learn from it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mocapd.body.shirt import SLEEVE_PATCHES, standard_shirt
+from mocapd.clock import seconds
+from mocapd.errors import ConfigError
+from mocapd.fit.body_drawing import Roi
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.segmentation.camera_segmenter import Eye
+from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
+from mocapd.types import Floats, Frame, FrameSet, Ints
+
+
+class Eyes:
+    """One `Eye` for each camera of a fitter; `present` below is each seeing camera's own time after
+    the frame set's [s], by its index."""
+
+    def __init__(
+        self,
+        fitter: Fitter,
+        model: ColourModel,
+        white_balance: Mapping[str, Floats],
+        params: SegmentationParams,
+    ) -> None:
+        """white_balance: W (3,3) by camera name, identity where absent."""
+        self._fitter, self._params = fitter, params
+        self.each = [
+            Eye(
+                d.camera, d.factor, model,
+                np.asarray(white_balance.get(d.camera.name, np.eye(3))), params,
+            )
+            for d in fitter.drawings
+        ]  # fmt: skip
+        self._index = {eye.camera.name: i for i, eye in enumerate(self.each)}
+
+    def reset(self) -> None:
+        """Forget light and background."""
+        for eye in self.each:
+            eye.reset()
+
+    def look(self, frames: FrameSet) -> dict[int, float]:
+        """Take the pictures; those `present`. Raises ConfigError when one is not of its calibration's size."""
+        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
+        for i, frame in mine:
+            _check_size(frame, self.each[i].camera.size_px)
+            self.each[i].look(frame.pixels)
+        return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
+
+    def views(
+        self, state: MotionState, present: dict[int, float], doubted: tuple[str, ...] = ()
+    ) -> list[View]:
+        """Classify every picture with the state as prior; `doubted`: arms that are looked for farther away."""
+        p = self._params
+        margin = p.doubt_margin_px if doubted else p.margin_px
+        colours = _colours_of(doubted)
+        views = []
+        for i, dt_s in present.items():
+            drawing = self._fitter.drawings[i]
+            roi = drawing.region(state, dt_s, margin)
+            if roi is None:
+                continue
+            predicted = drawing.render(state, dt_s, roi)
+            ids, softness = self.each[i].classify(
+                predicted, drawing.outline(), roi, colours, may_relight=True
+            )
+            views.append(View(i, roi, ids, softness, dt_s))
+        return views
+
+    def learn_with(self, state: MotionState, fit: Fit, views: list[View], redraw: bool) -> None:
+        """Follow the light, and where the body is, from a pose and its fit.
+
+        Without `redraw`, the last drawing of the fit will do: it differs by a fraction of a pixel.
+        """
+        sure = fit.match > self._params.sure_match
+        for view in views:
+            eye, drawing = self.each[view.index], self._fitter.drawings[view.index]
+            if redraw:
+                final = drawing.render(state, view.dt_s, view.roi)
+            else:
+                final = drawing.last(view.roi)[0]
+            eye.mark_body(final, view.roi)
+            eye.learn(final, view.ids, view.softness, view.roi, TICK_S, sure)
+
+    def learn_background(self, present: dict[int, float], nobody: bool) -> None:
+        """Follow the background, in all of the picture when nobody is known."""
+        for i in present:
+            eye = self.each[i]
+            if nobody:
+                eye.mark_body(None, (0, 0, 0, 0))
+            eye.learn_background()
+
+    def roi_px(self, view: View) -> Roi:
+        """A view's region in pixels of the frame itself."""
+        factor = self.each[view.index].factor
+        x0, y0, x1, y1 = (factor * edge for edge in view.roi)
+        return x0, y0, x1, y1
+
+
+def _colours_of(sides: tuple[str, ...]) -> Ints:
+    """The colours (0..9) of the sleeves in doubt."""
+    if not sides:
+        return np.empty(0, np.int64)
+    colours = [standard_shirt().colour_of_patch[SLEEVE_PATCHES[side]] for side in sides]
+    return np.unique(np.concatenate(colours)).astype(np.int64) - 1
+
+
+def _check_size(frame: Frame, size_px: tuple[int, int]) -> None:
+    h, w = frame.pixels.shape[:2]
+    if (w, h) != size_px:
+        raise ConfigError(
+            f"delivers {w}x{h}, its calibration is for {size_px[0]}x{size_px[1]}",
+            f"camera {frame.camera!r}",
+            "set that size, or calibrate again",
+        )

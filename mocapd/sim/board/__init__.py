@@ -1,0 +1,1 @@
+"""The simulated calibration board, its path and its pictures."""

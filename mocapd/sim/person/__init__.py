@@ -1,0 +1,1 @@
+"""The simulated wearer: figure, motion and poses."""

@@ -1,0 +1,1 @@
+"""The simulated room: furniture, lamps, shadows, and the empty picture of it."""

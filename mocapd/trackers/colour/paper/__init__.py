@@ -1,1 +1,0 @@
-"""The paper's own tracker, kept selectable so that both can be measured, and its offline tools."""

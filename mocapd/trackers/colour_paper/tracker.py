@@ -1,0 +1,204 @@
+"""The tracker of [Wang 2011], as the paper describes it; every pose starts anew from the database."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
+from mocapd.geometry import rotations
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.trackers.colour_paper.centroid_ik import CentroidSolver, Target
+from mocapd.trackers.colour_paper.covariances import load_covariances
+from mocapd.trackers.colour_paper.paper_drawing import Drawing, Posture, draw, posture
+from mocapd.trackers.colour_paper.paper_segmenter import Eye, Sight
+from mocapd.trackers.colour_paper.params import Params
+from mocapd.trackers.colour_paper.patch_kernels import classified_patches
+from mocapd.trackers.colour_paper.placement import blended_local, constraints, guess, place
+from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Skeleton, Track, Tracking
+from mocapd.vision.distance_maps import DistanceMaps
+from mocapd.vision.raster_kernels import label_triangles
+
+# The patches that show each joint; joints not named share the trunk's confidence.
+_LEFT, _RIGHT = (tuple(ShirtPatch)[SLEEVE_PATCHES[side]] for side in ("left", "right"))
+_PATCHES_OF = {
+    side + bone: sleeve[of_bone]
+    for side, sleeve in (("left", _LEFT), ("right", _RIGHT))
+    for bone, of_bone in (
+        ("Shoulder", slice(0, 1)), ("UpperArm", slice(0, 3)), ("LowerArm", slice(1, 5)),
+        ("Hand", slice(3, 6)),
+    )
+}  # fmt: skip
+_WELL_SEEN = 40.0  # samples of a joint's patches, best camera
+
+
+class PaperTracker:
+    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.trackers.base for the promises."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        colour_model: ColourModel,
+        white_balance: Mapping[str, Floats],
+        database: PoseDatabase,
+        params: Params | None = None,
+    ) -> None:
+        """white_balance: W (3,3) per camera name, from the user's strokes; identity where missing."""
+        self.params = params or Params()
+        self.name = "colour-paper" if self.params.pose_prior else "colour-baseline"
+        self._database = database
+        self._model = build_model(stature_m)
+        self._skeleton = standard_skeleton(stature_m)
+        self._solver = CentroidSolver(self._model, load_covariances(), self.params.iterations)
+        self._eyes = {
+            camera.name: Eye(
+                camera, colour_model, white_balance.get(camera.name, np.eye(3)), self.params
+            )
+            for camera in rig.cameras
+        }
+        self.reset()
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The mean skeleton of the stature; this tracker learns no proportions."""
+        return self._skeleton
+
+    def reset(self) -> None:
+        """Forget everything learned since construction."""
+        for eye in self._eyes.values():
+            eye.reset()
+        self._last: Posture | None = None
+        self._last_t_ns = 0
+        self._last_state: BodyState | None = None
+
+    def step(self, frames: FrameSet) -> Track:
+        """Track one frame set."""
+        sights: dict[str, Sight] = {}
+        for name, eye in self._eyes.items():
+            if name in frames.frames:
+                sight = eye.look(frames.frames[name].pixels)
+                if sight is not None:
+                    sights[name] = sight
+        body, agreement, seen, refined = self._pose(frames, sights)
+        if body is None or agreement < self.params.min_agreement:
+            return Track(self._without(frames.t_ns), *self._evidence(sights))
+        for name, drawing in seen.items():
+            self._eyes[name].learn(
+                frames.frames[name].pixels,
+                sights[name].grid,
+                drawing,
+                self._model.colour,
+                refined[name],
+            )
+        self._last, self._last_t_ns = body, frames.t_ns
+        self._last_state = BodyState(
+            t_ns=frames.t_ns,
+            tracking=Tracking.LIVE,
+            tracker=self.name,
+            pose=Pose(body.root_m, rotations.canonical(body.turned_xyzw)),
+            joints_m=body.joints_m,
+            confidence=_confidence(list(seen.values()), agreement),
+            cameras=tuple(seen),
+        )
+        return Track(self._last_state, *self._evidence(sights))
+
+    def _pose(
+        self, frames: FrameSet, sights: Mapping[str, Sight]
+    ) -> tuple[Posture | None, float, dict[str, Drawing], dict[str, Bytes]]:
+        """Steps 2 to 4: the pose, the share of rendered samples classified alike, and per camera what it
+        sees of the pose and the ids of step 3."""
+        params, model = self.params, self._model
+        guesses = {}
+        for name, sight in sights.items():
+            found = guess(self._database, self._eyes[name].camera, sight, params.neighbours)
+            if len(found.indices) and found.distances[0] <= params.max_distance_px2:
+                guesses[name] = found
+        if not guesses:
+            return None, 0.0, {}, {}
+        local = blended_local(self._database, list(guesses.values()))
+        marks = [constraints(model, local, g, sights[name]) for name, g in guesses.items()]
+        root_m, local[0] = place(list(guesses.values()), marks)
+        blended = posture(model, root_m, local)
+
+        targets, refined = [], {}
+        for name in guesses:
+            target, refined[name] = self._target(
+                self._eyes[name], frames.frames[name].pixels, sights[name], blended
+            )
+            targets.append(target)
+        elapsed_s = (frames.t_ns - self._last_t_ns) * 1e-9
+        body = self._solver.solve(targets, blended, self._last, elapsed_s, params.min_patch_samples)
+        seen = {
+            name: draw(model, body, self._eyes[name].camera, sights[name].grid) for name in guesses
+        }
+        alike = [_agreement(seen[name], model.colour, refined[name]) for name in guesses]
+        rendered = sum(n for _, n in alike)
+        return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
+
+    def _target(
+        self, eye: Eye, pixels: Bytes, sight: Sight, blended: Posture
+    ) -> tuple[Target, Bytes]:
+        """Step 3, and the centroids of what it saw."""
+        grid, params = sight.grid, self.params
+        drawing = draw(self._model, blended, eye.camera, grid)
+        rendered = np.empty((grid.height, grid.width), np.uint8)
+        label_triangles(drawing.triangle_at, self._model.colour, rendered)
+        maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
+        # farther away than this the prior alone exceeds the threshold
+        reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
+        distance = maps.fill(rendered, reach)
+        ids = eye.refine(pixels, sight, distance) if params.pose_prior else sight.ids
+        count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
+        classified_patches(
+            ids, maps.nearest_yx, drawing.triangle_at, self._model.patch, count, centroid
+        )
+        wanted = count >= params.min_patch_samples
+        wanted[0] = False
+        return Target(eye.camera, grid, grid.to_pixels(centroid), wanted), ids
+
+    def _without(self, t_ns: int) -> BodyState:
+        """No pose in this frame: the last one for a moment, then lost."""
+        last = self._last_state
+        if last is not None and last.pose is not None:
+            age_s = (t_ns - last.t_ns) * 1e-9
+            if age_s <= self.params.coast_s:
+                fading = last.confidence * max(0.0, 1.0 - age_s / self.params.coast_s)
+                return BodyState(
+                    t_ns, Tracking.COASTING, self.name, last.pose, last.joints_m, fading
+                )
+        self._last = self._last_state = None
+        for eye in self._eyes.values():
+            eye.forget_body()
+        return BodyState(t_ns, Tracking.LOST, self.name, None, None, np.zeros(N_JOINTS))
+
+    @staticmethod
+    def _evidence(
+        sights: Mapping[str, Sight],
+    ) -> tuple[dict[str, Bytes], dict[str, tuple[int, int, int, int]]]:
+        regions = {}
+        for name, sight in sights.items():
+            g = sight.grid
+            regions[name] = (g.x0, g.y0, g.x0 + g.width * g.stride, g.y0 + g.height * g.stride)
+        return {name: sight.ids for name, sight in sights.items()}, regions
+
+
+def _agreement(drawing: Drawing, colour: Bytes, ids: Bytes) -> tuple[int, int]:
+    """How many rendered shirt samples are classified as the same colour, and how many there are."""
+    rendered = np.empty(ids.shape, np.uint8)
+    label_triangles(drawing.triangle_at, colour, rendered)
+    return int(((rendered == ids) & (rendered > 0)).sum()), int((rendered > 0).sum())
+
+
+def _confidence(seen: list[Drawing], agreement: float) -> Floats:
+    """Per joint (J,): how much of its patches the best camera sees, times the overall agreement."""
+    count = np.max([drawing.count for drawing in seen], axis=0)
+    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_PATCHES)].sum() / (4.0 * _WELL_SEEN)))
+    for name, patches in _PATCHES_OF.items():
+        out[INDEX[name]] = min(1.0, count[list(patches)].sum() / _WELL_SEEN)
+    for j, name in enumerate(INDEX):
+        if name.endswith(("UpperLeg", "LowerLeg", "Foot", "Toes")):
+            out[j] = 0.0  # the shirt says nothing of the legs
+    return out * min(1.0, agreement / 0.7)

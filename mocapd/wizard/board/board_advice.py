@@ -1,0 +1,103 @@
+"""Why no board is found: asked in a job, now and then, of cameras that have not seen it for a while."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.calibrate.board.board_detection import BoardDetector, NotSeen, Reason, settled
+from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
+from mocapd.calibration.board_spec import BoardSpec
+from mocapd.types import Frame
+from mocapd.wizard.board.board_watch import Look
+from mocapd.wizard.step import Context, Problem, Tell
+
+_BLIND_NS = 2_000_000_000  # without the board, before it is asked
+_PAUSE_NS = 1_500_000_000  # between two askings
+_FORGET_NS = 6_000_000_000  # an answer this old is not shown any more
+_FORM = "set the board above as it was printed"
+_LIVE_FIX = {
+    **FIX,
+    Reason.OTHER_SIZE: f"{_FORM}: its numbers of columns and rows count squares",
+    Reason.OTHER_DICTIONARY: f"{_FORM}: another dictionary of markers",
+    Reason.MIRRORED: "switch mirroring off in the camera, then go on",
+    Reason.NOTHING: "show the board to this camera",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    answer: NotSeen
+    t_ns: int
+
+
+class BoardAdvice:
+    """Keeps when each camera last saw the board, and the last answer about each that does not."""
+
+    def __init__(self, context: Context, changed: Callable[[BoardSpec], None]) -> None:
+        """`changed` is called when the pictures show another variant of the board."""
+        self._context, self._changed = context, changed
+        self._saw_ns: dict[str, int] = {}
+        self._asked_ns: dict[str, int] = {}
+        self._told: dict[str, _Told] = {}
+        self._begun_ns: int | None = None
+        self._free_ns = 0
+
+    def take(self, look: Look) -> None:
+        """Note who sees the board."""
+        for name in look.seen:
+            self._saw_ns[name] = look.t_ns
+            self._told.pop(name, None)
+
+    def forget(self) -> None:
+        """The board is another one."""
+        self._told = {}
+        self._asked_ns = {}
+
+    def ask(self, now_ns: int, frames: Mapping[str, Frame], spec: BoardSpec) -> None:
+        """Start a job about the camera that was blind and not asked for the longest, when it is time."""
+        if self._begun_ns is None:
+            self._begun_ns = now_ns
+        begun_ns = self._begun_ns
+        blind = [name for name in frames if now_ns - self._saw_ns.get(name, begun_ns) > _BLIND_NS]
+        if not blind or self._context.job is not None or now_ns < self._free_ns:
+            return
+        name = min(blind, key=lambda one: self._asked_ns.get(one, 0))
+        self._asked_ns[name] = now_ns
+        self._free_ns = now_ns + _PAUSE_NS
+        # every variant is tried only while nobody sees the board as it is given
+        unseen = not self._saw_ns
+        pixels = frames[name].pixels
+
+        def answer(_tell: Tell) -> tuple[BoardSpec, NotSeen | None]:
+            found = settled(spec, [pixels]) if unseen else spec
+            detector = BoardDetector(found)
+            if found != spec or detector.find(pixels) is not None:
+                return found, None
+            return spec, why_not_seen(detector, np.ascontiguousarray(pixels))
+
+        def done(result: tuple[BoardSpec, NotSeen | None]) -> None:
+            found, told = result
+            if found != spec:
+                self._changed(found)
+            elif told is not None:
+                self._told[name] = _Told(told, now_ns)
+
+        self._context.start_job(answer, done)
+
+    def problems(self, now_ns: int, wanted: Mapping[str, bool]) -> tuple[Problem, ...]:
+        """Of cameras that are `wanted` to see the board and do not.
+
+        That a camera just does not see it is no trouble while another one does.
+        """
+        anyone = any(now_ns - t_ns < _BLIND_NS for t_ns in self._saw_ns.values())
+        problems = []
+        for name, told in self._told.items():
+            reason = told.answer.reason
+            if not wanted.get(name, False) or now_ns - told.t_ns > _FORGET_NS:
+                continue
+            if reason is Reason.NOTHING and anyone:
+                continue
+            what = f"{reason}" + (f": {told.answer.detail}" if told.answer.detail else "")
+            problems.append(Problem(what, name, _LIVE_FIX[reason]))
+        return tuple(problems)

@@ -1,0 +1,57 @@
+"""The board as the page's form has it: lengths in millimetres, and the scale that a ruler shows."""
+
+from dataclasses import replace
+
+import msgspec
+
+from mocapd.calibration.board_spec import FEWEST_SQUARES, MOST_SQUARES, BoardSpec, dictionaries
+from mocapd.printing.board_pdf import fitted_board
+from mocapd.wizard.commands import Board
+from mocapd.wizard.step import Json
+
+RULER_MM = 100.0
+
+
+def usual_board() -> BoardSpec:
+    """What `mocapd board` prints when nothing is asked for."""
+    return fitted_board("A4", 5, 7, "DICT_4X4_1000")
+
+
+def board_of(said: Board, before: BoardSpec) -> BoardSpec:
+    """The board of the form; what is None stays as before. Raises ConfigError."""
+    named = msgspec.structs.asdict(said)
+    lengths_m = {
+        name.replace("_mm", "_m"): mm / 1000.0
+        for name in ("square_mm", "marker_mm")
+        if (mm := named.pop(name)) is not None
+    }
+    told = {name: value for name, value in named.items() if value is not None}
+    return replace(before, **told, **lengths_m)
+
+
+def scaled_board(spec: BoardSpec, ruler_mm: float) -> BoardSpec:
+    """The board as it was really printed, when its ruler's 100 mm measure `ruler_mm`. Raises ConfigError."""
+    scale = ruler_mm / RULER_MM
+    return replace(spec, square_m=spec.square_m * scale, marker_m=spec.marker_m * scale)
+
+
+def same_print(a: BoardSpec, b: BoardSpec) -> bool:
+    """Whether the corners found of one are those of the other: all but the scale is the same."""
+    return replace(a, square_m=0.1, marker_m=0.05) == replace(b, square_m=0.1, marker_m=0.05)
+
+
+def form_of(spec: BoardSpec) -> dict[str, Json]:
+    """The form's fields."""
+    return {
+        "kind": spec.kind.value,
+        "columns": spec.columns,
+        "rows": spec.rows,
+        "square_mm": round(1000.0 * spec.square_m, 2),
+        "marker_mm": round(1000.0 * spec.marker_m, 2),
+        "dictionary": spec.dictionary,
+        "inverted": spec.inverted,
+        "legacy": spec.legacy,
+        "dictionaries": list(dictionaries()),
+        "fewest": {kind.value: count for kind, count in FEWEST_SQUARES.items()},
+        "most": MOST_SQUARES,
+    }

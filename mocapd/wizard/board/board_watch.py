@@ -1,0 +1,136 @@
+"""The board in the cameras' newest pictures: looked for in a few of them with every tick."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
+from mocapd.calibration.board_spec import BoardSpec
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.types import Floats, Frame
+from mocapd.wizard.recent_frames import RecentFrames
+from mocapd.wizard.step import Shape
+
+# Indices of moments are so far apart that no two pass for neighbouring frames of a recording, along
+# which the board's motion would be followed; in between are those of pictures that are of no moment.
+INDEX_STEP = 100
+_AT_ONCE = 2  # pictures searched in one tick
+_REMEMBERED_NS = 700_000_000  # after which the board's last place tells nothing of its motion
+_SHOWN_NS = 400_000_000  # how long corners stay drawn when the board is not found again
+_FRAME_NS = 1e9 / 30.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """The board in one picture; `motion_px`: of its corners since the look before [px per 1/30 s],
+    infinite when it was not seen then."""
+
+    view: BoardView
+    t_ns: int
+    motion_px: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """One instant: cameras that had a picture, and the board in those that saw it."""
+
+    index: int
+    t_ns: int
+    frames: Mapping[str, Frame]
+    seen: Mapping[str, Seen]
+
+    @property
+    def spread_ns(self) -> int:
+        """Between the first and the last of the pictures with the board [ns]."""
+        times = [one.t_ns for one in self.seen.values()]
+        return max(times) - min(times) if times else 0
+
+
+class BoardWatch:
+    """Looks at the frames of one instant at a time, camera by camera. For one thread."""
+
+    def __init__(
+        self, hub: FrameHub, names: Iterable[str], spec: BoardSpec, first_index: int = 0
+    ) -> None:
+        self.names = tuple(names)
+        self.newest: dict[str, Seen] = {}  # each camera's last sight of the board
+        self._hub, self._recent = hub, RecentFrames()
+        self._detector = BoardDetector(spec)
+        self._index = first_index
+        self._frames: dict[str, Frame] = {}
+        self._left: list[str] = []  # cameras of this instant not searched yet
+        self._seen: dict[str, Seen] = {}
+
+    @property
+    def spec(self) -> BoardSpec:
+        """The board that is looked for."""
+        return self._detector.spec
+
+    def start(self) -> None:
+        """Be given every frame from now on."""
+        self._hub.join(self._recent)
+
+    def stop(self) -> None:
+        """No more frames."""
+        self._hub.leave(self._recent)
+
+    def change(self, spec: BoardSpec) -> None:
+        """Look for this board from now on."""
+        self._detector = BoardDetector(spec)
+        self.newest = {}
+        self._left = []
+
+    def look(self) -> Look | None:
+        """Search a few pictures; the instant when all of its pictures have been searched."""
+        if not self._left and not self._begin():
+            return None
+        for name in self._left[:_AT_ONCE]:
+            self._search(self._frames[name])
+        self._left = self._left[_AT_ONCE:]
+        if self._left:
+            return None
+        t_ns = max(frame.t_ns for frame in self._frames.values())
+        self.newest |= self._seen
+        return Look(self._index, t_ns, self._frames, self._seen)
+
+    def shapes(self, now_ns: int, still_px: Mapping[str, float]) -> dict[str, tuple[Shape, ...]]:
+        """The corners last found: good where they move less than `still_px`, else a hint."""
+        drawn: dict[str, tuple[Shape, ...]] = {}
+        for name, seen in self.newest.items():
+            if now_ns - seen.t_ns <= _SHOWN_NS:
+                style = "good" if seen.motion_px <= still_px[name] else "hint"
+                drawn[name] = (Shape("points", points_of(seen.view.corners_px), style),)
+        return drawn
+
+    def _begin(self) -> bool:
+        frames = {
+            name: frame for name, frame in self._recent.together().items() if name in self.names
+        }
+        before = {name: frame.t_ns for name, frame in self._frames.items()}
+        if not frames or all(before.get(name) == frame.t_ns for name, frame in frames.items()):
+            return False
+        self._frames, self._left, self._seen = frames, list(frames), {}
+        self._index += INDEX_STEP
+        return True
+
+    def _search(self, frame: Frame) -> None:
+        view = self._detector.find(frame.pixels, self._index)
+        if view is not None:
+            motion_px = _motion_px(self.newest.get(frame.camera), view, frame.t_ns)
+            self._seen[frame.camera] = Seen(view, frame.t_ns, motion_px)
+
+
+def points_of(pixels: Floats) -> tuple[tuple[float, float], ...]:
+    """(n,2) for a Shape."""
+    return tuple((round(float(x), 1), round(float(y), 1)) for x, y in pixels)
+
+
+def _motion_px(before: Seen | None, view: BoardView, t_ns: int) -> float:
+    if before is None or not 0 < t_ns - before.t_ns <= _REMEMBERED_NS:
+        return float("inf")
+    _, then, now = np.intersect1d(before.view.ids, view.ids, return_indices=True)
+    if not len(now):
+        return float("inf")
+    shift = np.linalg.norm(view.corners_px[now] - before.view.corners_px[then], axis=1)
+    return float(np.median(shift)) * _FRAME_NS / (t_ns - before.t_ns)

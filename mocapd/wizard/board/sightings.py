@@ -1,0 +1,134 @@
+"""Moments at which several cameras saw the board at rest: what a room is solved from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.intrinsics.view_picking import rough_place
+from mocapd.types import Floats
+from mocapd.wizard.board.board_watch import Look, Seen
+
+Views = Mapping[str, Mapping[int, BoardView]]
+
+
+@dataclass(frozen=True, slots=True)
+class MomentParams:
+    """most_motion: of corners [parts of the picture's width per 1/30 s]; most_spread_s: between the
+    cameras' pictures. Together they keep the error of pictures not taken at once under a third of a pixel."""
+
+    most_motion: float = 0.0012
+    most_spread_s: float = 0.02
+    new_place: float = 0.12  # distance from the other moments of two cameras [picture widths]
+    most: int = 16  # of one pair of cameras
+
+
+class Moments:
+    """The board's views by camera and index; those of one index are of one moment."""
+
+    def __init__(
+        self,
+        sizes_px: Mapping[str, tuple[int, int]],
+        board_m: Floats,
+        params: MomentParams | None = None,
+    ) -> None:
+        self._sizes_px, self._board_m = sizes_px, board_m
+        self._params = params or MomentParams()
+        self._views: dict[str, dict[int, BoardView]] = {name: {} for name in sizes_px}
+        self._places: dict[tuple[str, str], list[Floats]] = {
+            pair: [] for pair in combinations(sorted(sizes_px), 2)
+        }
+        self._new = dict.fromkeys(self._places, 0)  # moments of each pair that were offered here
+
+    @property
+    def views(self) -> Views:
+        """By camera and index."""
+        return {name: dict(own) for name, own in self._views.items()}
+
+    def shared(self, a: str, b: str) -> int:
+        """At how many moments both cameras saw the board."""
+        return len(self._views[a].keys() & self._views[b].keys())
+
+    @property
+    def count(self) -> int:
+        """Moments at which two cameras or more saw the board."""
+        seen = [index for own in self._views.values() for index in own]
+        return int((np.unique(seen, return_counts=True)[1] >= 2).sum()) if seen else 0
+
+    def largest_group(self, fewest: int) -> set[str]:
+        """The most cameras that hang together by pairs which share so many moments."""
+        groups = [{name} for name in self._views]
+        for a, b in self._places:
+            if self.shared(a, b) < fewest:
+                continue
+            joined = [group for group in groups if a in group or b in group]
+            rest = [group for group in groups if a not in group and b not in group]
+            groups = [*rest, set().union(*joined)]
+        return max(groups, key=len)
+
+    def linked(self, fewest: int) -> bool:
+        """Whether all cameras hang together by such pairs."""
+        return len(self.largest_group(fewest)) == len(self._views)
+
+    def still(self, name: str, seen: Seen) -> bool:
+        """Whether the board is at rest in this camera."""
+        return seen.motion_px <= self._params.most_motion * self._sizes_px[name][0]
+
+    def still_px(self) -> dict[str, float]:
+        """By camera the motion [px per 1/30 s] under which the board is at rest."""
+        return {name: self._params.most_motion * size[0] for name, size in self._sizes_px.items()}
+
+    def offer(self, look: Look) -> bool:
+        """Keep the look if two cameras saw the board at rest where they did not before."""
+        still = sorted(name for name, seen in look.seen.items() if self.still(name, seen))
+        times = [look.seen[name].t_ns for name in still]
+        if len(still) < 2 or max(times) - min(times) > self._params.most_spread_s * 1e9:
+            return False
+        places = {
+            name: rough_place(look.seen[name].view, self._board_m, self._sizes_px[name])
+            for name in still
+        }
+        new = []
+        for a, b in combinations(still, 2):
+            at_a, at_b = places[a], places[b]
+            if at_a is None or at_b is None:
+                continue
+            place = np.concatenate([at_a, at_b])
+            before = self._places[a, b]
+            if self._new[a, b] >= self._params.most:
+                continue
+            if not before or np.linalg.norm(before - place, axis=1).min() >= self._params.new_place:
+                new.append(((a, b), place))
+        if not new:
+            return False
+        for pair, place in new:
+            self._places[pair].append(place)
+            self._new[pair] += 1
+        for name in still:
+            self._views[name][look.index] = look.seen[name].view
+        return True
+
+    def add_alone(self, name: str, view: BoardView) -> BoardView:
+        """A view of one camera that is of no moment; the view as it is kept, under an index of its own."""
+        # even offsets: never next to another index
+        index = view.index + 2 * (1 + sorted(self._sizes_px).index(name))
+        alone = replace(view, index=index)
+        self._views[name][index] = alone
+        return alone
+
+    def add(self, views: Views) -> None:
+        """Views of an earlier step, as they are."""
+        for name, own in views.items():
+            if name in self._views:
+                self._views[name].update(own)
+        for a, b in self._places:
+            for index in self._views[a].keys() & self._views[b].keys():
+                both = [
+                    rough_place(self._views[name][index], self._board_m, self._sizes_px[name])
+                    for name in (a, b)
+                ]
+                self._places[a, b].append(
+                    np.concatenate([np.zeros(5) if at is None else at for at in both])
+                )

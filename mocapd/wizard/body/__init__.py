@@ -1,0 +1,1 @@
+"""The step Body: stature and proportions."""

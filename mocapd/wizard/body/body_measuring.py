@@ -1,0 +1,154 @@
+"""The job of the step Body: the wearer is tracked live until enough is seen, then the shape is solved."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from mocapd.body.model import build_model
+from mocapd.body.shape import BodyShape
+from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
+from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
+from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
+from mocapd.clock import monotonic_ns, nanoseconds
+from mocapd.config.sections import TrackerSection
+from mocapd.errors import InputError
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.rehearsal import rehearse
+from mocapd.session.tracker_setup import build_tracker, with_cache
+from mocapd.trackers.base import Tracker
+from mocapd.types import BodyState, Bytes, Rig, Skeleton
+from mocapd.wizard.body.body_observations import BodyMoments, MomentParams
+from mocapd.wizard.body.measured_body import body_picture
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.only_cameras import OnlyCameras
+from mocapd.wizard.saving import calibrated_of
+from mocapd.wizard.step import Tell
+
+READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, everything is seen
+_TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
+_PATIENCE_S = 40.0  # in which the wearer must have been seen enough
+
+
+MakeTracker = Callable[[Draft, Path, Tell], Tracker]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """The wearer's shape, how it fits the room's scale, and by camera a picture (h,w,3) BGR of the last
+    moment with the body drawn over it."""
+
+    shape: BodyShape
+    fit: ShapeFit
+    scale: Scale
+    pictures: dict[str, Bytes]
+
+
+@dataclass(slots=True, eq=False)
+class Watched:
+    """Between the job and the step: the newest body, replaced whole, and an early end."""
+
+    body: tuple[BodyState, Skeleton] | None = None
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
+def measure(
+    hub: FrameHub,
+    draft: Draft,
+    cache_dir: Path,
+    watched: Watched,
+    tell: Tell,
+    make_tracker: MakeTracker,
+    params: MomentParams | None = None,
+) -> Measured | None:
+    """Measure the wearer of a draft whose room, colours and stature are known; None when stopped.
+
+    Raises InputError when too little was seen.
+    """
+    assert draft.rig is not None
+    assert draft.stature_m is not None
+    tracker = make_tracker(draft, cache_dir, tell)
+    model = build_model(draft.stature_m)
+    moments = BodyMoments(model, draft.rig.cameras, params)
+    if not _watch(hub, draft.rig, tracker, moments, watched, tell):
+        return None
+    tell("working out the proportions", SEEN)
+    fit = fit_shape(moments.moments, model, draft.rig.cameras)
+    last = fit.states[-1], moments.moments[-1]
+    return Measured(
+        BodyShape(draft.stature_m, fit.factors),
+        fit,
+        scale_of(fit, model, draft.floor_known),
+        {
+            camera.name: body_picture(moments.pictures[camera.name], camera, model, *last, i)
+            for i, camera in enumerate(draft.rig.cameras)
+            if camera.name in moments.pictures
+        },
+    )
+
+
+def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
+    """The draft's own, warm, and without what was measured before; takes seconds."""
+    tell("loading the tracker", 0.0)
+    known = calibrated_of(draft)
+    told = inputs_of_calibration(known, TrackerSection().stature_m)
+    inputs = with_cache(
+        replace(told, factors=None),
+        cache_dir,
+        lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total),
+    )
+    tracker = build_tracker("colour", inputs)
+    pictures = {name: one.pixels for name, one in draft.colours.items()}
+    rehearse(
+        tracker,
+        known.rig,
+        pictures,
+        lambda done, total: tell("preparing the tracker", READY * (0.5 + 0.5 * done / total)),
+    )
+    return tracker
+
+
+def _watch(
+    hub: FrameHub,
+    rig: Rig,
+    tracker: Tracker,
+    moments: BodyMoments,
+    watched: Watched,
+    tell: Tell,
+) -> bool:
+    """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
+    collector = FrameCollector(rig.names)
+    entry = OnlyCameras(collector, frozenset(rig.names))
+    give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
+    hub.join(entry)
+    try:
+        while moments.share < 1.0:
+            if watched.stop.is_set():
+                return False
+            if monotonic_ns() > give_up_ns:
+                raise InputError(
+                    f"the wearer was well seen for {moments.good_s:.0f} s only",
+                    "body",
+                    "check the colours, stand where all cameras see the whole shirt, and measure again",
+                )
+            frames = collector.get(_TIMEOUT_S)
+            if frames is None:
+                continue
+            track = tracker.step(frames)
+            watched.body = track.body, tracker.skeleton
+            seen = moments.add(track, frames)
+            tell(_asked(seen, moments), READY + (SEEN - READY) * moments.share)
+        return True
+    finally:
+        hub.leave(entry)
+        watched.body = None
+
+
+def _asked(seen: bool, moments: BodyMoments) -> str:
+    """What the wearer is to do now."""
+    if not seen:
+        return "Stand where all cameras see the whole shirt, arms out"
+    if not moments.bent:
+        return "Arms out; now bend both elbows and stretch them again, slowly"
+    return "Good. Go on bending and stretching the elbows"

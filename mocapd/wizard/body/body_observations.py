@@ -1,0 +1,86 @@
+"""Which tracked moments the wearer's shape is measured from, and when there are enough of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment, moment_of
+from mocapd.clock import nanoseconds
+from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Track, Tracking
+
+_SURE = 0.4  # mean confidence of the arms' joints in a moment that counts
+_SIDES = [
+    [INDEX[side + bone] for bone in ("UpperArm", "LowerArm", "Hand")] for side in ("left", "right")
+]
+
+
+@dataclass(frozen=True, slots=True)
+class MomentParams:
+    """Enough are `good_s` of moments, one every `every_s`, with both elbows bent through `bend_rad`; or
+    `longest_good_s` of them without bends."""
+
+    good_s: float = 4.5
+    every_s: float = 0.15
+    bend_rad: float = 0.6
+    longest_good_s: float = 12.0
+
+
+class BodyMoments:
+    """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last moment only."""
+
+    def __init__(
+        self, model: BodyModel, cameras: Sequence[Camera], params: MomentParams | None = None
+    ) -> None:
+        self._model, self._cameras = model, tuple(cameras)
+        self._p = params if params is not None else MomentParams()
+        self.moments: list[ShapeMoment] = []
+        self.pictures: dict[str, Bytes] = {}
+        self._last: ShapeMoment | None = None
+        self._bends: list[Floats] = []
+
+    def add(self, track: Track, frames: FrameSet) -> bool:
+        """Whether the body is well seen; not every frame that is becomes a moment."""
+        body = track.body
+        before, self._last = self._last, None
+        if body.tracking is not Tracking.LIVE or body.confidence[_SIDES].mean() < _SURE:
+            return False
+        self._last = moment_of(track, frames, self._model, self._cameras, before)
+        if self._last is None or before is None:
+            return False  # just found: not settled, and its velocity is not known
+        due_ns = self.moments[-1].t_ns + nanoseconds(self._p.every_s) if self.moments else 0
+        if self._last.t_ns >= due_ns:
+            self.moments.append(self._last)
+            self._bends.append(elbow_bends(body))
+            self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
+        return True
+
+    @property
+    def good_s(self) -> float:
+        """Seconds that count."""
+        return len(self.moments) * self._p.every_s
+
+    @property
+    def bent(self) -> bool:
+        """Whether both elbows were bent enough to tell where they are."""
+        return bool(self._bends) and bool((np.ptp(self._bends, axis=0) >= self._p.bend_rad).all())
+
+    @property
+    def share(self) -> float:
+        """Of what is wanted, 0..1; 1 when that is enough."""
+        wanted_s = self._p.good_s if self.bent else self._p.longest_good_s
+        return min(1.0, self.good_s / wanted_s)
+
+
+def elbow_bends(body: BodyState) -> Floats:
+    """Angles (2,) [rad] between upper arm and forearm, left and right; 0 for a straight arm."""
+    assert body.joints_m is not None
+    out = []
+    for upper, lower, hand in _SIDES:
+        a = body.joints_m[lower] - body.joints_m[upper]
+        b = body.joints_m[hand] - body.joints_m[lower]
+        cosine = a @ b / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-9)
+        out.append(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    return np.array(out)

@@ -1,0 +1,234 @@
+"""The step Body: the stature is typed, the proportions are measured while the wearer bends the arms.
+
+Its commands are `commands.BODY`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from mocapd.body.shape import FACTORS, BodyShape, mean_shape
+from mocapd.calibrate.body_shape.body_scale import scale_trouble
+from mocapd.errors import InputError, MocapdError
+from mocapd.wizard.body.body_lengths import lengths_cm
+from mocapd.wizard.body.body_measuring import (
+    READY,
+    SEEN,
+    MakeTracker,
+    Measured,
+    Watched,
+    colour_tracker,
+    measure,
+)
+from mocapd.wizard.bone_shapes import bone_shapes
+from mocapd.wizard.colour.stroke_images import encode_picture
+from mocapd.wizard.commands import BODY, Command, MeasureBody, SkipBody, Stature
+from mocapd.wizard.step import (
+    Context,
+    Json,
+    Problem,
+    Scene,
+    Shape,
+    StepName,
+    StepState,
+    StepView,
+)
+
+
+class BodyStep:
+    """See the module."""
+
+    name = StepName.BODY
+    verbs = BODY
+
+    def __init__(self, context: Context, make_tracker: MakeTracker = colour_tracker) -> None:
+        self._context, self._make_tracker = context, make_tracker
+        self._watched: Watched | None = None  # while a job measures
+        self._measured: Measured | None = None
+        self._skipped = False
+        self._measure_next = False
+        self._times = 0  # measured
+        self._pictures: dict[str, bytes] = {}
+        self._troubles: tuple[Problem, ...] = ()
+
+    # -- Step ------------------------------------------------------------------------------------
+
+    def enter(self) -> None:
+        """What was typed and measured before stays."""
+        self._context.scene(Scene.ARM_BENDS)
+
+    def tick(self, now_ns: int) -> None:
+        """Start the job that waits."""
+        del now_ns
+        if self._measure_next and self._context.job is None:
+            self._measure_next = False
+            self._start()
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Stature():
+                self._set_stature(command.m)
+            case MeasureBody():
+                missing = self._missing()
+                if missing is not None:
+                    raise InputError(missing.what, "body", missing.fix)
+                self._stop()
+                self._measure_next, self._skipped = True, False
+            case SkipBody():
+                if self._context.draft.stature_m is None:
+                    raise InputError("the stature is not known", "body", "type it first")
+                self._stop()
+                self._forget()
+                self._skipped = True
+
+    def job_failed(self, error: MocapdError) -> None:
+        """It can be measured again, or skipped."""
+        self._watched = None
+        self._troubles = (Problem.of(error),)
+
+    def leave(self) -> None:
+        """The job ends for itself."""
+        self._stop()
+
+    # -- work ------------------------------------------------------------------------------------
+
+    def _set_stature(self, m: float) -> None:
+        context = self._context
+        if context.draft.stature_m == m:
+            return
+        self._stop()
+        context.draft = replace(context.draft, stature_m=m)
+        self._forget()  # proportions are relative to the stature
+
+    def _forget(self) -> None:
+        self._measured, self._pictures, self._troubles = None, {}, ()
+        self._context.draft = replace(self._context.draft, factors=None)
+
+    def _start(self) -> None:
+        context, watched = self._context, Watched()
+        self._watched, self._troubles = watched, ()
+        hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
+        make_tracker = self._make_tracker
+
+        def done(measured: Measured | None) -> None:
+            if measured is not None and watched is self._watched:
+                self._found(measured)
+            if watched is self._watched:
+                self._watched = None
+
+        context.start_job(
+            lambda tell: measure(hub, draft, cache_dir, watched, tell, make_tracker), done
+        )
+
+    def _found(self, measured: Measured) -> None:
+        draft = self._context.draft
+        self._measured, self._times = measured, self._times + 1
+        self._pictures = {
+            f"body-{self._times}-{name}.jpg": encode_picture(pixels)
+            for name, pixels in measured.pictures.items()
+        }
+        self._context.draft = replace(draft, factors=measured.shape.factors)
+        by_wearer = draft.room is not None and draft.room.method == "wearer"
+        trouble = scale_trouble(measured.scale, measured.shape.stature_m, by_wearer)
+        if trouble is not None:
+            self._troubles = (Problem(trouble.what, "", trouble.fix),)
+
+    def _stop(self) -> None:
+        if self._watched is not None:
+            self._watched.stop.set()
+            self._watched = None
+        self._measure_next = False
+
+    def _missing(self) -> Problem | None:
+        """Why it cannot be measured."""
+        draft = self._context.draft
+        if draft.stature_m is None:
+            return Problem("the stature is not known", "", "type it first")
+        if draft.rig is None:
+            return Problem("the room is not known", "", "do the step Room first")
+        if not set(draft.colours) & set(draft.rig.names):
+            return Problem("the colours are not known", "", "do the step Colours first")
+        if len(draft.rig.cameras) < 2:
+            return Problem(
+                "one camera cannot tell size from distance", "", "go on with the stature alone"
+            )
+        return None
+
+    # -- view ------------------------------------------------------------------------------------
+
+    def view(self) -> StepView:
+        """See Step."""
+        draft = self._context.draft
+        state, sentence, progress = self._told()
+        missing = self._missing()
+        shape: BodyShape | None = None
+        if draft.stature_m is not None:
+            shape = (
+                mean_shape(draft.stature_m)
+                if draft.factors is None
+                else BodyShape(draft.stature_m, draft.factors)
+            )
+        details: dict[str, Json] = {
+            "stature_m": draft.stature_m,
+            "measuring": self._busy,
+            "can_measure": missing is None,
+            "why_not": "" if missing is None else missing.what,
+            "measured": draft.factors is not None,
+            "lengths_cm": {} if shape is None else lengths_cm(shape),
+            "usual_cm": {} if draft.stature_m is None else lengths_cm(mean_shape(draft.stature_m)),
+            "factors": {}
+            if draft.factors is None
+            else dict(zip(FACTORS, draft.factors.tolist(), strict=True)),
+            "pictures": list(self._pictures),
+            "match": None if self._measured is None else self._measured.fit.match,
+        }
+        return StepView(
+            state, sentence, progress, self._troubles, self._overlays(), details, self._pictures
+        )
+
+    @property
+    def _busy(self) -> bool:
+        return self._watched is not None or self._measure_next
+
+    def _overlays(self) -> Mapping[str, tuple[Shape, ...]]:
+        """The bones as they are tracked while it is measured."""
+        rig = self._context.draft.rig
+        shown = self._watched.body if self._watched is not None else None
+        if rig is None or shown is None:
+            return {}
+        return {camera.name: bone_shapes(camera, *shown) for camera in rig.cameras}
+
+    def _told(self) -> tuple[StepState, str, float]:
+        """State, sentence and progress."""
+        draft = self._context.draft
+        if draft.stature_m is None:
+            return StepState.WAITING, "Type how tall you are, without shoes.", 0.0
+        if self._busy:
+            what, share = self._context.job or ("", 0.0)
+            if share < READY:
+                return StepState.WORKING, f"Getting ready: {what or 'one moment'}.", share
+            if share < SEEN:
+                return StepState.WORKING, f"{what}.", share
+            return StepState.WORKING, "Working out your proportions.", share
+        if draft.factors is not None:
+            return (
+                StepState.DONE,
+                "Compare the lines with your body: measure again if they are off, or go on.",
+                1.0,
+            )
+        if self._skipped:
+            return StepState.DONE, "Your stature alone is used. Go on, or measure after all.", 1.0
+        missing = self._missing()
+        if missing is not None:
+            return (
+                StepState.DONE,
+                f"Your stature is known. No proportions are measured: {missing.what}.",
+                1.0,
+            )
+        if self._troubles:
+            return StepState.FAILED, "Press “Measure” to try again, or go on without.", 0.3
+        return (
+            StepState.WAITING,
+            "Press “Measure”, stand with both arms out, then bend and stretch your elbows.",
+            0.3,
+        )

@@ -1,0 +1,54 @@
+"""The measured body drawn over the picture it was measured from."""
+
+import cv2
+import numpy as np
+
+from mocapd.body.model import BodyModel, shape_of
+from mocapd.body.shape import skeleton_of
+from mocapd.body.shaping import Shaper
+from mocapd.body.skeleton import global_from_local, joint_positions
+from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment
+from mocapd.fit.body_drawing import Drawing, work_factors
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, moved
+from mocapd.geometry.cameras import project
+from mocapd.types import Bytes, Camera, Pose
+
+_OUTLINE_BGR, _BONE_BGR, _UNDER_BGR = (138, 240, 93), (255, 216, 79), (0, 0, 0)
+
+
+def body_picture(
+    pixels: Bytes,
+    camera: Camera,
+    model: BodyModel,
+    state: MotionState,
+    moment: ShapeMoment,
+    index: int,
+) -> Bytes:
+    """The picture (h,w,3) BGR with outlines of the shirt's patches and the bones, as the body in `state`
+    has them at this camera's own instant. index: of the camera in the moment's views."""
+    out = pixels.copy()
+    view = next((view for view in moment.views if view.index == index), None)
+    if view is None:
+        return out
+    factor = work_factors([camera], FitParams().work_width_px)[0]
+    drawing = Drawing(Shaper(model), camera, factor)
+    ids = drawing.render(state, view.dt_s, view.roi)
+    at = np.array([view.roi[0], view.roi[1]])
+    for colour in range(1, int(ids.max(initial=0)) + 1):
+        lines, _ = cv2.findContours(
+            (ids == colour).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE
+        )
+        corners = [((line + at) * factor + factor // 2).astype(np.int32) for line in lines]
+        cv2.polylines(out, corners, True, _OUTLINE_BGR, 1, cv2.LINE_AA)
+    skeleton = skeleton_of(shape_of(model, state.factors))
+    root, local = moved(model, state, view.dt_s)
+    joints = joint_positions(skeleton, Pose(root, global_from_local(skeleton, local)))
+    at_px = np.rint(project(camera, joints))
+    for colour_bgr, width in ((_UNDER_BGR, 5), (_BONE_BGR, 2)):
+        for child, parent in enumerate(skeleton.parents):
+            ends = at_px[[parent, child]]
+            if parent >= 0 and np.isfinite(ends).all() and (np.abs(ends) < 1e4).all():
+                a, b = ends.astype(int).tolist()
+                cv2.line(out, a, b, colour_bgr, width, cv2.LINE_AA)
+    return out

@@ -1,0 +1,90 @@
+"""The machine's camera nodes beside the cameras in use: which is whose, what is wrong, what would fit.
+
+A node that is in use by the setup is "busy" to whoever asks; that is left out here.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
+from mocapd.capture.webcam.webcams import SYSFS
+from mocapd.wizard.draft import DraftCamera
+from mocapd.wizard.step import Problem
+
+
+def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | None:
+    """The node that a camera is read from; None for what is no webcam, or is not plugged in."""
+    for one in nodes:
+        if one.captures and camera.source in (one.spec, str(one.node)):
+            return one
+    if not camera.source.startswith(PREFIX):
+        return None
+    model = parse_identity(camera.source).model
+    moved = [one for one in nodes if one.captures and one.identity and one.identity.model == model]
+    return moved[0] if len(moved) == 1 else None
+
+
+def unused_nodes(
+    cameras: Sequence[DraftCamera], nodes: Sequence[CameraInfo]
+) -> tuple[CameraInfo, ...]:
+    """The cameras of the machine that the setup has not opened, with their reasons."""
+    used = [node_of(camera, nodes) for camera in cameras]
+    return tuple(one for one in nodes if one.captures and one not in used)
+
+
+def mode_of(camera: DraftCamera, node: CameraInfo) -> Mode:
+    """What a camera is asked to send: MJPG where it has it."""
+    mjpg = any(one.fourcc == "MJPG" for one in node.formats)
+    return Mode("MJPG" if mjpg else "YUYV", camera.size_px, camera.fps_hz)
+
+
+def offers(
+    cameras: Sequence[DraftCamera],
+    nodes: Sequence[CameraInfo],
+    statuses: Mapping[str, CaptureStatus],
+    sysfs: Path = SYSFS,
+) -> tuple[dict[str, Mode], tuple[Problem, ...]]:
+    """For cameras whose USB bus is too crowded: by id a mode that fits, and what is wrong.
+
+    A camera that has run for a while at its rate proves an estimate wrong, so buses on which all do
+    are left out.
+    """
+    on_usb = {}
+    formats = {}
+    for camera in cameras:
+        node = node_of(camera, nodes)
+        if node is not None and node.identity is not None and node.formats:
+            on_usb[camera.id] = (node.identity.port_path, mode_of(camera, node))
+            formats[camera.id] = node.formats
+    modes: dict[str, Mode] = {}
+    problems = []
+    for bus in crowded_buses(on_usb, sysfs):
+        if all(_runs(statuses.get(name), on_usb[name][1].fps_hz) for name in bus.cameras):
+            continue
+        budget = bus.usable_bytes_per_s / len(bus.cameras)
+        for name in bus.cameras:
+            asked = on_usb[name][1]
+            if asked.bytes_per_s > budget:
+                lower = lower_mode(formats[name], asked, budget)
+                if lower is not None:
+                    modes[name] = lower
+        problems.append(
+            Problem(
+                f"USB bus {bus.bus} cannot carry {' and '.join(bus.cameras)} together: they ask "
+                f"for {bus.asked_bytes_per_s / 1e6:.0f} MB/s, it has about "
+                f"{bus.usable_bytes_per_s / 1e6:.0f}",
+                ", ".join(bus.cameras),
+                "plug one into a port of another USB controller"
+                + (", or take the lower mode that is offered" if modes else ""),
+            )
+        )
+    return modes, tuple(problems)
+
+
+def _runs(status: CaptureStatus | None, fps_hz: float) -> bool:
+    return (
+        status is not None and status.state is CaptureState.LIVE and status.fps_hz >= 0.8 * fps_hz
+    )

@@ -1,0 +1,149 @@
+"""A webcam in another USB port than when it was calibrated: asked about once, in the step Cameras.
+
+Its command is `commands.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+
+from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
+from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, match_identity, parse_identity
+from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs
+from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.step import Context, Problem, Step, StepState, StepView, T
+from mocapd.wizard.wizard import MakeStep
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """A calibrated webcam that is found in another port: what it was called, and is now."""
+
+    camera: str
+    was: str
+    now: str
+
+
+def moved_cameras(
+    saved: Sequence[DraftCamera], present: Sequence[WebcamIdentity]
+) -> tuple[Moved, ...]:
+    """Which of the saved webcams sit in another port than they did; the others are left out."""
+    identities = {c.id: parse_identity(c.source) for c in saved if c.source.startswith(PREFIX)}
+    moved = []
+    for name, wanted in identities.items():
+        others = [one for other, one in identities.items() if other != name]
+        try:
+            found = match_identity(wanted, present, others)
+        except UnavailableError:  # it is not there at all, or twins could be meant
+            continue
+        if found.moved:
+            moved.append(Moved(name, str(wanted), str(found.identity)))
+    return tuple(moved)
+
+
+def same_camera(draft: Draft, moved: Moved) -> Draft:
+    """The draft with the camera in its new port."""
+    return replace(
+        draft,
+        cameras=tuple(
+            replace(one, source=moved.now) if one.id == moved.camera else one
+            for one in draft.cameras
+        ),
+    )
+
+
+def other_camera(draft: Draft, moved: Moved) -> Draft:
+    """The draft without what is known of the camera that was meant before, and of the room it stood in."""
+    draft = same_camera(draft, moved)
+    return replace(
+        draft,
+        lenses=_without(draft.lenses, moved.camera),
+        lens_saved=draft.lens_saved - {moved.camera},
+        colours=_without(draft.colours, moved.camera),
+        rig=None,
+        room=None,
+        floor_known=False,
+    )
+
+
+def _without(values: Mapping[str, T], name: str) -> dict[str, T]:
+    return {key: value for key, value in values.items() if key != name}
+
+
+class AsksForPorts:
+    """The step Cameras with the question before it; see the module's docstring, and Step.
+
+    moved: shared by all visits of the step, so that what was answered is not asked again.
+    """
+
+    def __init__(self, context: Context, make: MakeStep, moved: list[Moved]) -> None:
+        self._context, self._moved = context, moved
+        self._step: Step = make(context)
+        self.name = self._step.name
+        self._trouble: tuple[Problem, ...] = ()
+
+    def enter(self) -> None:
+        """See Step."""
+        self._step.enter()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._step.tick(now_ns)
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        self._step.job_failed(error)
+
+    def leave(self) -> None:
+        """See Step."""
+        self._step.leave()
+
+    @property
+    def verbs(self) -> Verbs:
+        """See Step."""
+        return {**self._step.verbs, **PORTS}
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        if not isinstance(command, SamePort):
+            self._step.command(command)
+            return
+        asked = [one for one in self._moved if one.camera == command.camera]
+        if not asked:
+            raise InputError("nothing is asked of this camera", "the page", "reload the page")
+        if command.same:
+            self._remember(asked[0])
+        else:
+            self._context.draft = other_camera(self._context.draft, asked[0])
+        self._moved.remove(asked[0])
+
+    def view(self) -> StepView:
+        """See Step."""
+        view = self._step.view()
+        questions = tuple(
+            Problem(
+                f"a camera like it was in USB port {_port(one.was)}, and is now in {_port(one.now)}",
+                one.camera,
+                "say below whether it is the same camera",
+            )
+            for one in self._moved
+        )
+        details = {**view.details, "moved": [asdict(one) for one in self._moved]}
+        view = replace(view, problems=questions + self._trouble + view.problems, details=details)
+        if not self._moved or view.state is not StepState.DONE:
+            return view
+        names = " and ".join(one.camera for one in self._moved)
+        sentence = f"Say below whether {names} is the camera that was calibrated before."
+        return replace(view, state=StepState.WAITING, sentence=sentence)
+
+    def _remember(self, moved: Moved) -> None:
+        """In the draft and in the saved calibration; a full disk is told, and asked about next time."""
+        self._context.draft = same_camera(self._context.draft, moved)
+        try:
+            rewrite_sources(calibration_path(self._context.state_dir), {moved.camera: moved.now})
+        except MocapdError as error:
+            self._trouble = (Problem.of(error),)
+
+
+def _port(source: str) -> str:
+    return parse_identity(source).port_path

@@ -1,0 +1,1 @@
+"""The step Check: tracking on what was found, judged, and saved."""

@@ -1,0 +1,167 @@
+"""A tracker that is looked over the shoulder: how far each camera's picture lies from the body."""
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.body.shape import FACTORS, mean_shape, skeleton_of
+from mocapd.body.skeleton import INDEX, local_from_global
+from mocapd.calibrate.self_calibration.body_rows import RowGatherer
+from mocapd.clock import nanoseconds, seconds
+from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information, step_between
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry.cameras import to_camera
+from mocapd.trackers.base import Tracker
+from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Track, Tracking
+
+EVERY = 4  # frames: one in so many is measured
+_RADIUS_PX = 12  # work px within which a colour is looked for
+_STEPS = 3  # Gauss-Newton; edges that are in place hold back the first
+_RIDGE = 1e-3
+_STALE_S = 0.2  # a pose older than this tells no velocity
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraMeasure:
+    """shift_px (2,): the way from the drawn body to the seen one in pixels of the frame; shift_m: the
+    same at the body's distance [m]; match: share of the drawn shirt whose colour is seen."""
+
+    shift_px: Floats
+    shift_m: float
+    match: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measure:
+    """One frame in which somebody is tracked. upright_rad: of hips to neck from the vertical; hips_m: height
+    above the floor; lengths: shoulders, upper arm and forearm against a mean body of this stature."""
+
+    t_ns: int
+    cameras: Mapping[str, CameraMeasure]
+    upright_rad: float
+    hips_m: float
+    lengths: Floats
+
+
+@dataclass(slots=True, eq=False)
+class Measures:
+    """Written by the pipeline's thread, read by the wizard's."""
+
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _all: list[Measure] = field(default_factory=list)
+
+    def add(self, one: Measure) -> None:
+        with self._lock:
+            self._all.append(one)
+
+    def taken(self) -> tuple[Measure, ...]:
+        """Those since the last time."""
+        with self._lock:
+            out, self._all = tuple(self._all), []
+            return out
+
+
+class MeasuredTracker:
+    """Steps another tracker, and measures every fourth frame of it; a Tracker itself.
+
+    factors (7,): the wearer's proportions as known before, None for the mean body's.
+    """
+
+    def __init__(
+        self, tracker: Tracker, rig: Rig, stature_m: float, factors: Floats | None, into: Measures
+    ) -> None:
+        self.name = tracker.name
+        self._tracker, self._rig, self._into = tracker, rig, into
+        self._known = np.ones(len(FACTORS)) if factors is None else factors
+        self._mean = skeleton_of(mean_shape(stature_m))
+        params = FitParams()
+        self._work = work_factors(rig.cameras, params.work_width_px)
+        self._fitter = Fitter(build_model(stature_m), rig.cameras, self._work, params)
+        self._rows = RowGatherer(self._fitter, _RADIUS_PX)
+        self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
+        self._last: tuple[int, Floats, Floats] | None = None
+        self._turn = 0
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """See Tracker."""
+        return self._tracker.skeleton
+
+    def reset(self) -> None:
+        """See Tracker."""
+        self._tracker.reset()
+        self._last = None
+
+    def step(self, frames: FrameSet) -> Track:
+        """See Tracker."""
+        track = self._tracker.step(frames)
+        body = track.body
+        if body.tracking is Tracking.LIVE and body.pose is not None and track.evidence:
+            local = local_from_global(self.skeleton, body.pose.quats_xyzw)
+            self._turn += 1
+            if self._turn % EVERY == 0:
+                self._into.add(self._measured(body, local, track, frames))
+            self._last = body.t_ns, body.pose.root_m, local
+        return track
+
+    def _measured(self, body: BodyState, local: Floats, track: Track, frames: FrameSet) -> Measure:
+        assert body.pose is not None
+        assert body.joints_m is not None
+        lengths = _lengths(self.skeleton) / _lengths(self._mean)
+        factors = self._known.copy()
+        factors[1:4] = np.clip(lengths, 0.5, 2.0)
+        model = self._fitter.model
+        velocity = np.zeros(model.n_pose)
+        if self._last is not None and 0 < body.t_ns - self._last[0] < nanoseconds(_STALE_S):
+            dt_s = seconds(body.t_ns - self._last[0])
+            velocity = step_between(model, (body.pose.root_m, local), self._last[1:]) / dt_s
+        state = MotionState(
+            body.pose.root_m, local, velocity, factors, initial_information(model.space)
+        )
+        spine = body.joints_m[INDEX["neck"]] - body.joints_m[INDEX["hips"]]
+        return Measure(
+            body.t_ns,
+            {name: self._camera(name, state, track, frames) for name in track.evidence},
+            float(np.arccos(np.clip(spine[1] / np.linalg.norm(spine), -1.0, 1.0))),
+            float(body.joints_m[INDEX["hips"], 1]),
+            lengths,
+        )
+
+    def _camera(
+        self, name: str, state: MotionState, track: Track, frames: FrameSet
+    ) -> CameraMeasure:
+        index = self._index[name]
+        factor, camera = self._work[index], self._rig.cameras[index]
+        x0, y0, x1, y1 = (edge // factor for edge in track.roi_px[name])
+        ids = np.ascontiguousarray(track.evidence[name])
+        late_s = seconds(frames.frames[name].t_ns - frames.t_ns)
+        view = View(index, (x0, y0, x1, y1), ids, np.zeros_like(ids), late_s)
+        way_m, matches = np.zeros(3), []  # that this camera alone would move the whole body
+        for _ in range(_STEPS):
+            rows = self._rows.gather(replace(state, root_m=state.root_m + way_m), view)
+            way_m = way_m + np.linalg.solve(rows.H[:3, :3] + _RIDGE * np.eye(3), rows.b[:3])
+            matches.append(rows.match)
+        depth_m = max(float(to_camera(camera, state.root_m)[2]), 0.2)
+        aside_m = (camera.R @ way_m)[:2]
+        focal_px = np.array([camera.K[0, 0], camera.K[1, 1]])
+        return CameraMeasure(
+            focal_px * aside_m / depth_m, float(np.linalg.norm(aside_m)), matches[0]
+        )
+
+
+def _lengths(skeleton: Skeleton) -> Floats:
+    """Width of the shoulders, length of an upper arm and a forearm [m]."""
+    at_m = skeleton.rest_m
+    arm, elbow, hand = (INDEX[f"left{bone}"] for bone in ("UpperArm", "LowerArm", "Hand"))
+    return np.array(
+        [
+            abs(at_m[arm, 0]),
+            np.linalg.norm(at_m[elbow] - at_m[arm]),
+            np.linalg.norm(at_m[hand] - at_m[elbow]),
+        ]
+    )

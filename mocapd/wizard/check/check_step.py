@@ -1,0 +1,272 @@
+"""Check: the tracker runs on what was found, five seconds of moving are judged, and it is saved.
+
+Its commands are `commands.CHECK`.
+Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
+`lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before).
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from enum import StrEnum
+
+from mocapd.body.skeleton import INDEX, standard_skeleton
+from mocapd.clock import NS_PER_S, seconds
+from mocapd.errors import InputError, MocapdError
+from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.loop import OnDeath
+from mocapd.types import Tracking
+from mocapd.wizard.check.check_measure import Measure
+from mocapd.wizard.check.check_tracking import CheckSettings, CheckTracking, Prepared, prepare
+from mocapd.wizard.check.check_verdict import (
+    CameraVerdict,
+    Delivery,
+    camera_verdict,
+    room_problems,
+    verdict_json,
+)
+from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.intrinsics.saved_intrinsics import store_lenses
+from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.saving import calibrated_of, save_draft
+from mocapd.wizard.step import (
+    Context,
+    Problem,
+    Scene,
+    StepName,
+    StepState,
+    StepView,
+)
+
+MOVING_S = 5.0
+SEEK_S = 12.0  # without anybody found, after which the reasons are told
+LEAST_MEASURES = 8  # of which a verdict is made
+LONGEST_S = 25.0  # of moving, on a machine that is busy
+SLOW_HZ = 12.0
+_NOBODY = Problem(
+    "nobody in the shirt is found",
+    "all cameras",
+    "stand where the cameras see you; else do the step Colour again, in the light as it is now",
+)
+
+
+class Phase(StrEnum):
+    """What the step is at."""
+
+    MISSING = "missing"
+    PREPARING = "preparing"
+    SEEKING = "seeking"
+    MOVING = "moving"
+    JUDGED = "judged"
+
+
+class CheckStep:
+    """See the module's docstring, and Step. `shown` gets the body that is tracked, to be drawn over each
+    picture by whoever serves it: at a tick the newest body is not the newest picture's."""
+
+    name = StepName.CHECK
+    verbs = CHECK
+
+    def __init__(
+        self, context: Context, settings: CheckSettings, shown: NewestBody, died: OnDeath
+    ) -> None:
+        self._context, self._settings = context, settings
+        self._shown, self._died = shown, died
+        self._tracking: CheckTracking | None = None
+        self._phase = Phase.PREPARING
+        self._problems: tuple[Problem, ...] = ()
+        self._seen: list[Measure] = []
+        self._began_ns: int | None = None  # seeking, or moving
+        self._now_ns = 0
+        self._counts: Mapping[str, CameraCounts] = {}  # when moving began
+        self._verdicts: tuple[CameraVerdict, ...] = ()
+        self._saved = ""
+
+    def enter(self) -> None:
+        """See Step."""
+        self._context.scene(Scene.MOVING)
+        draft = self._context.draft
+        self._problems = missing(draft)
+        if self._problems:
+            self._phase = Phase.MISSING
+            return
+        known, settings, cache_dir = calibrated_of(draft), self._settings, self._context.cache_dir
+        self._context.start_job(lambda tell: prepare(known, settings, cache_dir, tell), self._run)
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._now_ns = now_ns
+        if self._tracking is None:
+            return
+        fresh = self._tracking.measures()
+        if self._began_ns is None:
+            self._began_ns = now_ns
+        elapsed_ns = now_ns - self._began_ns
+        if self._phase is Phase.SEEKING:
+            if self._tracking.metrics().tracking is Tracking.LIVE:
+                self._move(now_ns)
+            elif elapsed_ns > SEEK_S * NS_PER_S:
+                self._problems = (_NOBODY, *self._slowness())
+        elif self._phase is Phase.MOVING:
+            self._seen += fresh
+            enough = len(self._seen) >= LEAST_MEASURES
+            if elapsed_ns >= MOVING_S * NS_PER_S and enough:
+                self._judge()
+            elif elapsed_ns > LONGEST_S * NS_PER_S:
+                self._seek()
+                self._problems = (_NOBODY, *self._slowness())
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case MeasureAgain():
+                if self._tracking is None:
+                    raise InputError("the tracker does not run yet", "check", "wait a moment")
+                self._seek()
+            case Save():
+                self._save()
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        self._phase, self._problems = Phase.MISSING, (Problem.of(error),)
+
+    def view(self) -> StepView:
+        """See Step."""
+        state, sentence, progress = self._told()
+        of_cameras = tuple(one.problem for one in self._verdicts if one.problem is not None)
+        metrics = self._tracking.metrics() if self._tracking is not None else None
+        return StepView(
+            state,
+            sentence,
+            progress,
+            of_cameras + self._problems,
+            details={
+                "phase": self._phase.value,
+                "tracking": None if metrics is None else metrics.tracking.value,
+                "rate_hz": None if metrics is None else round(metrics.rate_hz, 1),
+                "verdicts": [verdict_json(one) for one in self._verdicts],
+                "saved": self._saved or None,
+            },
+        )
+
+    def leave(self) -> None:
+        """See Step."""
+        if self._tracking is not None:
+            self._tracking.stop()
+            self._tracking = None
+
+    def _run(self, prepared: Prepared) -> None:
+        self._tracking = CheckTracking(
+            self._context.hub, prepared, self._settings.smoothing, self._shown, self._died
+        )
+        self._seek()
+
+    def _seek(self) -> None:
+        self._phase, self._began_ns = Phase.SEEKING, None
+        self._problems, self._verdicts = (), ()
+
+    def _move(self, now_ns: int) -> None:
+        assert self._tracking is not None
+        self._phase, self._began_ns = Phase.MOVING, now_ns
+        self._problems, self._seen = (), []
+        self._counts = self._tracking.counts()
+
+    def _judge(self) -> None:
+        assert self._tracking is not None
+        draft, statuses = self._context.draft, self._context.statuses()
+        counts, asked_hz = self._tracking.counts(), {c.id: c.fps_hz for c in draft.cameras}
+        self._verdicts = tuple(
+            camera_verdict(
+                camera.name,
+                self._seen,
+                Delivery(
+                    *_since(self._counts[camera.name], counts[camera.name]),
+                    statuses[camera.name].fps_hz if camera.name in statuses else 0.0,
+                    asked_hz.get(camera.name, 30.0),
+                    camera.size_px[0],
+                ),
+            )
+            for camera in self._tracking.rig.cameras
+        )
+        stature_m = draft.stature_m or self._settings.tracker.stature_m
+        hips_m = float(standard_skeleton(stature_m).rest_m[INDEX["hips"], 1])
+        of_room = room_problems(self._seen, hips_m, draft.floor_known)
+        self._problems = (*of_room, *self._slowness())
+        self._phase = Phase.JUDGED
+
+    def _slowness(self) -> tuple[Problem, ...]:
+        """Whether the machine keeps up."""
+        rate_hz = self._tracking.metrics().rate_hz if self._tracking is not None else SLOW_HZ
+        if rate_hz >= SLOW_HZ:
+            return ()
+        return (
+            Problem(
+                f"only {rate_hz:.0f} poses a second are worked out",
+                "this machine",
+                "end what else keeps it busy, or use fewer cameras or smaller pictures",
+            ),
+        )
+
+    def _save(self) -> None:
+        if self._phase is not Phase.JUDGED:
+            raise InputError(
+                "nothing is judged yet", "check", f"stand in view and move for {MOVING_S:.0f} s"
+            )
+        try:
+            draft, state_dir = self._context.draft, self._context.state_dir
+            self._saved = str(save_draft(draft, state_dir))
+            store_lenses(draft, state_dir, datetime.now(UTC))
+        except MocapdError as error:
+            raise InputError(error.what, error.where, error.fix) from error
+        # the lenses are kept now: a second save does not keep them anew
+        self._context.draft = replace(draft, lens_saved=frozenset(draft.lenses))
+        self._context.saved()
+
+    def _told(self) -> tuple[StepState, str, float]:
+        """State, sentence and progress."""
+        if self._phase is Phase.MISSING:
+            return StepState.FAILED, "This cannot be checked yet: see below.", 0.0
+        if self._phase is Phase.PREPARING:
+            what, share = self._context.job or ("", 0.0)
+            return StepState.WORKING, f"Wait: {what or 'preparing the tracker'}.", share
+        if self._phase is Phase.SEEKING:
+            return StepState.WAITING, "Stand where all cameras see you.", 0.0
+        if self._phase is Phase.MOVING:
+            elapsed_s = seconds(self._now_ns - (self._began_ns or self._now_ns))
+            sentence = "Walk about and move your arms until the bar is full."
+            share = min(elapsed_s / MOVING_S, len(self._seen) / LEAST_MEASURES, 1.0)
+            return StepState.WAITING, sentence, share
+        if self._saved:
+            return StepState.DONE, "Saved. You may close this page.", 1.0
+        if self._problems or any(one.problem for one in self._verdicts):
+            return StepState.DONE, "See below what is doubtful; mend it, or save it as it is.", 1.0
+        return StepState.DONE, "All is well: save it.", 1.0
+
+
+def missing(draft: Draft) -> tuple[Problem, ...]:
+    """What has to be found before the tracker can run."""
+    problems = []
+    if draft.rig is None:
+        problems.append(
+            Problem("where the cameras stand is not known", "room", "do the step Room first")
+        )
+    elif not draft.colours:
+        problems.append(
+            Problem(
+                "the shirt's colours in this light are not known",
+                "colour",
+                "do the step Colour first",
+            )
+        )
+    if draft.stature_m is None:
+        problems.append(
+            Problem("the wearer's stature is not known", "body", "type it in the step Body")
+        )
+    return tuple(problems)
+
+
+def _since(before: CameraCounts, now: CameraCounts) -> tuple[int, int]:
+    """Frames received and lost meanwhile; one that came too late is lost too."""
+    late = now.late - before.late
+    return now.received - before.received - late, now.lost - before.lost + late

@@ -1,0 +1,108 @@
+"""The tracker of the step Check: as the daemon will have it, on the setup's own pictures."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from mocapd.calibrate.calibrated_inputs import Calibrated, inputs_of_calibration
+from mocapd.config.sections import TrackerSection
+from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.loop import OnDeath, PipelineLoop
+from mocapd.pipeline.metrics import Metrics
+from mocapd.pipeline.rehearsal import rehearse
+from mocapd.pipeline.smoothing import Smoother
+from mocapd.session.tracker_setup import build_tracker, with_cache
+from mocapd.types import Rig
+from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, Measures
+from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.only_cameras import OnlyCameras
+
+_BUILDING = 0.8  # share of the preparation that is not the rehearsal
+
+
+@dataclass(frozen=True, slots=True)
+class CheckSettings:
+    """How the daemon will track: its section `tracker`, and the preset of `smoothing`."""
+
+    tracker: TrackerSection
+    smoothing: str = "balanced"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """A tracker that is warm, its cameras, and where it leaves what it measures."""
+
+    tracker: MeasuredTracker
+    rig: Rig
+    measures: Measures
+
+
+def prepare(
+    known: Calibrated, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
+) -> Prepared:
+    """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
+    section = settings.tracker
+    told = inputs_of_calibration(known, section.stature_m)
+    inputs = replace(told, variant=section.variant, tracking=section)
+
+    def progress(what: str, done: int, total: int) -> None:
+        tell(what, _BUILDING * done / max(total, 1))
+
+    progress("loading the pose database", 0, 1)
+    tracker = build_tracker("colour", with_cache(inputs, cache_dir, progress))
+    measures = Measures()
+    measured = MeasuredTracker(tracker, known.rig, inputs.stature_m, known.factors, measures)
+    pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
+    rehearse(
+        measured,
+        known.rig,
+        pictures,
+        lambda done, total: tell(
+            "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
+        ),
+    )
+    measures.taken()
+    return Prepared(measured, known.rig, measures)
+
+
+class CheckTracking:
+    """Runs from its making to `stop`; used by the wizard's thread."""
+
+    def __init__(
+        self,
+        hub: FrameHub,
+        prepared: Prepared,
+        smoothing: str,
+        shown: NewestBody,
+        died: OnDeath,
+    ) -> None:
+        self.rig = prepared.rig
+        self._hub, self._prepared, self._shown = hub, prepared, shown
+        self._collector = FrameCollector(prepared.rig.names)
+        tracker = prepared.tracker
+        smoother = Smoother(smoothing, tracker.skeleton)
+        self._loop = PipelineLoop(self._collector, tracker, smoother, shown.publish, died)
+        self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
+        self._loop.start()
+        shown.loop = self._loop
+        hub.join(self._entry)
+
+    def measures(self) -> tuple[Measure, ...]:
+        """What was measured since the last time."""
+        return self._prepared.measures.taken()
+
+    def metrics(self) -> Metrics:
+        """How it does."""
+        return self._loop.metrics()
+
+    def counts(self) -> Mapping[str, CameraCounts]:
+        """What became of each camera's frames since the start."""
+        return self._collector.counts().cameras
+
+    def stop(self) -> None:
+        """End; nothing is shown any more."""
+        self._hub.leave(self._entry)
+        self._loop.stop()
+        self._shown.forget()

@@ -1,0 +1,174 @@
+"""From five seconds of tracking to a verdict on each camera and on the room."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from mocapd.wizard.check.check_measure import CameraMeasure, Measure
+from mocapd.wizard.step import Problem
+
+GOOD_PX, BAD_PX = 2.5, 6.0  # of a picture 640 px wide
+GOOD_CM, BAD_CM = 1.5, 3.5
+GOOD_MATCH, BAD_MATCH = 0.6, 0.4
+GOOD_DROPPED, BAD_DROPPED = 0.05, 0.2  # share of a camera's frames
+GOOD_RATE = 0.9  # of the rate that was asked for
+_WIDTH_PX = 640
+_LEAN_RAD = math.radians(20.0)
+_FLOOR_M = 0.12
+_SCALE = 0.08
+
+
+class Grade(StrEnum):
+    """How far a result may be relied on."""
+
+    GOOD = "good"
+    DOUBTFUL = "doubtful"
+    BAD = "bad"
+
+
+@dataclass(frozen=True, slots=True)
+class CameraVerdict:
+    """reprojection_px, cm: how far the seen shirt lies from the body of all cameras together; seen: share
+    of the frames with the person in which this camera saw them; dropped: share of its frames lost."""
+
+    camera: str
+    grade: Grade
+    reprojection_px: float
+    cm: float
+    match: float
+    seen: float
+    dropped: float
+    rate_hz: float
+    problem: Problem | None
+
+
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """What became of a camera's frames meanwhile, its rate and the rate it was asked for."""
+
+    received: int
+    lost: int
+    rate_hz: float
+    asked_hz: float
+    width_px: int
+
+    @property
+    def dropped(self) -> float:
+        """Share that never arrived, or too late."""
+        return self.lost / max(self.received + self.lost, 1)
+
+
+def camera_verdict(camera: str, measures: Sequence[Measure], delivery: Delivery) -> CameraVerdict:
+    """How well this camera agrees with the others' body, and what to do when it does not."""
+    own = [m.cameras[camera] for m in measures if camera in m.cameras]
+    seen = len(own) / max(len(measures), 1)
+    px, cm, match = _middle(own)
+    scaled_px = px * _WIDTH_PX / delivery.width_px
+    judged = [
+        (_grade(scaled_px, GOOD_PX, BAD_PX), _ROOM.format(f"{px:.1f} px"), _ROOM_FIX),
+        (_grade(cm, GOOD_CM, BAD_CM), _ROOM.format(f"{cm:.1f} cm"), _ROOM_FIX),
+        (
+            _grade(1.0 - match, 1.0 - GOOD_MATCH, 1.0 - BAD_MATCH),
+            f"only {100 * match:.0f} % of the shirt has its colours",
+            "do the step Colour again, in the light as it is now",
+        ),
+        (
+            _grade(delivery.dropped, GOOD_DROPPED, BAD_DROPPED),
+            f"{100 * delivery.dropped:.0f} % of its frames are lost",
+            "use another USB port, or close other programs",
+        ),
+        (
+            Grade.GOOD if delivery.rate_hz >= GOOD_RATE * delivery.asked_hz else Grade.DOUBTFUL,
+            f"{delivery.rate_hz:.0f} pictures a second, asked for {delivery.asked_hz:.0f}",
+            "more light, a shorter exposure, or a lower mode in the step Cameras",
+        ),
+    ]
+    if not own:
+        judged = [
+            (Grade.BAD, "it did not see the shirt", "turn it to the person, then do Room again")
+        ]
+    grades = list(Grade)
+    worst, what, fix = max(judged, key=lambda one: grades.index(one[0]))
+    problem = None if worst is Grade.GOOD else Problem(what, camera, fix)
+    return CameraVerdict(
+        camera, worst, px, cm, match, seen, delivery.dropped, delivery.rate_hz, problem
+    )
+
+
+_ROOM = "the shirt is seen {} from where the other cameras have it"
+_ROOM_FIX = "do the step Room again; the camera may have been moved"
+
+
+def room_problems(
+    measures: Sequence[Measure], hips_m: float, floor_known: bool
+) -> tuple[Problem, ...]:
+    """What contradicts an upright person of the typed stature; `hips_m`: their height when standing."""
+    if not measures:
+        return ()
+    lean_rad = float(np.median([m.upright_rad for m in measures]))
+    height_m = float(np.median([m.hips_m for m in measures]))
+    scale = float(np.median([np.median(m.lengths) for m in measures]))
+    problems = []
+    if lean_rad > _LEAN_RAD:
+        problems.append(
+            Problem(
+                f"the person leans by {math.degrees(lean_rad):.0f} degrees",
+                "the floor",
+                "lay the board flat on the floor and do the step Room again",
+            )
+        )
+    if floor_known and abs(height_m - hips_m) > _FLOOR_M:
+        way = "above" if height_m > hips_m else "below"
+        problems.append(
+            Problem(
+                f"the person stands {100 * abs(height_m - hips_m):.0f} cm {way} the floor",
+                "the floor",
+                "lay the board on the floor where you stand and do the step Room again",
+            )
+        )
+    if abs(scale - 1.0) > _SCALE:
+        way = "larger" if scale > 1.0 else "smaller"
+        problems.append(
+            Problem(
+                f"the person comes out {100 * abs(scale - 1.0):.0f} % {way} than the stature typed",
+                "the scale",
+                "check the stature, and the size of the board's squares with a ruler",
+            )
+        )
+    return tuple(problems)
+
+
+def verdict_json(verdict: CameraVerdict) -> Mapping[str, object]:
+    """As the page shows it; None for what could not be measured."""
+
+    def figure(value: float, digits: int) -> float | None:
+        return round(value, digits) if math.isfinite(value) else None
+
+    return {
+        "camera": verdict.camera,
+        "grade": verdict.grade.value,
+        "reprojection_px": figure(verdict.reprojection_px, 1),
+        "cm": figure(verdict.cm, 1),
+        "match": figure(verdict.match, 2),
+        "seen": round(verdict.seen, 2),
+        "dropped": round(verdict.dropped, 3),
+        "rate_hz": round(verdict.rate_hz, 1),
+    }
+
+
+def _middle(own: Sequence[CameraMeasure]) -> tuple[float, float, float]:
+    """Middle of px, cm and match: moments of trouble do not count."""
+    if not own:
+        return math.nan, math.nan, math.nan
+    px = float(np.median([np.linalg.norm(one.shift_px) for one in own]))
+    cm = 100.0 * float(np.median([one.shift_m for one in own]))
+    return px, cm, float(np.median([one.match for one in own]))
+
+
+def _grade(value: float, good: float, bad: float) -> Grade:
+    if value <= good:
+        return Grade.GOOD
+    return Grade.DOUBTFUL if value <= bad else Grade.BAD

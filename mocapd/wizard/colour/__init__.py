@@ -1,0 +1,1 @@
+"""The step Colour: pictures frozen, strokes proposed and mended, the light solved."""

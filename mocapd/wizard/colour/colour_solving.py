@@ -1,0 +1,121 @@
+"""From strokes on frozen pictures to each camera's light, and to what the tracker then sees."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.calibrate.colours.colour_solution import personal_colour_model, white_balances
+from mocapd.calibrate.colours.lookalikes import (
+    Lookalike,
+    colours_alone,
+    described,
+    hull_of,
+    lookalikes,
+)
+from mocapd.calibrate.colours.stroke_check import StrokeProblem, check_strokes
+from mocapd.shirt.colour.colour_model import MIN_PIXELS, ColourModel
+from mocapd.shirt.colour.strokes import COLOURS, stroke_means
+from mocapd.trackers.colour.build import colour_model
+from mocapd.trackers.registry import StrokedPicture
+from mocapd.types import Bytes, Floats
+from mocapd.wizard.colour.stroke_images import encode_seen
+
+_SEEN_WIDTH_PX = 640  # of the picture "as the tracker sees it"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """A frozen picture (h,w,3) BGR and the strokes (h,w) on it; shirt (h,w): non-zero on the body that
+    they were proposed from, None when it is not known."""
+
+    pixels: Bytes
+    strokes: Bytes
+    shirt: Bytes | None = None
+
+    @property
+    def picture(self) -> StrokedPicture:
+        """As trackers take it."""
+        return StrokedPicture(self.pixels, self.strokes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraSolution:
+    """What one camera's strokes come to. `drawn` is what it is the solution of.
+
+    W (3,3): None when the strokes are not good enough, and `problems` say why; seen: a PNG of what is
+    read as the shirt, None without W; alike: what else in the picture has its colours, and `note`
+    says so.
+    """
+
+    drawn: Drawn
+    problems: tuple[StrokeProblem, ...]
+    W: Floats | None = None
+    seen: bytes | None = None
+    alike: tuple[Lookalike, ...] = ()
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """By camera; missing: names of the colours without which there is no personal model; personal:
+    whether one was used."""
+
+    cameras: Mapping[str, CameraSolution]
+    personal: bool
+    missing: tuple[str, ...]
+
+
+def solve(
+    drawn: Mapping[str, Drawn], personal: bool, before: Mapping[str, CameraSolution]
+) -> Solution:
+    """Solve all cameras that have strokes; `before`: solutions whose strokes need not be judged again.
+
+    personal: use the wearer's own colours, when every colour has strokes in some camera.
+    """
+    standard = colour_model(())
+    judged = {
+        name: before[name].problems
+        if name in before and before[name].drawn is one
+        else check_strokes(one.pixels, one.strokes, standard)
+        for name, one in drawn.items()
+        if one.strokes.any()
+    }
+    good = {
+        name: drawn[name].picture
+        for name, problems in judged.items()
+        if not any(problem.serious for problem in problems)
+    }
+    W = white_balances(good, standard)
+    missing = _missing(good, standard)
+    model = standard
+    if personal and good and not missing:
+        model = personal_colour_model(good, standard)
+    out = {}
+    for name, problems in judged.items():
+        out[name] = CameraSolution(drawn[name], problems)
+        if name in W:
+            out[name] = _seen(drawn[name], problems, model, W[name])
+    return Solution(out, personal and bool(good) and not missing, missing)
+
+
+def _seen(
+    drawn: Drawn, problems: tuple[StrokeProblem, ...], model: ColourModel, W: Floats
+) -> CameraSolution:
+    shirt = drawn.shirt if drawn.shirt is not None else hull_of(drawn.strokes)
+    found = lookalikes(drawn.pixels, shirt, model, W)
+    h, w = drawn.pixels.shape[:2]
+    step = -(-w // _SEEN_WIDTH_PX)
+    small = np.ascontiguousarray(drawn.pixels[::step, ::step])
+    return CameraSolution(
+        drawn, problems, W, encode_seen(small, colours_alone(small, model, W)),
+        found, described(found, (w, h)),
+    )  # fmt: skip
+
+
+def _missing(pictures: Mapping[str, StrokedPicture], model: ColourModel) -> tuple[str, ...]:
+    """Names of the colours that have too few strokes in all cameras together."""
+    pixels = np.zeros(COLOURS)
+    for one in pictures.values():
+        pixels += stroke_means(one.pixels, one.strokes)[1]
+    return tuple(model.names[k] for k in range(COLOURS) if pixels[k] < MIN_PIXELS)

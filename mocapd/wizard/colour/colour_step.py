@@ -1,0 +1,353 @@
+"""The step Colour: a picture of each camera is frozen, strokes are proposed and corrected, the light is solved.
+
+Its commands are `commands.COLOUR`. The wearer's own colours are used from the start, as soon as every
+colour has strokes: no two printers and dyes agree.
+"""
+
+import math
+import secrets
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from mocapd.body.shirt import standard_shirt
+from mocapd.boundary.numbers import brief
+from mocapd.calibrate.colours.stroke_check import StrokeProblem
+from mocapd.calibrate.colours.stroke_proposal import Proposal
+from mocapd.errors import InputError, MocapdError
+from mocapd.types import Bytes
+from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn, Solution, solve
+from mocapd.wizard.colour.freezing import Countdown, Frozen
+from mocapd.wizard.colour.proposing import LoadDatabase, pose_database, propose
+from mocapd.wizard.colour.stroke_images import decode_strokes, encode_picture, encode_strokes
+from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
+from mocapd.wizard.draft import DraftColours
+from mocapd.wizard.step import (
+    Context,
+    Json,
+    Problem,
+    Scene,
+    Shape,
+    StepName,
+    StepState,
+    StepView,
+    Tell,
+)
+
+_COUNTDOWN_S = 3.0
+_SERVICE = "mocapd"  # who drew proposed strokes
+
+
+@dataclass(slots=True, eq=False)
+class _Canvas:
+    """One camera's picture as the page has it; `serial` grows with every change of the strokes."""
+
+    drawn: Drawn
+    jpeg: bytes
+    png: bytes
+    by: str = _SERVICE
+    serial: int = 0
+
+    def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
+        """These are the strokes now."""
+        self.drawn = replace(self.drawn, strokes=strokes, shirt=shirt)
+        self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
+
+
+class ColourStep:
+    """See the module."""
+
+    name = StepName.COLOUR
+    verbs = COLOUR
+
+    def __init__(self, context: Context, load: LoadDatabase = pose_database) -> None:
+        self._context, self._load = context, load
+        self._id = secrets.token_hex(4)  # keys of pictures differ from those of an earlier visit
+        self._take = 0  # of pictures
+        self._countdown: Countdown | None = None
+        self._now_ns = 0
+        self._canvases: dict[str, _Canvas] = {}
+        self._solution, self._solutions = Solution({}, False, ()), 0
+        self._personal = True
+        self._troubles: tuple[Problem, ...] = ()
+        self._to_propose = False
+        self._to_solve = False
+        self._proposing = False
+
+    # -- Step ------------------------------------------------------------------------------------
+
+    def enter(self) -> None:
+        """What was found before is shown again."""
+        draft = self._context.draft
+        self._context.scene(Scene.T_POSE)
+        if draft.colours:
+            self._personal = draft.personal
+            self._canvases = {
+                name: _canvas(one.pixels, one.strokes) for name, one in draft.colours.items()
+            }
+            self._to_solve = True
+
+    def tick(self, now_ns: int) -> None:
+        """Count down, take the pictures, start the job that waits."""
+        self._now_ns = now_ns
+        if self._countdown is not None:
+            cameras = [camera.id for camera in self._context.draft.cameras]
+            frozen = self._countdown.taken(
+                self._context.hub, cameras or self._context.hub.names, now_ns
+            )
+            if frozen is not None:
+                self._countdown = None
+                self._begin(frozen)
+        if self._context.job is not None:
+            return
+        if self._to_propose:
+            self._start_proposing()
+        elif self._to_solve:
+            self._start_solving()
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Freeze():
+                wait_s = _COUNTDOWN_S if command.seconds is None else command.seconds
+                self._countdown = Countdown(self._now_ns, wait_s)
+            case Propose():
+                if not self._canvases:
+                    raise InputError("there is no picture yet", "colour", "take the pictures first")
+                self._to_propose = True
+            case Strokes():
+                canvas = self._canvas_of(command.camera)
+                h, w = canvas.drawn.pixels.shape[:2]
+                strokes = decode_strokes(command.png_base64, (w, h), command.camera)
+                canvas.draw(strokes, canvas.drawn.shirt, command.by)
+                self._to_solve = True
+            case Personal():
+                self._personal = command.on
+                self._to_solve = True
+
+    def job_failed(self, error: MocapdError) -> None:
+        """Drawing by hand always works."""
+        self._proposing = False
+        self._troubles = (Problem.of(error),)
+
+    def leave(self) -> None:
+        """Nothing stays but the draft."""
+
+    # -- work ------------------------------------------------------------------------------------
+
+    def _begin(self, frozen: Frozen) -> None:
+        """New pictures: old strokes are of no use, and the light may be another."""
+        self._take += 1
+        self._canvases = {name: _canvas(one.pixels) for name, one in frozen.frames.items()}
+        self._solution = Solution({}, False, ())
+        self._troubles = tuple(
+            Problem("this camera gave no picture", name, "check its cable, then take them again")
+            for name in frozen.missing
+        )
+        self._to_solve, self._to_propose = False, bool(self._canvases)
+        self._keep()
+
+    def _start_proposing(self) -> None:
+        self._to_propose, self._proposing = False, True
+        context, take = self._context, self._take
+        serials = {name: one.serial for name, one in self._canvases.items()}
+        pictures = {name: one.drawn.pixels for name, one in self._canvases.items()}
+        draft, cache_dir, load = context.draft, context.cache_dir, self._load
+
+        def job(tell: Tell) -> dict[str, Proposal | InputError]:
+            return propose(pictures, draft, cache_dir, tell, load)
+
+        def done(found: Mapping[str, Proposal | InputError]) -> None:
+            self._proposing = False
+            if take == self._take:
+                self._proposed(found, serials)
+
+        context.start_job(job, done)
+
+    def _proposed(
+        self, found: Mapping[str, Proposal | InputError], serials: Mapping[str, int]
+    ) -> None:
+        """`serials`: of the strokes when it began; what was drawn by hand since then stays."""
+        for name, one in found.items():
+            canvas = self._canvases[name]
+            if isinstance(one, Proposal) and canvas.serial == serials[name]:
+                canvas.draw(one.strokes, one.shirt, _SERVICE)
+        failed = [one for one in found.values() if isinstance(one, InputError)]
+        self._troubles = tuple({str(error): Problem.of(error) for error in failed}.values())
+        self._to_solve = True
+
+    def _start_solving(self) -> None:
+        self._to_solve = False
+        drawn = {name: one.drawn for name, one in self._canvases.items()}
+        personal, before, take = self._personal, self._solution.cameras, self._take
+
+        def done(solution: Solution) -> None:
+            if take == self._take:
+                self._solution, self._solutions = solution, self._solutions + 1
+                self._keep()
+
+        self._context.start_job(lambda tell: _solved(drawn, personal, before, tell), done)
+
+    def _keep(self) -> None:
+        """What is good goes to the draft."""
+        context = self._context
+        colours = {
+            name: DraftColours(one.drawn.pixels, one.drawn.strokes, one.W)
+            for name, one in self._solution.cameras.items()
+            if one.W is not None
+        }
+        context.draft = replace(context.draft, colours=colours, personal=self._solution.personal)
+
+    def _canvas_of(self, camera: str) -> _Canvas:
+        if camera not in self._canvases:
+            raise InputError(f"no picture of {brief(camera)}", "colour", "take the pictures first")
+        return self._canvases[camera]
+
+    # -- view ------------------------------------------------------------------------------------
+
+    def view(self) -> StepView:
+        """See Step."""
+        state, sentence, progress = self._told()
+        pictures: dict[str, bytes] = {}
+        cameras: dict[str, Json] = {}
+        problems = list(self._troubles)
+        overlays: dict[str, tuple[Shape, ...]] = {}
+        for name, canvas in self._canvases.items():
+            solved = self._solution.cameras.get(name)
+            cameras[name] = self._camera_details(name, canvas, solved, pictures)
+            if solved is not None:
+                problems += [_problem(one, name) for one in solved.problems]
+                overlays[name] = _outlines(solved)
+        shirt = standard_shirt()
+        details: dict[str, Json] = {
+            "phase": "countdown" if self._countdown else "frozen" if self._canvases else "aim",
+            "countdown": self._left_s(),
+            "proposing": self._proposing,
+            "colours": [
+                {"id": i + 1, "name": colour, "rgb": shirt.srgb[i].tolist()}
+                for i, colour in enumerate(shirt.colour_names)
+            ],
+            "cameras": cameras,
+            "personal": {
+                "wanted": self._personal,
+                "on": self._solution.personal,
+                "missing": list(self._solution.missing),
+            },
+        }
+        return StepView(
+            state, sentence, progress, tuple(problems), overlays, details, pictures
+        )  # fmt: skip
+
+    def _camera_details(
+        self,
+        name: str,
+        canvas: _Canvas,
+        solved: CameraSolution | None,
+        pictures: dict[str, bytes],
+    ) -> Json:
+        """Also puts the camera's pictures where the page finds them."""
+        base = f"colour-{self._id}-{self._take}-{name}"
+        h, w = canvas.drawn.pixels.shape[:2]
+        picture, strokes = f"{base}.jpg", f"{base}-strokes-{canvas.serial}.png"
+        pictures[picture], pictures[strokes] = canvas.jpeg, canvas.png
+        seen = None
+        if solved is not None and solved.seen is not None:
+            # the bytes also change with the other cameras' strokes: the wearer's colours are common
+            seen = f"{base}-seen-{self._solutions}.png"
+            pictures[seen] = solved.seen
+        return {
+            "size": [w, h],
+            "picture": picture,
+            "strokes": strokes,
+            "by": canvas.by,
+            "seen": seen,
+            "ok": solved is not None and solved.W is not None,
+            "marks": []
+            if solved is None
+            else [list(p) for one in solved.problems for p in one.at_px],
+            "alike": []
+            if solved is None
+            else [{"name": one.name, "at": one.polygon_px.tolist()} for one in solved.alike],
+            "note": "" if solved is None else solved.note,
+        }
+
+    def _left_s(self) -> int:
+        return math.ceil(self._countdown.left_s(self._now_ns)) if self._countdown else 0
+
+    def _told(self) -> tuple[StepState, str, float]:
+        """State, sentence and progress."""
+        many = len(self._context.hub.names) > 1
+        if self._countdown is not None:
+            return StepState.WAITING, f"Hold still, arms out: {self._left_s()}", 0.0
+        if not self._canvases:
+            who = "all cameras see" if many else "the camera sees"
+            return (
+                StepState.FAILED if self._troubles else StepState.WAITING,
+                f"Press “Take the pictures”, then stand where {who} the whole shirt, arms out.",
+                0.0,
+            )
+        job = self._context.job
+        if self._proposing or self._to_propose:
+            what, share = job if job is not None and job[0] else ("starting", 0.0)
+            return StepState.WORKING, f"Finding the shirt: {what}.", share
+        if job is not None or self._to_solve:
+            return StepState.WORKING, "Reading the light from the strokes.", 0.9
+        return self._judged()
+
+    def _judged(self) -> tuple[StepState, str, float]:
+        solved = self._solution.cameras
+        bad = [name for name, one in solved.items() if one.W is None]
+        empty = [name for name in self._canvases if name not in solved]
+        if bad:
+            return (
+                StepState.FAILED,
+                f"The strokes of {_listed(bad)} cannot be right yet: mend them with the brush.",
+                0.5,
+            )
+        if not solved:
+            return (
+                StepState.FAILED if self._troubles else StepState.WAITING,
+                "Choose a colour and paint inside its patch of the shirt, in every picture.",
+                0.3,
+            )
+        if empty:
+            return (
+                StepState.DONE,
+                f"The colours are known, but not for {_listed(empty)}: draw there too, or go on.",
+                1.0,
+            )
+        return (
+            StepState.DONE,
+            "The colours are known. Look at them as the tracker sees them, mend strokes, or go on.",
+            1.0,
+        )
+
+
+def _solved(
+    drawn: Mapping[str, Drawn], personal: bool, before: Mapping[str, CameraSolution], tell: Tell
+) -> Solution:
+    tell("reading the light from the strokes", 0.5)
+    return solve(drawn, personal, before)
+
+
+def _canvas(pixels: Bytes, strokes: Bytes | None = None) -> _Canvas:
+    if strokes is None:
+        strokes = pixels[..., 0] * 0
+    return _Canvas(Drawn(pixels, strokes), encode_picture(pixels), encode_strokes(strokes))
+
+
+def _problem(one: StrokeProblem, camera: str) -> Problem:
+    return Problem(one.what, camera, one.fix)
+
+
+def _outlines(solved: CameraSolution) -> tuple[Shape, ...]:
+    """What has the shirt's colours beside the wearer, outlined and named."""
+    shapes: list[Shape] = []
+    for one in solved.alike:
+        corners = tuple((float(x), float(y)) for x, y in one.polygon_px)
+        shapes.append(Shape("polygon", corners, "hint"))
+        shapes.append(Shape("text", corners[:1], "hint", one.name))
+    return tuple(shapes)
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(names)

@@ -1,0 +1,103 @@
+"""The board lying still: noticed, and its corners averaged over the pictures of it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
+from mocapd.calibrate.extrinsics.world_frame import camera_centres
+from mocapd.calibration.board_spec import centre_m
+from mocapd.types import Floats
+from mocapd.wizard.board.board_watch import Look, Seen
+
+LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
+_SAME_PX = 2.0  # corners this near are of the board at rest
+_FEWEST = 3  # looks to average
+_LEVEL_RAD = 0.9  # from the up that is guessed from the cameras, which look down
+_ROLL_RAD = 0.26  # of a camera about its axis: they stand upright on shelves and tripods
+_UNDER_M = 0.1  # the floor is so far under the places where the board was held
+_ABOVE_M = 0.2  # the lowest camera is so far above the floor
+
+
+class BoardAtRest:
+    """Collects looks for as long as the board does not move."""
+
+    def __init__(self) -> None:
+        self._looks: list[Look] = []
+        self._seen: dict[str, list[Seen]] = {}
+
+    @property
+    def since_ns(self) -> int:
+        """How long it has been at rest [ns]."""
+        return self._looks[-1].t_ns - self._looks[0].t_ns if self._looks else 0
+
+    @property
+    def seen(self) -> bool:
+        """Whether it is at rest in some camera and there are enough pictures of it."""
+        return len(self._looks) >= _FEWEST
+
+    def take(self, look: Look, still: Mapping[str, bool]) -> None:
+        """A further look; `still[camera]`: whether the board is at rest in it."""
+        at_rest = {name: seen for name, seen in look.seen.items() if still[name]}
+        if not at_rest:
+            self.forget()
+            return
+        if any(self._moved(name, seen) for name, seen in at_rest.items()):
+            self.forget()
+        self._looks.append(look)
+        for name, seen in at_rest.items():
+            self._seen.setdefault(name, []).append(seen)
+
+    def forget(self) -> None:
+        """It has moved."""
+        self._looks, self._seen = [], {}
+
+    def views(self) -> dict[str, BoardView]:
+        """By camera the mean of its corners, under the index of the newest look."""
+        index = self._looks[-1].index
+        return {name: _mean([seen.view for seen in own], index) for name, own in self._seen.items()}
+
+    def _moved(self, name: str, seen: Seen) -> bool:
+        before = self._seen.get(name)
+        if not before:
+            return False
+        _, then, now = np.intersect1d(before[0].view.ids, seen.view.ids, return_indices=True)
+        shift = seen.view.corners_px[now] - before[0].view.corners_px[then]
+        return not len(now) or float(np.median(np.linalg.norm(shift, axis=1))) > _SAME_PX
+
+
+def _mean(views: list[BoardView], index: int) -> BoardView:
+    ids, counts = np.unique(np.concatenate([view.ids for view in views]), return_counts=True)
+    ids = ids[2 * counts >= len(views)]
+    rows = [
+        np.stack([view.corners_px[view.ids == one][0] for view in views if one in view.ids])
+        for one in ids
+    ]
+    corners_px = np.stack([row.mean(axis=0) for row in rows])
+    return replace(views[-1], index=index, ids=ids, corners_px=corners_px)
+
+
+def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
+    """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
+    scene = room.bundle.scene
+    lying = with_board(room, -1, views).bundle.scene
+    R, t_m = lying.board_turn[-1], lying.board_t_m[-1]
+    up = -R[:, 2]
+    upright = -scene.camera_turn[:, 1].sum(axis=0)
+    level = float(up @ upright) / float(np.linalg.norm(upright)) > np.cos(_LEVEL_RAD)
+    rolls = np.abs(np.arcsin(np.clip(scene.camera_turn[:, 0] @ up, -1.0, 1.0)))
+    height_m = float((R @ centre_m(room.spec) + t_m) @ up)
+    above = float((camera_centres(scene) @ up).min()) - height_m > _ABOVE_M
+    return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
+
+
+def _lowest_m(room: SolvedRoom, up: Floats) -> float:
+    """The height under which the board is lower than wherever it was held."""
+    if not room.indices:
+        return float("inf")
+    scene = room.bundle.scene
+    middles = scene.board_turn @ centre_m(room.spec) + scene.board_t_m
+    # not the very lowest: some may be wrong
+    return float(np.percentile(middles @ up, 20)) - _UNDER_M

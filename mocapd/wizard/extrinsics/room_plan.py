@@ -1,0 +1,38 @@
+"""The room seen from above, for the page: cameras, where they look, and where the board was."""
+
+import numpy as np
+
+from mocapd.calibrate.extrinsics.board_extrinsics import PlacedRoom, SolvedRoom
+from mocapd.calibration.board_spec import centre_m
+from mocapd.geometry.cameras import centre
+from mocapd.types import Rig
+from mocapd.wizard.step import Json
+
+
+def plan_of(room: SolvedRoom, made: PlacedRoom) -> dict[str, Json]:
+    """Metres in the world: x to the right of a person at rest facing +z is negative, see types.py."""
+    scene = room.bundle.scene
+    first = made.rig.cameras[0]
+    # the scene's frame is the first camera's as it was at first; its own pose undoes what moved it
+    turn = first.R.T @ scene.camera_turn[0]
+    shift_m = first.R.T @ (scene.camera_t_m[0] - first.t_m)
+    middles = scene.board_turn @ centre_m(room.spec) + scene.board_t_m
+    boards = middles @ turn.T + shift_m
+    return {**plan_of_cameras(made.rig), "boards_m": np.round(boards, 3).tolist()}
+
+
+def plan_of_cameras(rig: Rig) -> dict[str, Json]:
+    """The cameras alone."""
+    return {
+        "cameras": [
+            {
+                "id": camera.name,
+                "at_m": np.round(centre(camera), 3).tolist(),
+                "towards": np.round(camera.R[2], 3).tolist(),
+                "half_angle_rad": round(
+                    float(np.arctan(0.5 * camera.size_px[0] / camera.K[0, 0])), 3
+                ),
+            }
+            for camera in rig.cameras
+        ]
+    }

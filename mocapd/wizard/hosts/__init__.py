@@ -1,0 +1,1 @@
+"""The process around a setup: its own, or the running daemon."""

@@ -1,0 +1,201 @@
+"""What serves the page while a daemon runs: its cameras and bodies, and a setup when somebody asks for one."""
+
+import logging
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.capture.webcam.listing import list_cameras
+from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
+from mocapd.config.sections import Config
+from mocapd.errors import MocapdError, UnavailableError
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.daemon import Daemon, Snapshot
+from mocapd.session.session import SIM, Session
+from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.same_port import Moved, moved_cameras, same_camera
+from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.saving import load_draft
+from mocapd.wizard.setup_keeper import SetupKeeper
+from mocapd.wizard.steps import SetupCameras, all_steps
+from mocapd.wizard.wizard import Wizard
+
+FORGOTTEN_S = 120.0  # a setup that no page has looked at for so long is ended [s]
+_SIZE_PX = (640, 480)  # of a camera that does not tell
+
+_log = logging.getLogger(__name__)
+
+
+class DaemonHost:
+    """A Host (see web.host) over one daemon after another: `serve` each, `rest` in between.
+
+    `saved` is set when a setup has saved its calibration.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self._config = config
+        self.saved = threading.Event()
+        self._lock = threading.Lock()  # guards what follows
+        self._run: tuple[Daemon, Session] | None = None
+        self._wizard: Wizard | None = None
+        self._locks: CameraLocks | None = None
+        self._checked = NewestBody()  # by the setup's own tracker, while its step Check runs one
+        self._looked_s = 0.0
+
+    # -- the owner's -----------------------------------------------------------------------------
+
+    def serve(self, daemon: Daemon, session: Session) -> None:
+        """This daemon runs now."""
+        with self._lock:
+            self._run = daemon, session
+        self.saved.clear()
+
+    def rest(self) -> None:
+        """It is about to end: so does a setup on its cameras."""
+        with self._lock:
+            self._run = None
+        self._end_setup()
+
+    def beat(self) -> None:
+        """About once a second: a setup that was left behind gives the cameras back what it took."""
+        if self._wizard is not None and time.monotonic() - self._looked_s > FORGOTTEN_S:
+            _log.info("the setup is ended: no page has looked at it for %g s", FORGOTTEN_S)
+            self._end_setup()
+
+    # -- Host ------------------------------------------------------------------------------------
+
+    @property
+    def hub(self) -> FrameHub | None:
+        """See Host."""
+        run = self._run
+        return run[0].hub if run is not None else None
+
+    @property
+    def rig(self) -> Rig | None:
+        """See Host."""
+        run, wizard = self._run, self._wizard
+        if wizard is not None and self._checked.loop is not None:
+            return wizard.draft.rig
+        return run[1].rig if run is not None else None
+
+    @property
+    def wizard(self) -> Wizard | None:
+        """See Host."""
+        self._looked_s = time.monotonic()
+        return self._wizard
+
+    def setup(self) -> Wizard:
+        """See Host."""
+        with self._lock:
+            if self._run is None:
+                raise UnavailableError(
+                    "the cameras are being opened", "the daemon", "try again in a few seconds"
+                )
+            if self._wizard is None:
+                self._looked_s = time.monotonic()
+                self._wizard = self._begun(*self._run)
+            return self._wizard
+
+    def body(self) -> tuple[BodyState, Skeleton] | None:
+        """See Host."""
+        run = self._run
+        if self._checked.loop is not None:
+            return self._checked.body
+        return run[0].newest if run is not None else None
+
+    def snapshot(self) -> Snapshot | None:
+        """See Host."""
+        run = self._run
+        return run[0].snapshot() if run is not None else None
+
+    # -- the setup -------------------------------------------------------------------------------
+
+    def _begun(self, daemon: Daemon, session: Session) -> Wizard:
+        config = self._config
+        self._locks = CameraLocks(camera.source for camera in session.cameras)
+        state_dir = state_dir_of(config, session)
+        cameras, draft = _with_what_was_saved(_cameras_of(session, config), state_dir)
+        moved = _moved(draft)
+        for one in moved:
+            draft = same_camera(draft, one)
+        sources = {one.id: one.source for one in draft.cameras}
+        cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
+        steps = all_steps(
+            SetupCameras(cameras, list_cameras, self._locks, moved),
+            CheckSettings(config.tracker, config.smoothing.preset),
+            self._checked,
+            daemon.died,
+        )
+        wizard = Wizard(
+            daemon.hub,
+            steps,
+            daemon.statuses,
+            state_dir,
+            config.cache_dir,
+            daemon.died,
+            draft=draft,
+            on_saved=self.saved.set,
+            keeper=SetupKeeper(state_dir, draft, self._locks),
+        )
+        wizard.start()
+        return wizard
+
+    def _end_setup(self) -> None:
+        with self._lock:
+            wizard, self._wizard = self._wizard, None
+            locks, self._locks = self._locks, None
+        if wizard is not None:
+            wizard.stop(0.5)
+        if locks is not None:
+            locks.restore()
+
+
+def state_dir_of(config: Config, session: Session) -> Path:
+    """Where a setup is saved; what simulated cameras give never takes the place of a real calibration."""
+    if session.rig_source == str(config.state_dir / FILE_NAME):
+        return config.state_dir
+    simulated = any(camera.spec.startswith(SIM) for camera in session.cameras)
+    return config.state_dir / "demo" if simulated else config.state_dir
+
+
+def _cameras_of(session: Session, config: Config) -> tuple[DraftCamera, ...]:
+    """The daemon's cameras as a draft has them."""
+    asked = {camera.id: camera for camera in config.camera}
+    found = []
+    for one in session.cameras:
+        name = one.source.name
+        size_px = one.size_px if any(one.size_px) else _SIZE_PX
+        camera = DraftCamera(name, one.address, size_px, one.expected_hz or 30.0)
+        if name in asked:
+            camera = replace(camera, controls=asked[name].controls)
+        found.append(camera)
+    return tuple(found)
+
+
+def _with_what_was_saved(
+    cameras: tuple[DraftCamera, ...], state_dir: Path
+) -> tuple[tuple[DraftCamera, ...], Draft]:
+    """The cameras as they were locked before, and the saved calibration when it is of just these."""
+    try:
+        saved = load_draft(state_dir)
+    except MocapdError as error:  # none yet, or a damaged one
+        _log.info("the setup begins from nothing: %s", error)
+        return cameras, Draft(cameras=cameras)
+    before = {(one.id, one.source): one for one in saved.cameras}
+    cameras = tuple(before.get((one.id, one.source), one) for one in cameras)
+    if set(cameras) == set(saved.cameras):
+        return cameras, replace(saved, cameras=cameras)
+    # what was typed once need not be typed again
+    return cameras, Draft(cameras=cameras, board=saved.board, stature_m=saved.stature_m)
+
+
+def _moved(draft: Draft) -> tuple[Moved, ...]:
+    """What the daemon itself has taken for the same camera, to be asked about."""
+    nodes = video_nodes(SYSFS, DEV)
+    present = dict.fromkeys(node.identity for node in nodes if node.identity is not None)
+    return moved_cameras(draft.cameras, tuple(present))

@@ -1,0 +1,78 @@
+"""The cameras of a setup by itself: opened, and their pictures in one hub."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+from mocapd.capture.base import Source
+from mocapd.capture.from_config import open_source
+from mocapd.capture.pace import Pace
+from mocapd.capture.thread import CaptureStatus, CaptureThread
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.webcam.v4l2 import WebcamSettings
+from mocapd.errors import MocapdError
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.wizard.draft import DraftCamera
+
+STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
+
+
+class OpenCameras:
+    """Captures from `start` to `stop`. Trouble with a camera is a state of it, and does not end the rest.
+
+    `died` hears of what nobody expected. Used by one thread, except `statuses`.
+    """
+
+    def __init__(
+        self,
+        cameras: Sequence[DraftCamera],
+        died: Callable[[BaseException], None],
+        sources: Mapping[str, Source] | None = None,
+    ) -> None:
+        """sources: by id, where they exist already. Raises ConfigError or InputError for a source that
+        cannot be."""
+        self.cameras = tuple(cameras)
+        self.hub = FrameHub(camera.id for camera in cameras)
+        self._died = died
+        self._pace = Pace(live=True)  # recordings start together and keep their own time
+        given = sources or {}
+        self.sources = tuple(given.get(one.id) or self._source(one) for one in cameras)
+        self._captures = {
+            one.id: self._thread(source, one)
+            for one, source in zip(cameras, self.sources, strict=True)
+        }
+
+    def start(self) -> None:
+        """Begin; returns at once."""
+        for capture in self._captures.values():
+            capture.start()
+
+    def statuses(self) -> Mapping[str, CaptureStatus]:
+        """How each camera fares, by id; from any thread."""
+        return {name: capture.status() for name, capture in self._captures.items()}
+
+    def stop(self) -> None:
+        """First everything lets go, then everything ends."""
+        for capture in self._captures.values():
+            capture.let_go()
+        until_s = time.monotonic() + STOP_S
+        for capture in self._captures.values():
+            capture.stop(max(0.0, until_s - time.monotonic()))
+
+    def _thread(self, source: Source, camera: DraftCamera) -> CaptureThread:
+        expected_hz = None if source.recorded else camera.fps_hz
+        return CaptureThread(source, self.hub, self._ended, expected_hz)
+
+    def _source(self, camera: DraftCamera) -> Source:
+        settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
+        others = tuple(
+            parse_identity(one.source)
+            for one in self.cameras
+            if one.id != camera.id and one.source.startswith(PREFIX)
+        )
+        return open_source(
+            camera.source, camera.id, settings=settings, others=others, pace=self._pace
+        )
+
+    def _ended(self, error: BaseException) -> None:
+        if not isinstance(error, MocapdError):  # those the camera's status tells
+            self._died(error)

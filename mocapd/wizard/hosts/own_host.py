@@ -1,0 +1,126 @@
+"""What serves the page when no daemon runs: the cameras and the setup, nothing else."""
+
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from mocapd.capture.base import Source
+from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.errors import MocapdError
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.daemon import Snapshot, ThreadDiedError
+from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.cameras.same_port import Moved
+from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.hosts.open_cameras import OpenCameras
+from mocapd.wizard.newest_body import NewestBody
+from mocapd.wizard.setup_keeper import SetupKeeper
+from mocapd.wizard.step import Scene, StepName
+from mocapd.wizard.steps import SetupCameras, all_steps, only
+from mocapd.wizard.wizard import Wizard
+
+
+class OwnHost:
+    """A Host (see web.host) from `start` to `stop`, used by its owner; `ended` by any thread."""
+
+    def __init__(
+        self,
+        draft: Draft,
+        settings: CheckSettings,
+        state_dir: Path,
+        cache_dir: Path,
+        step: StepName | None = None,
+        sources: Mapping[str, Source] | None = None,
+        scene: Callable[[Scene], object] | None = None,
+        nodes: Callable[[], tuple[CameraInfo, ...]] = tuple,
+        moved: tuple[Moved, ...] = (),
+    ) -> None:
+        """draft: what is known, with the cameras to open; step: the one to do, None for all of them;
+        sources: the draft's cameras by id where they exist already; nodes: lists what else is plugged
+        in; moved: see SetupCameras. Raises ConfigError or InputError."""
+        self._over = threading.Event()
+        self._saved = threading.Event()
+        self._death: BaseException | None = None
+        self._cameras = OpenCameras(draft.cameras, self.died, sources)
+        self._locks = CameraLocks(self._cameras.sources)
+        self._shown = NewestBody()
+        of_cameras = SetupCameras(draft.cameras, nodes, self._locks, moved)
+        steps = all_steps(of_cameras, settings, self._shown, self.died)
+        self.wizard = Wizard(
+            self._cameras.hub,
+            steps if step is None else only(steps, step),
+            self._cameras.statuses,
+            state_dir,
+            cache_dir,
+            self.died,
+            scene=scene,
+            first=step or StepName.CAMERAS,
+            draft=draft,
+            on_saved=self._saved.set,
+            # one step done again is not worth an offer: it would be of the whole setup
+            keeper=SetupKeeper(state_dir, draft, self._locks) if step is None else None,
+        )
+
+    def start(self) -> None:
+        """Begin; returns at once."""
+        self._cameras.start()
+        self.wizard.start()
+
+    def stop(self) -> None:
+        """End: the setup first, so that the cameras get back what they held before."""
+        self.wizard.stop()
+        self._locks.restore()
+        self._cameras.stop()
+
+    def died(self, error: BaseException) -> None:
+        """A thread ended by what nobody expected: so must the process."""
+        self._death = self._death or error
+        self._over.set()
+
+    def end(self) -> None:
+        """Make `wait` return; from any thread or a signal handler."""
+        self._over.set()
+
+    def wait(self, timeout_s: float) -> bool:
+        """Whether it is over. Raises the MocapdError that killed a thread, ThreadDiedError for anything
+        else."""
+        over = self._over.wait(timeout_s)
+        if isinstance(self._death, MocapdError):
+            raise self._death
+        if self._death is not None:
+            raise ThreadDiedError from self._death
+        return over
+
+    @property
+    def saved(self) -> bool:
+        """Whether the draft has been written."""
+        return self._saved.is_set()
+
+    # -- Host ------------------------------------------------------------------------------------
+
+    @property
+    def hub(self) -> FrameHub:
+        """See Host."""
+        return self._cameras.hub
+
+    @property
+    def rig(self) -> Rig | None:
+        """See Host."""
+        return self.wizard.draft.rig
+
+    def setup(self) -> Wizard:
+        """See Host."""
+        return self.wizard
+
+    def body(self) -> tuple[BodyState, Skeleton] | None:
+        """See Host."""
+        return self._shown.body
+
+    def snapshot(self) -> Snapshot | None:
+        """See Host."""
+        loop = self._shown.loop
+        if loop is None:
+            return None
+        return Snapshot(loop.metrics(), dict(self._cameras.statuses()), {})

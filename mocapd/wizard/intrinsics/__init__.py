@@ -1,0 +1,1 @@
+"""The step Lens: each camera's intrinsics from views of the board."""

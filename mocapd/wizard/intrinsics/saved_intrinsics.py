@@ -1,0 +1,161 @@
+"""Lenses of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
+
+from collections.abc import Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import numpy as np
+
+from mocapd.boundary.files import MissingError, read_text
+from mocapd.boundary.messages import convert, parse_toml
+from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibration.toml_text import toml_text
+from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.errors import CannotCreateError, ConfigError, MocapdError
+from mocapd.whole_file import whole_file
+from mocapd.wizard.draft import Draft, DraftCamera
+
+FILE_NAME = "lenses.toml"
+SCHEMA = 1
+_HEADER = """\
+# Lenses that mocapd's setup measured, offered when a camera of the same vid:pid:serial is used in the
+# same mode again. K and dist (k1 k2 p1 p2 k3) are in pixels. A part taken out is measured anew.
+
+"""
+_FIX = "take the file away: lenses are measured anew"
+
+_MOST_BYTES = 8 << 20
+
+Finite = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]  # NaN is in no range
+NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e9)]
+Pixels = Annotated[int, msgspec.Meta(ge=16, le=100_000)]
+Row3 = tuple[Finite, Finite, Finite]
+Row5 = tuple[Finite, Finite, Finite, Finite, Finite]
+Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e9)]
+
+
+class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
+    """camera: vid:pid:serial; focus: what its focus was locked to; when: UTC."""
+
+    camera: str
+    size_px: tuple[Pixels, Pixels]
+    when: datetime
+    focus: Annotated[int, msgspec.Meta(ge=-(1 << 31), lt=1 << 31)] | None = None
+    views: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
+    rms_px: NotNegative
+    held_out_px: NotNegative
+    focal_deviation: Positive
+    free: tuple[bool, bool, bool, bool, bool]
+    K: tuple[Row3, Row3, Row3]
+    dist: Row5
+
+    def __post_init__(self) -> None:
+        if not (self.K[0][0] > 0.0 and self.K[1][1] > 0.0 and self.K[2] == (0.0, 0.0, 1.0)):
+            raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
+
+    def lens(self) -> Lens:
+        """As the lens step finds one."""
+        return Lens(
+            self.size_px,
+            np.array(self.K),
+            np.array(self.dist),
+            np.array(self.free),
+            self.rms_px,
+            self.held_out_px,
+            (),
+            (),
+            self.focal_deviation,
+        )
+
+
+class _File(msgspec.Struct, frozen=True):
+    schema: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
+    lens: tuple[SavedLens, ...] = ()
+
+
+def key_of(camera: DraftCamera) -> str | None:
+    """vid:pid:serial; None for a camera that has none, whose lens cannot be known again."""
+    if not camera.source.startswith(PREFIX):
+        return None
+    return ":".join(parse_identity(camera.source).model)
+
+
+def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
+    """All that were saved; none without the file. Raises ConfigError when it is damaged."""
+    path = state_dir / FILE_NAME
+    try:
+        file: _File = convert(parse_toml(read_text(path, _MOST_BYTES)), _File)
+    except MissingError:
+        return ()
+    except MocapdError as error:
+        raise ConfigError(f"cannot be read ({error.what})", str(path), _FIX) from None
+    if file.schema != SCHEMA:
+        raise ConfigError(f"has schema {file.schema}, not {SCHEMA}", str(path), _FIX)
+    return file.lens
+
+
+def lens_for(camera: DraftCamera, saved: tuple[SavedLens, ...]) -> SavedLens | None:
+    """The one measured of this camera in this mode, with the same focus where that is known."""
+    key = key_of(camera)
+    for one in saved:
+        same = one.camera == key and one.size_px == camera.size_px
+        if same and (
+            None in (one.focus, camera.controls.focus) or one.focus == camera.controls.focus
+        ):
+            return one
+    return None
+
+
+def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
+    """Add the draft's new lenses; one of the same camera and mode is replaced, others stay.
+
+    For when the calibration is saved. Raises CannotCreateError, ConfigError.
+    """
+    new = [
+        _saved(key, camera, draft.lenses[camera.id], when)
+        for camera in draft.cameras
+        if (key := key_of(camera)) is not None
+        and camera.id in draft.lenses
+        and camera.id not in draft.lens_saved
+    ]
+    if not new:
+        return
+    made = {(one.camera, one.size_px) for one in new}
+    kept = [one for one in read_lenses(state_dir) if (one.camera, one.size_px) not in made]
+    data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
+    path = state_dir / FILE_NAME
+    try:
+        state_dir.mkdir(parents=True, exist_ok=True)
+        with whole_file(path) as partial:
+            partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
+    except OSError as error:
+        raise CannotCreateError(
+            f"cannot be written ({error.strerror})", str(path), "make room on the disk"
+        ) from None
+
+
+def _saved(key: str, camera: DraftCamera, lens: Lens, when: datetime) -> SavedLens:
+    K: tuple[Row3, Row3, Row3] = msgspec.convert(
+        np.round(lens.K, 4).tolist(), tuple[Row3, Row3, Row3]
+    )
+    dist: Row5 = msgspec.convert(np.round(lens.dist, 7).tolist(), Row5)
+    return SavedLens(
+        camera=key,
+        size_px=camera.size_px,
+        when=when.replace(microsecond=0),
+        focus=camera.controls.focus,
+        views=len(lens.views),
+        rms_px=round(lens.rms_px, 4),
+        held_out_px=round(lens.held_out_px, 4),
+        focal_deviation=max(round(lens.focal_deviation, 6), 1e-6),
+        free=tuple(lens.free.tolist()),
+        K=K,
+        dist=dist,
+    )
+
+
+def _table(one: SavedLens) -> Mapping[str, object]:
+    table: dict[str, object] = msgspec.to_builtins(one, builtin_types=(datetime,))
+    return table
