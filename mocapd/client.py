@@ -32,7 +32,7 @@ POLL_S = 0.002  # how often `Client.wait` looks [s]
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointPose:
     """One bone: position in the world [m], rotation relative to the T-pose and to its parent bone.
 
     `confidence` 0..1 is near 0 for a joint that no camera sees.
@@ -46,7 +46,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A person at one instant: `body["leftHand"]` is a Joint, by VRM 1.0 bone name.
+    """A person at one instant: `body["leftHand"]` is a JointPose, by VRM 1.0 bone name.
 
     `frame` is the message as it was sent. While `tracked` is false there are no joints.
     """
@@ -69,7 +69,7 @@ class Body:
         return self.frame.seq
 
     @property
-    def joints(self) -> Mapping[str, Joint]:
+    def joints(self) -> Mapping[str, JointPose]:
         """All joints by name."""
         return {name: self[name] for name in self.frame.joints}
 
@@ -83,10 +83,10 @@ class Body:
         """From the middle of the exposure until now [s]; on two machines as good as their clocks."""
         return (time.time_ns() - self.frame.capture_unix_ns) * 1e-9
 
-    def __getitem__(self, name: str) -> Joint:
+    def __getitem__(self, name: str) -> JointPose:
         """Raises KeyError for a bone that the frame has not, as every bone while not tracked."""
         joint = self.frame.joints[name]
-        return Joint(joint.p, joint.r, joint.l, joint.c)
+        return JointPose(joint.p, joint.r, joint.l, joint.c)
 
     def __contains__(self, name: object) -> bool:
         return name in self.frame.joints

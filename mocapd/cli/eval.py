@@ -13,7 +13,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
-    from mocapd.evaluate.runs import Findings
+    from mocapd.evaluate.runs import EvaluationResults
 
 _COMPARABLE = "colour"
 
@@ -99,7 +99,9 @@ def evaluate_captures(
         def build(inputs: TrackerInputs) -> Tracker:
             return build_tracker(name, with_cache(inputs, effective.cache_dir, progress))
 
-        setting = runs.Setting(build, effective.tracker.stature_m, joints.value, progress)
+        setting = runs.EvaluationSettings(
+            build, effective.tracker.stature_m, joints.value, progress
+        )
         if compare is None:
             results = runs.run(cases, variant.value, setting)
             title = name if name != _COMPARABLE else f"{name}, variant {variant.value}"
@@ -113,7 +115,7 @@ def evaluate_captures(
             typer.echo(f"{path}: written", err=True)
 
 
-def _print(findings: "Findings", as_json: bool) -> None:
+def _print(findings: "EvaluationResults", as_json: bool) -> None:
     from mocapd.evaluate import report
 
     if as_json:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from mocapd.errors import CannotCreateError
 from mocapd.evaluate.report import comparison_tables, roc_table, score_table
-from mocapd.evaluate.runs import Findings
+from mocapd.evaluate.runs import EvaluationResults
 
 PAGE = "evaluation.md"
 SHOULDER_PLOT = "images/eval_shoulder.png"
@@ -79,7 +79,7 @@ each colour as the camera sees it, and it knows the background.
 """
 
 
-def page(findings: Findings, command: str) -> str:
+def page(findings: EvaluationResults, command: str) -> str:
     """The page as Markdown."""
     parts = [
         _HEAD.format(
@@ -98,7 +98,7 @@ def page(findings: Findings, command: str) -> str:
     return "".join(parts)
 
 
-def write_page(directory: Path, findings: Findings, command: str) -> list[Path]:
+def write_page(directory: Path, findings: EvaluationResults, command: str) -> list[Path]:
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.compare import shoulder_angles

@@ -12,7 +12,7 @@ from mocapd.session.tracker_setup import Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Setting:
+class EvaluationSettings:
     """What holds for every capture. `stature_m` is for those that do not say; `progress` is told what
     is being done, how far, and how far it goes."""
 
@@ -23,7 +23,7 @@ class Setting:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Findings:
+class EvaluationResults:
     """Everything that was measured; `comparison` and `rocs` are empty unless it was compared."""
 
     tracker: str
@@ -38,7 +38,7 @@ class Findings:
         return sum((roc for _, roc in self.rocs), no_roc())
 
 
-def run(cases: Sequence[Case], variant: str, setting: Setting) -> list[CaptureResult]:
+def run(cases: Sequence[Case], variant: str, setting: EvaluationSettings) -> list[CaptureResult]:
     """Every capture with one variant of the tracker."""
     return [
         evaluate(
@@ -56,7 +56,7 @@ def run(cases: Sequence[Case], variant: str, setting: Setting) -> list[CaptureRe
     ]
 
 
-def compare(cases: Sequence[Case], tracker: str, setting: Setting) -> Findings:
+def compare(cases: Sequence[Case], tracker: str, setting: EvaluationSettings) -> EvaluationResults:
     """Every capture with every variant, and the classifiers over the labelled frames."""
     # the colour tracker is a second to import, and needed only here
     from mocapd.evaluate.roc_of_capture import roc_of_capture
@@ -67,7 +67,7 @@ def compare(cases: Sequence[Case], tracker: str, setting: Setting) -> Findings:
     for done, result in enumerate(labelled, start=1):
         rocs.append((result.case.name, roc_of_capture(result, setting.stature_m)))
         setting.progress("classifying labelled frames", done, len(labelled))
-    return Findings(
+    return EvaluationResults(
         f"{tracker}, variant {FULL}", setting.joints, comparison[FULL], comparison, rocs
     )
 

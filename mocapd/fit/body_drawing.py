@@ -51,7 +51,7 @@ class Outline:
     sleeves: Ints
 
 
-class Drawing:
+class IdMapRenderer:
     """Draws one body into one camera. Results are in its own buffers, until the next drawing."""
 
     def __init__(self, shaper: Shaper, camera: Camera, factor: int) -> None:

@@ -7,7 +7,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.fit.body_drawing import Drawing
+from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.idmap_term_kernels import (
     AlignmentSums,
     ComparedPictures,
@@ -43,7 +43,7 @@ class CameraRows:
 
     def gather(
         self,
-        drawing: Drawing,
+        drawing: IdMapRenderer,
         body: Shaped,
         pictures: ComparedPictures,
         search: Search,

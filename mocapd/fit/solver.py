@@ -15,7 +15,7 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.body_drawing import Drawing, Roi
+from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, spiral
@@ -101,7 +101,9 @@ class Fitter:
         """`factors`: by how much each camera's frames are averaged down to work pictures."""
         self.model, self.params = model, params
         self.shaper = Shaper(model)
-        self.drawings = [Drawing(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)]
+        self.drawings = [
+            IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)
+        ]
         self._rows = [CameraRows(model) for _ in cameras]
         self._spiral = spiral(params.first_radius_px)
         self._spiral_r2 = (self._spiral**2).sum(axis=1)

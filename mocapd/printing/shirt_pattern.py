@@ -30,7 +30,7 @@ HalfPlane = tuple[Floats, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Measures:
+class ShirtMeasures:
     """A wearer of one size [mm]; `arm_joints`: from shoulder joint to shoulder joint; `armhole` and
     `cuff`: round the finished sleeve; `neck`: width of the neckline."""
 
@@ -47,11 +47,11 @@ class Measures:
 # wear them. Widths and sleeve girths are graded evenly, as ready-made knitted shirts are; no standard
 # gives them.
 SIZES = {
-    "S": Measures(1680, 900, 350, 410, 210, 150),
-    "M": Measures(1740, 980, 370, 430, 220, 156),
-    "L": Measures(1800, 1060, 390, 460, 230, 162),
-    "XL": Measures(1840, 1140, 410, 490, 240, 168),
-    "XXL": Measures(1880, 1240, 430, 520, 250, 174),
+    "S": ShirtMeasures(1680, 900, 350, 410, 210, 150),
+    "M": ShirtMeasures(1740, 980, 370, 430, 220, 156),
+    "L": ShirtMeasures(1800, 1060, 390, 460, 230, 162),
+    "XL": ShirtMeasures(1840, 1140, 410, 490, 240, 168),
+    "XXL": ShirtMeasures(1880, 1240, 430, 520, 250, 174),
 }
 
 
@@ -104,7 +104,7 @@ class _Draft:
     cuff: float
 
 
-def measures_of(size: str) -> Measures:
+def measures_of(size: str) -> ShirtMeasures:
     """By the letter, in any case. Raises ConfigError for another."""
     try:
         return SIZES[size.upper()]
@@ -114,7 +114,7 @@ def measures_of(size: str) -> Measures:
         ) from None
 
 
-def pieces_of(measures: Measures) -> tuple[Piece, Piece, Piece, Piece]:
+def pieces_of(measures: ShirtMeasures) -> tuple[Piece, Piece, Piece, Piece]:
     """Front, back, left sleeve and right sleeve."""
     draft = _draft(measures)
     return (
@@ -125,7 +125,7 @@ def pieces_of(measures: Measures) -> tuple[Piece, Piece, Piece, Piece]:
     )
 
 
-def _draft(measures: Measures) -> _Draft:
+def _draft(measures: ShirtMeasures) -> _Draft:
     rest_mm = skeleton_of(mean_shape(measures.stature / 1000)).rest_m * 1000
     hips, neck, arm, elbow, wrist = (
         rest_mm[INDEX[name]]

@@ -28,8 +28,8 @@ from mocapd.printing.shirt_drawing import (
 from mocapd.printing.shirt_pattern import (
     HEM_MM,
     SEAM_MM,
-    Measures,
     Piece,
+    ShirtMeasures,
     measures_of,
     pieces_of,
 )
@@ -114,7 +114,7 @@ def _keep_for_sewing(canvas: Canvas, piece: Piece, form: str) -> None:
 
 
 def _overview(
-    canvas: Canvas, page_mm: Size, size: str, measures: Measures, pieces: Tiled, layout: str
+    canvas: Canvas, page_mm: Size, size: str, measures: ShirtMeasures, pieces: Tiled, layout: str
 ) -> None:
     width, height = page_mm
     shirt = standard_shirt()
@@ -130,7 +130,7 @@ def _overview(
     write_text(canvas, (_EDGE_MM + 108, 12.0 + RULER_HEIGHT_MM / 2), says, 2.6, font=BOLD)
 
 
-def _measures_line(m: Measures) -> str:
+def _measures_line(m: ShirtMeasures) -> str:
     figures = {"stature": m.stature, "chest": m.chest, "sleeve round": m.armhole, "cuff": m.cuff}
     return "For a wearer of about: " + ", ".join(f"{k} {v / 10:g} cm" for k, v in figures.items())
 

@@ -67,7 +67,7 @@ class CameraSpec(_Table, frozen=True, kw_only=True):
     dropped: Fraction = 0.0  # fraction of frames that never arrive
 
 
-class Body(_Table, frozen=True, kw_only=True):
+class BodySpec(_Table, frozen=True, kw_only=True):
     """The person: stature, and factors on the mean body of that stature."""
 
     stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.3)] = 1.75
@@ -80,7 +80,7 @@ class Body(_Table, frozen=True, kw_only=True):
     arm_girth: Ratio = 1.0
 
 
-class Keyframe(_Table, frozen=True, kw_only=True):
+class PoseKeyframe(_Table, frozen=True, kw_only=True):
     """A pose that the motion passes through. Arm directions are in the frame of the chest."""
 
     t_s: NotNegative
@@ -103,10 +103,10 @@ class Oscillation(_Table, frozen=True, kw_only=True):
     to_s: Positive
 
 
-class Motion(_Table, frozen=True, kw_only=True):
+class MotionSpec(_Table, frozen=True, kw_only=True):
     """What the person does in one loop; the end runs into the beginning without a jump."""
 
-    keyframes: Annotated[list[Keyframe], msgspec.Meta(min_length=1)]
+    keyframes: Annotated[list[PoseKeyframe], msgspec.Meta(min_length=1)]
     oscillations: list[Oscillation] = []
     sway_deg: NotNegative = 1.0  # slow movement of a person who stands
 
@@ -150,7 +150,7 @@ class Ambient(_Table, frozen=True, kw_only=True):
     down: Vec3 = (0.10, 0.09, 0.08)
 
 
-class Surface(_Table, frozen=True, kw_only=True):
+class SurfaceSpec(_Table, frozen=True, kw_only=True):
     """A wall, floor or ceiling."""
 
     srgb: Srgb
@@ -176,9 +176,9 @@ class Room(_Table, frozen=True, kw_only=True):
     outdoors: bool = False
     size_m: Vec3 = (6.0, 2.6, 6.0)
     middle_m: Vec2 = (0.0, 0.0)  # x, z of the middle of the floor
-    walls: Surface = Surface(srgb=(188, 182, 170), pattern="plaster")
-    floor: Surface = Surface(srgb=(150, 110, 72), pattern="planks")
-    ceiling: Surface = Surface(srgb=(220, 218, 212))
+    walls: SurfaceSpec = SurfaceSpec(srgb=(188, 182, 170), pattern="plaster")
+    floor: SurfaceSpec = SurfaceSpec(srgb=(150, 110, 72), pattern="planks")
+    ceiling: SurfaceSpec = SurfaceSpec(srgb=(220, 218, 212))
     sky: Vec3 = (0.45, 0.62, 0.95)  # linear R G B, seen where nothing stands
     things: list[Thing] = []
 
@@ -194,8 +194,8 @@ class Scenario(_Table, frozen=True, kw_only=True):
     scribble_s: NotNegative = 0.0  # instant of the picture that the user labels with strokes
     jpeg_quality: Annotated[int, msgspec.Meta(ge=40, le=100)] = 88
     cameras: Annotated[list[CameraSpec], msgspec.Meta(min_length=1, max_length=32)]
-    body: Body = Body()
-    motion: Motion
+    body: BodySpec = BodySpec()
+    motion: MotionSpec
     clothes: Clothes = Clothes()
     lights: list[Light] = []
     ambient: Ambient = Ambient()
@@ -242,8 +242,18 @@ def _config_error(message: str, where: str) -> ConfigError:
 
 
 def _all_keys() -> list[str]:
-    tables = (CameraSpec, Body, Keyframe, Oscillation, Motion, Clothes, LightEvent, Light, Ambient)
-    tables += (Surface, Thing, Room, Scenario)  # type: ignore[assignment]
+    tables = (
+        CameraSpec,
+        BodySpec,
+        PoseKeyframe,
+        Oscillation,
+        MotionSpec,
+        Clothes,
+        LightEvent,
+        Light,
+        Ambient,
+    )
+    tables += (SurfaceSpec, Thing, Room, Scenario)  # type: ignore[assignment]
     return sorted({name for table in tables for name in table.__struct_fields__})
 
 

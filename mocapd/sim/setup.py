@@ -9,7 +9,7 @@ import numpy as np
 
 from mocapd.sim.person.figure import build_figure
 from mocapd.sim.renderer import CameraRenderer, Set, camera_renderers
-from mocapd.sim.scenario import CameraSpec, Keyframe, Motion, Scenario, load_scenario
+from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario, load_scenario
 from mocapd.sim.scenery.furniture import backdrop
 from mocapd.sim.scenery.lamps import studio_lamps
 from mocapd.sim.scribbles import LabelledImage, scribble
@@ -66,7 +66,9 @@ def model_pictures(scenario: Scenario) -> tuple[LabelledImage, ...]:
     renderer: CameraRenderer | None = None
     stage = Set(backdrop(), studio_lamps(), np.zeros(3))
     for i, (pose, yaw_deg) in enumerate(MODEL_POSES):
-        motion = Motion(keyframes=[Keyframe(t_s=0.0, pose=pose, yaw_deg=yaw_deg)], sway_deg=0.0)
+        motion = MotionSpec(
+            keyframes=[PoseKeyframe(t_s=0.0, pose=pose, yaw_deg=yaw_deg)], sway_deg=0.0
+        )
         world = World(msgspec.structs.replace(scenario, cameras=[camera], motion=motion))
         if renderer is None:
             figure = build_figure(world.shape, scenario.clothes, scenario.seed)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.types import Bytes, Floats, Rig
@@ -64,7 +64,7 @@ class Draft:
     cameras: tuple[DraftCamera, ...] = ()
     board: BoardSpec | None = None
     board_views: Mapping[str, Mapping[int, BoardView]] = field(default_factory=dict)
-    lenses: Mapping[str, Lens] = field(default_factory=dict)
+    lenses: Mapping[str, Intrinsics] = field(default_factory=dict)
     lens_saved: frozenset[str] = frozenset()
     rig: Rig | None = None
     room: RoomQuality | None = None

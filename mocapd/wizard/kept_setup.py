@@ -26,7 +26,7 @@ from mocapd.boundary.messages import decode_msgpack
 from mocapd.boundary.pictures import decode_picture
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.board.board_detection import FEWEST_CORNERS, BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import CannotCreateError, MalformedError
@@ -213,7 +213,7 @@ def _told(draft: Draft) -> _Draft:
     )
 
 
-def _lens_told(lens: Lens) -> _Lens:
+def _lens_told(lens: Intrinsics) -> _Lens:
     return _Lens(
         size_px=lens.size_px,
         K=lens.K.tolist(),
@@ -302,8 +302,8 @@ def _view(told: _View) -> BoardView:
     )
 
 
-def _lens(told: _Lens) -> Lens:
-    return Lens(
+def _lens(told: _Lens) -> Intrinsics:
+    return Intrinsics(
         told.size_px,
         np.array(told.K),
         np.array(told.dist),

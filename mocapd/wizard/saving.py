@@ -12,7 +12,7 @@ import mocapd
 from mocapd.body.shape import FACTORS
 from mocapd.boundary.numbers import brief
 from mocapd.calibrate.calibrated_inputs import Calibrated, read_calibrated
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
     calibration_path,
@@ -166,7 +166,7 @@ def _wearer(draft: Draft) -> Wearer | None:
     )
 
 
-def _lens_fit(lens: Lens, from_earlier: bool) -> LensFit:
+def _lens_fit(lens: Intrinsics, from_earlier: bool) -> LensFit:
     return LensFit(
         rms_px=figure(lens.rms_px),
         held_out_px=figure(lens.held_out_px),
@@ -177,8 +177,8 @@ def _lens_fit(lens: Lens, from_earlier: bool) -> LensFit:
     )
 
 
-def _lens(fit: LensFit, camera: Camera) -> Lens:
-    return Lens(
+def _lens(fit: LensFit, camera: Camera) -> Intrinsics:
+    return Intrinsics(
         camera.size_px,
         camera.K,
         camera.dist,

@@ -8,8 +8,8 @@ import pytest
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
-from mocapd.calibrate.self_calibration.patch_tracks import Sighting
-from mocapd.calibrate.self_calibration.self_calibration import RoomParams, room_from_body
+from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
+from mocapd.calibrate.self_calibration.self_calibration import SelfCalibrationParams, room_from_body
 from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
@@ -54,13 +54,13 @@ def walking(i: int) -> MotionState:
 
 def moments(
     n: int = 16, fitter: Fitter = FITTER, factors: Floats | None = None
-) -> list[dict[str, Sighting]]:
+) -> list[dict[str, PatchSighting]]:
     """Both cameras' sightings; each judges depth wrongly by a few percent, as a lone camera does."""
     rng = np.random.default_rng(0)
     out = []
     for i in range(n):
         state = walking(i) if factors is None else replace(walking(i), factors=factors)
-        moment: dict[str, Sighting] = {}
+        moment: dict[str, PatchSighting] = {}
         joints, quats = fitter.joints(state)
         for camera, drawing in zip(CAMERAS, fitter.drawings, strict=True):
             roi = drawing.region(state, 0.0, 24)
@@ -69,7 +69,7 @@ def moments(
             turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
             wrong = rotations.exp(rng.normal(0.0, 0.03, 3))
             seen = to_camera(camera, joints) * (1.0 + rng.normal(0.0, 0.03))
-            moment[camera.name] = Sighting(
+            moment[camera.name] = PatchSighting(
                 nanoseconds(0.3 * i), seen, rotations.multiply(wrong, turned), np.ones(N_JOINTS),
                 ids, (2 * roi[0], 2 * roi[1], 2 * roi[2], 2 * roi[3]),
             )  # fmt: skip
@@ -83,7 +83,9 @@ def lenses() -> list[Camera]:
 
 
 def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
-    rig, report = room_from_body(moments(), lenses(), STATURE_M, RoomParams(rounds=12, averaged=4))
+    rig, report = room_from_body(
+        moments(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
+    )
     true = CAMERAS[1].R @ CAMERAS[0].R.T
     found = rig.cameras[1].R @ rig.cameras[0].R.T
     angle = rotations.angle_rad(rotations.from_matrix(found), rotations.from_matrix(true))
@@ -113,7 +115,9 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     factors = np.ones(len(free.sd))
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
     seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
-    short = RoomParams(rounds=14, averaged=4, surface_doubt=1e-3)  # the surface alone, no rings
+    short = SelfCalibrationParams(
+        rounds=14, averaged=4, surface_doubt=1e-3
+    )  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
     free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
     stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, stiff)

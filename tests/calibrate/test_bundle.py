@@ -11,7 +11,7 @@ from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
 from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
 from mocapd.calibrate.extrinsics.reprojection import (
     Observations,
-    Scene,
+    ReprojectionProblem,
     exp_matrices,
     jacobians,
     moved,
@@ -23,7 +23,7 @@ from mocapd.calibrate.extrinsics.world_frame import (
     world_guessed,
     world_on_floor,
 )
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
@@ -51,17 +51,17 @@ def views_of(
     return views
 
 
-def lenses_near(rig: tuple[Camera, ...]) -> dict[str, Lens]:
+def lenses_near(rig: tuple[Camera, ...]) -> dict[str, Intrinsics]:
     """The true lenses, their focal length 1 % too long."""
     return {
-        c.name: Lens(
+        c.name: Intrinsics(
             c.size_px, c.K * [[1.01], [1.01], [1]], c.dist, np.ones(5, bool), 0, 0, (), (), 0
         )
         for c in rig
     }
 
 
-def random_scene(seed: int = 0) -> tuple[Scene, Observations]:
+def random_scene(seed: int = 0) -> tuple[ReprojectionProblem, Observations]:
     rig = cameras(3)
     views = views_of(rig, 4, {})
     names = [c.name for c in rig]

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import moved_camera
-from mocapd.calibrate.self_calibration.patch_tracks import Sighting
+from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
 from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, placed_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
@@ -33,7 +33,7 @@ def joints(turn: Floats, shift_m: Floats) -> Floats:
     return out
 
 
-def seen_forearm(camera_index: int, body: Floats) -> Sighting:
+def seen_forearm(camera_index: int, body: Floats) -> PatchSighting:
     """The left forearm as a cylinder: forearm's colour, then the cuff's; nothing else."""
     camera, shirt = CAMERAS[camera_index], standard_shirt()
     elbow, wrist = body[INDEX["leftLowerArm"]], body[INDEX["leftHand"]]
@@ -58,7 +58,7 @@ def seen_forearm(camera_index: int, body: Floats) -> Sighting:
     ids[at[inside, 1], at[inside, 0]] = shirt.colour_of_patch[patch[inside]]
     mine = to_camera(camera, body)
     quats = np.tile(rotations.IDENTITY_XYZW, (len(mine), 1))
-    return Sighting(0, mine, quats, np.ones(len(mine)), ids, (0, 0, w * FACTOR, h * FACTOR))
+    return PatchSighting(0, mine, quats, np.ones(len(mine)), ids, (0, 0, w * FACTOR, h * FACTOR))
 
 
 def test_the_middle_of_a_ring_is_where_the_arms_axis_is_from_both_sides() -> None:

@@ -18,7 +18,7 @@ from mocapd.evaluate.report import (
     score_json,
     score_table,
 )
-from mocapd.evaluate.runs import Findings
+from mocapd.evaluate.runs import EvaluationResults
 from mocapd.evaluate.tables import number, table
 from tests.evaluate.results import a_roc, result_of
 from tests.evaluate.tracks import FRAMES
@@ -38,10 +38,10 @@ def comparison() -> dict[str, list[CaptureResult]]:
     }
 
 
-def findings() -> Findings:
+def findings() -> EvaluationResults:
     compared = comparison()
     rocs = [("desk", a_roc()), ("gym", a_roc())]
-    return Findings("colour, variant full", "upper", compared["full"], compared, rocs)
+    return EvaluationResults("colour, variant full", "upper", compared["full"], compared, rocs)
 
 
 def test_a_table_is_aligned_markdown() -> None:
@@ -133,7 +133,7 @@ def test_the_page_and_its_plots_are_the_same_bytes_twice(tmp_path: Path) -> None
 
 
 def test_without_a_comparison_there_is_but_one_table(tmp_path: Path) -> None:
-    alone = Findings("canned", "upper", [result_of("desk", 0.02)], {}, ())
+    alone = EvaluationResults("canned", "upper", [result_of("desk", 0.02)], {}, ())
     written = write_page(tmp_path, alone, "mocapd eval desk")
     assert [path.name for path in written] == ["evaluation.md"]
     assert "![" not in written[0].read_text()

@@ -13,7 +13,7 @@ from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
 from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
 from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in, world_on_floor
-from mocapd.calibrate.intrinsics.intrinsics import Lens, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_lens
 from mocapd.calibrate.intrinsics.views import covered
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
 from mocapd.geometry.cameras import centre, project
@@ -77,7 +77,7 @@ def lens_views(clips: dict[SetupScene, Clip]) -> Views:
 
 
 @pytest.fixture(scope="module")
-def lenses(lens_views: Views) -> dict[str, Lens]:
+def lenses(lens_views: Views) -> dict[str, Intrinsics]:
     return {
         name: solve_lens(list(views.values()), BOARD_M, (640, 480), name)
         for name, views in lens_views.items()
@@ -108,7 +108,7 @@ def test_the_board_is_found_where_it_is_in_each_cameras_own_places(lens_views: V
 
 
 def test_the_lens_places_fill_the_pictures_and_give_the_lenses(
-    lens_views: Views, lenses: dict[str, Lens]
+    lens_views: Views, lenses: dict[str, Intrinsics]
 ) -> None:
     for camera in rig().cameras:
         lens = lenses[camera.name]
@@ -119,7 +119,7 @@ def test_the_lens_places_fill_the_pictures_and_give_the_lenses(
 
 
 def test_the_room_places_and_the_floor_give_the_room(
-    clips: dict[SetupScene, Clip], lenses: dict[str, Lens]
+    clips: dict[SetupScene, Clip], lenses: dict[str, Intrinsics]
 ) -> None:
     views = views_of(clips, SetupScene.ROOM)
     n = len(board_scenes(rig().cameras)[SetupScene.ROOM])

@@ -26,7 +26,7 @@ from mocapd.trackers.colour_paper.paper_drawing import (
     posture,
     triangle_points,
 )
-from mocapd.trackers.colour_paper.paper_segmenter import Eye
+from mocapd.trackers.colour_paper.paper_segmenter import PaperSegmenter
 from mocapd.trackers.colour_paper.params import Params, tolerant
 from mocapd.trackers.colour_paper.patch_kernels import (
     centroid_rows,
@@ -241,7 +241,7 @@ def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
     c, body = RIG.cameras[0], standing()
     light = np.array([0.45, 0.6, 0.9])  # BGR
     W = np.diag(1.0 / light[::-1])
-    eye = Eye(c, colours(), np.eye(3), Params())
+    eye = PaperSegmenter(c, colours(), np.eye(3), Params())
     eye.look(picture(None, c))
     before = eye.look(picture(body, c, light))
     eye.references = (np.eye(3), W)
@@ -249,7 +249,7 @@ def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
     assert after is not None
     assert before is None or before.coloured < 0.5 * after.coloured
     np.testing.assert_array_equal(eye.W, W)
-    fixed = Eye(c, colours(), np.eye(3), Params(adaptive_white_balance=False))
+    fixed = PaperSegmenter(c, colours(), np.eye(3), Params(adaptive_white_balance=False))
     fixed.references = (np.eye(3), W)
     fixed.look(picture(body, c, light))
     np.testing.assert_array_equal(fixed.W, np.eye(3))
@@ -258,7 +258,7 @@ def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
 def test_white_balance_follows_the_light_and_a_new_light_is_remembered() -> None:
     c, body = RIG.cameras[0], standing()
     light = np.array([0.5, 0.8, 0.9])  # BGR, a lamp
-    eye = Eye(c, colours(), np.eye(3), Params())
+    eye = PaperSegmenter(c, colours(), np.eye(3), Params())
     grid = Grid(0, 0, 320, 240, 2)
     seen = draw(MODEL, body, c, grid)
     refined = np.where(seen.triangle_at >= 0, MODEL.colour[seen.triangle_at], 0).astype(np.uint8)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.body.shape import N_FACTORS
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.types import Camera, Rig
@@ -48,7 +48,7 @@ def full_draft() -> Draft:
         ),
         board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
         lenses={
-            camera.name: Lens(
+            camera.name: Intrinsics(
                 SIZE_PX, K, camera.dist, np.array([True, True, False, False, False]),
                 0.25, 0.3, tuple(range(12)), (), 0.001,
             )

@@ -9,7 +9,7 @@ from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import DatabaseParams, build_database
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, Measures
+from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from tests.trackers.filmed import Filmed, film, tracker_of
 
 TURN_RAD = np.radians(1.0)
@@ -27,7 +27,7 @@ def measured() -> tuple[Filmed, list[Measure], list[Measure]]:
     found = []
     for one in (rig, turned):
         tracker.reset()
-        into = Measures()
+        into = TrackingMeasures()
         watched = MeasuredTracker(tracker, one, filmed.scenario.body.stature_m, None, into)
         for frames in filmed.frame_sets(filmed.pictures):
             watched.step(frames)

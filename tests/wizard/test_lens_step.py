@@ -1,4 +1,4 @@
-"""The step Lens, driven by pictures of a simulated board."""
+"""The step Intrinsics, driven by pictures of a simulated board."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.types import Bytes
@@ -261,7 +261,7 @@ def test_plain_chessboards_can_be_chosen(tmp_path: Path) -> None:
 
 
 WEBCAM = DraftCamera("cam0", "usb:1-3:046d:0825:5F2A", (640, 480))
-LENS = Lens(
+LENS = Intrinsics(
     (640, 480),
     RIG[0].K,
     RIG[0].dist,

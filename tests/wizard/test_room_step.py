@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.errors import InputError
 from mocapd.geometry.cameras import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
@@ -31,12 +31,12 @@ from tests.wizard.context import FakeContext, do
 STILL_S = 0.2
 
 
-def lens(camera: int, off: float = 0.0) -> Lens:
+def lens(camera: int, off: float = 0.0) -> Intrinsics:
     """The camera's true lens, its focal length wrong by a part `off`."""
     K = RIG[camera].K.copy()
     K[:2, :2] *= 1.0 + off
     free = np.array([True, True, True, True, True])
-    return Lens((640, 480), K, RIG[camera].dist, free, 0.1, 0.1, (), (), 0.003)
+    return Intrinsics((640, 480), K, RIG[camera].dist, free, 0.1, 0.1, (), (), 0.003)
 
 
 def lens_views() -> dict[str, dict[int, BoardView]]:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.intrinsics.intrinsics import Lens
-from mocapd.calibrate.self_calibration.self_calibration import RoomParams
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
+from mocapd.calibrate.self_calibration.self_calibration import SelfCalibrationParams
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.geometry.cameras import centre
@@ -28,7 +28,7 @@ from tests.wizard.wearer import FPS_HZ, Wearer, wearer
 
 SHORT = WalkParams(
     good_s=3.0, facings=1, places=1, patience_s=25.0,
-    room=RoomParams(keyframes=14, rounds=6, averaged=2, polish=1),
+    room=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
 )  # fmt: skip
 
 
@@ -47,7 +47,7 @@ def draft() -> Draft:
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
         lenses={
-            c.name: Lens(c.size_px, c.K, c.dist, np.ones(5, bool), 0.2, 0.2, (), (), 0.002)
+            c.name: Intrinsics(c.size_px, c.K, c.dist, np.ones(5, bool), 0.2, 0.2, (), (), 0.002)
             for c in person.rig.cameras
         },
         colours={

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import Scene
+from mocapd.calibrate.extrinsics.reprojection import ReprojectionProblem
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 
-def paths(scene: Scene, indices: Sequence[int]) -> Floats:
+def paths(scene: ReprojectionProblem, indices: Sequence[int]) -> Floats:
     """(V,2,6): velocity [per frame] and half the acceleration [per frame^2] of turn [rad] and shift [m].
 
     The parabola through the positions one frame before and after; where one of them is unknown the
@@ -26,7 +26,7 @@ def paths(scene: Scene, indices: Sequence[int]) -> Floats:
     return out
 
 
-def _step(scene: Scene, start: int, end: int) -> Floats:
+def _step(scene: ReprojectionProblem, start: int, end: int) -> Floats:
     """Turn [rad] and shift [m] (6,) from one position to the other."""
     turn = scene.board_turn[end] @ scene.board_turn[start].T
     shift_m = scene.board_t_m[end] - scene.board_t_m[start]

@@ -16,7 +16,7 @@ from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import Drawing, work_factors
+from mocapd.fit.body_drawing import IdMapRenderer, work_factors
 from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
@@ -27,7 +27,7 @@ from mocapd.shirt.colour.strokes import COLOURS
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.appearance import Appearance, fresh
-from mocapd.shirt.segmentation.camera_segmenter import Eye, Found
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.params import Params
@@ -100,12 +100,12 @@ class LightReader:
         self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p.fit)
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._eyes = [
-            Eye(c, f, model, np.eye(3), p.segmentation)
+            CameraSegmenter(c, f, model, np.eye(3), p.segmentation)
             for c, f in zip(cameras, factors, strict=True)
         ]
         self._precision = shade_precision(model)
 
-    def drawing(self, index: int) -> Drawing:
+    def drawing(self, index: int) -> IdMapRenderer:
         """What draws a reading's body into camera `index`."""
         return self._fitter.drawings[index]
 
@@ -182,7 +182,7 @@ class LightReader:
 
     # --- stages ---
 
-    def _candidates(self, eye: Eye) -> list[tuple[str, Found]]:
+    def _candidates(self, eye: CameraSegmenter) -> list[tuple[str, Found]]:
         """The most even places over all lights, no two alike, best first."""
         found: list[tuple[str, Found]] = []
         for light in light_hypotheses(eye.picture):

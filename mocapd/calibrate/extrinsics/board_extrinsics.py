@@ -13,7 +13,7 @@ from mocapd.calibrate.extrinsics.reprojection import (
     LENS,
     POSE,
     Observations,
-    Scene,
+    ReprojectionProblem,
     moved,
     residuals_px,
 )
@@ -24,7 +24,7 @@ from mocapd.calibrate.extrinsics.world_frame import (
     world_guessed,
     world_on_floor,
 )
-from mocapd.calibrate.intrinsics.intrinsics import Lens, board_pose
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.calibration.board_spec import BoardSpec, centre_m, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Rig
@@ -35,7 +35,7 @@ class ContradictionError(ConfigError):
 
 
 @dataclass(frozen=True, slots=True)
-class RoomParams:
+class BoardExtrinsicsParams:
     """How it is solved, and what it must reach to be used."""
 
     bundle: BundleParams = field(default_factory=BundleParams)
@@ -82,10 +82,10 @@ class PlacedRoom:
 def solve_room(
     names: Sequence[str],
     sizes_px: Sequence[tuple[int, int]],
-    lenses: Mapping[str, Lens],
+    lenses: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     spec: BoardSpec,
-    params: RoomParams,
+    params: BoardExtrinsicsParams,
 ) -> SolvedRoom:
     """All cameras and positions at once; `views[camera][index]`, frames of one index being of one moment.
 
@@ -103,10 +103,12 @@ def solve_room(
     return SolvedRoom(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
 
 
-def lone_camera(name: str, size_px: tuple[int, int], lens: Lens, spec: BoardSpec) -> SolvedRoom:
+def lone_camera(
+    name: str, size_px: tuple[int, int], lens: Intrinsics, spec: BoardSpec
+) -> SolvedRoom:
     """One camera and no board yet: what `with_board` then adds gives it a place."""
     none = np.zeros(0, np.int64)
-    scene = Scene(
+    scene = ReprojectionProblem(
         lens_row(lens)[None],
         np.eye(3)[None],
         np.zeros((1, 3)),
@@ -164,7 +166,7 @@ def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, Bo
     return {index: views[name]} if name in views else {}
 
 
-def _with(scene: Scene, pose: tuple[Floats, Floats]) -> Scene:
+def _with(scene: ReprojectionProblem, pose: tuple[Floats, Floats]) -> ReprojectionProblem:
     """The same cameras and this position alone."""
     return replace(
         scene,
@@ -175,11 +177,11 @@ def _with(scene: Scene, pose: tuple[Floats, Floats]) -> Scene:
     )
 
 
-def _fitted(scene: Scene, seen: Observations) -> tuple[Scene, float]:
+def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[ReprojectionProblem, float]:
     """Its one position fitted, and the root mean square error [px]."""
     still = np.zeros((len(scene.lens), LENS)), np.zeros((len(scene.lens), POSE))
 
-    def stepped(x: Floats) -> Scene:
+    def stepped(x: Floats) -> ReprojectionProblem:
         return moved(scene, *still, x[None], np.zeros(len(scene.lens)))
 
     solution = scipy.optimize.least_squares(
@@ -189,7 +191,9 @@ def _fitted(scene: Scene, seen: Observations) -> tuple[Scene, float]:
     return found, _rms(np.linalg.norm(residuals_px(found, seen), axis=1))
 
 
-def placed(room: SolvedRoom, floor: int | None, where: str, params: RoomParams) -> PlacedRoom:
+def placed(
+    room: SolvedRoom, floor: int | None, where: str, params: BoardExtrinsicsParams
+) -> PlacedRoom:
     """The room in the world of the board that lies on the floor at index `floor`; None: guessed.
 
     `where` names that picture in an error. Raises ContradictionError, or ConfigError: a lens is not
@@ -231,7 +235,7 @@ def _fit(room: SolvedRoom, i: int) -> CameraFit:
     )
 
 
-def _refuse_bad(made: PlacedRoom, params: RoomParams) -> None:
+def _refuse_bad(made: PlacedRoom, params: BoardExtrinsicsParams) -> None:
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(

@@ -18,7 +18,7 @@ from mocapd.calibrate.extrinsics.reprojection import (
     LENS,
     POSE,
     Observations,
-    Scene,
+    ReprojectionProblem,
     jacobians,
     moved,
     residuals_px,
@@ -52,7 +52,7 @@ class Bundle:
     `focal_deviation` (C,): standard deviation of each focal length, as a part of it.
     """
 
-    scene: Scene
+    scene: ReprojectionProblem
     used: NDArray[np.bool_]
     focal_deviation: Floats
 
@@ -61,7 +61,7 @@ class Bundle:
 class _Problem:
     """Residuals and their sparse slope, in standard deviations, as functions of the steps."""
 
-    scene: Scene
+    scene: ReprojectionProblem
     seen: Observations
     size_px: Floats
     params: BundleParams
@@ -132,7 +132,7 @@ class _Problem:
 
 
 def adjust(
-    scene: Scene,
+    scene: ReprojectionProblem,
     indices: Sequence[int],
     seen: Observations,
     size_px: Floats,
@@ -158,14 +158,14 @@ def adjust(
     return Bundle(scene, used, _focal_deviation(replace(problem, scene=scene)))
 
 
-def _deviation_px(scene: Scene, seen: Observations, params: BundleParams) -> float:
+def _deviation_px(scene: ReprojectionProblem, seen: Observations, params: BundleParams) -> float:
     """Of a corner's x or y, not minding outliers."""
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
     # of a Rayleigh distribution the median is 1.18 deviations
     return max(float(np.median(error_px)) / 1.18, params.least_corner_px)
 
 
-def _solved(problem: _Problem, robust: bool) -> Scene:
+def _solved(problem: _Problem, robust: bool) -> ReprojectionProblem:
     """Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
 
     In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds

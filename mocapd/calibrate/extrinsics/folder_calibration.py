@@ -8,9 +8,14 @@ from pathlib import Path
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, NotSeen, settled
 from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
 from mocapd.calibrate.board.recordings import Recording, find_recordings
-from mocapd.calibrate.extrinsics.board_extrinsics import CameraFit, RoomParams, placed, solve_room
+from mocapd.calibrate.extrinsics.board_extrinsics import (
+    BoardExtrinsicsParams,
+    CameraFit,
+    placed,
+    solve_room,
+)
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
-from mocapd.calibrate.intrinsics.intrinsics import Lens, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
 from mocapd.calibrate.intrinsics.views import Choice, chosen_views, covered
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
@@ -29,11 +34,11 @@ class FolderParams:
 
     most_pictures: int = 200  # per camera, evenly over the recording
     choice: Choice = field(default_factory=Choice)
-    room: RoomParams = field(default_factory=RoomParams)
+    room: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sighting:
+class BoardSighting:
     """What was found in one camera's recording: views by index, and reasons of pictures without."""
 
     recording: Recording
@@ -111,7 +116,7 @@ def calibrate_folder(
 
 def _sighting(
     recording: Recording, spec: BoardSpec, stride: int, progress: Progress
-) -> tuple[Sighting, BoardSpec]:
+) -> tuple[BoardSighting, BoardSpec]:
     step = max(1, recording.frames // (stride * _PROBES)) * stride
     probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
     spec = settled(spec, probes)
@@ -131,7 +136,7 @@ def _sighting(
     reasons: tuple[NotSeen, ...] = ()
     if len(views) < _ALONE.fewest_views:
         reasons = tuple(why_not_seen(detector, pixels, index) for index, pixels in blank)
-    return Sighting(recording, views, count, reasons), spec
+    return BoardSighting(recording, views, count, reasons), spec
 
 
 def _difference(found: BoardSpec) -> str:
@@ -139,7 +144,7 @@ def _difference(found: BoardSpec) -> str:
     return f"{ink}, of the {'legacy' if found.legacy else 'present'} layout"
 
 
-def _refuse_blind(sightings: Sequence[Sighting]) -> None:
+def _refuse_blind(sightings: Sequence[BoardSighting]) -> None:
     """Raises ConfigError for the first camera that hardly sees the board, with the commonest reason."""
     for one in sightings:
         if len(one.views) >= _ALONE.fewest_views:
@@ -157,15 +162,15 @@ def _refuse_blind(sightings: Sequence[Sighting]) -> None:
         raise ConfigError(what, where, FIX[reason])
 
 
-def _lens(one: Sighting, board_m: Floats, params: FolderParams) -> Lens:
+def _lens(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
     views = chosen_views(list(one.views.values()), size_px, params.choice)
     return solve_lens(views, board_m, size_px, one.recording.name, _ALONE)
 
 
 def _room(
-    sightings: Sequence[Sighting],
-    lenses: Mapping[str, Lens],
+    sightings: Sequence[BoardSighting],
+    lenses: Mapping[str, Intrinsics],
     spec: BoardSpec,
     floor_frame: int | None,
     params: FolderParams,
@@ -198,7 +203,7 @@ def _room(
     )
 
 
-def _report(one: Sighting, lens: Lens, fit: CameraFit) -> CameraReport:
+def _report(one: BoardSighting, lens: Intrinsics, fit: CameraFit) -> CameraReport:
     return CameraReport(
         fit.rms_px,
         lens.held_out_px,

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.reprojection import Observations, Scene, residuals_px
-from mocapd.calibrate.intrinsics.intrinsics import Lens, board_pose
+from mocapd.calibrate.extrinsics.reprojection import Observations, ReprojectionProblem, residuals_px
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
 
@@ -16,10 +16,10 @@ FEWEST_SHARED = 3  # board positions that join two cameras: one may be wrong
 
 def first_scene(
     names: Sequence[str],
-    lenses: Mapping[str, Lens],
+    lenses: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     board_m: Floats,
-) -> tuple[Scene, list[int]]:
+) -> tuple[ReprojectionProblem, list[int]]:
     """The scene in the first camera's frame, and the indices of its board positions.
 
     `views[camera][index]`. Cameras need not all see one position: they are chained along the
@@ -44,7 +44,9 @@ def first_scene(
     board_turn = np.stack([R for R, _ in boards])
     board_t_m = np.stack([t for _, t in boards])
     still = np.zeros(len(names)), np.zeros((len(indices), 2, 6))
-    return Scene(lens, camera_turn, camera_t_m, board_turn, board_t_m, *still), indices
+    return ReprojectionProblem(
+        lens, camera_turn, camera_t_m, board_turn, board_t_m, *still
+    ), indices
 
 
 def observations(
@@ -69,12 +71,12 @@ def observations(
     )
 
 
-def _poses(views: Mapping[int, BoardView], lens: Lens, board_m: Floats) -> dict[int, Pose]:
+def _poses(views: Mapping[int, BoardView], lens: Intrinsics, board_m: Floats) -> dict[int, Pose]:
     found = {index: board_pose(view, board_m, lens.K, lens.dist) for index, view in views.items()}
     return {index: pose for index, pose in found.items() if pose is not None}
 
 
-def lens_row(lens: Lens) -> Floats:
+def lens_row(lens: Intrinsics) -> Floats:
     """(9,): fx fy cx cy k1 k2 p1 p2 k3."""
     K = lens.K
     return np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2], *lens.dist])
@@ -147,7 +149,7 @@ def _misfit(
 ) -> float:
     """Median distance [px] of the corners of one position in all cameras."""
     seen = observations(names, views, [index], board_m)
-    scene = Scene(
+    scene = ReprojectionProblem(
         *cameras, guess[0][None], guess[1][None], np.zeros(len(names)), np.zeros((1, 2, 6))
     )
     return float(np.median(np.linalg.norm(residuals_px(scene, seen), axis=1)))

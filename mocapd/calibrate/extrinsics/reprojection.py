@@ -33,7 +33,7 @@ class Observations:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Scene:
+class ReprojectionProblem:
     """C cameras and V board positions.
 
     lens (C,9); camera_from_world (C,3,3), (C,3); world_from_board (V,3,3), (V,3); delay (C,): how
@@ -82,9 +82,11 @@ def cross_matrices(v: Floats) -> Floats:
     return out
 
 
-def moved(scene: Scene, lens: Floats, cameras: Floats, boards: Floats, delay: Floats) -> Scene:
+def moved(
+    scene: ReprojectionProblem, lens: Floats, cameras: Floats, boards: Floats, delay: Floats
+) -> ReprojectionProblem:
     """The scene with steps added: lens (C,9), cameras (C,6), boards (V,6), delay (C,)."""
-    return Scene(
+    return ReprojectionProblem(
         scene.lens + lens,
         exp_matrices(cameras[:, :3]) @ scene.camera_turn,
         scene.camera_t_m + cameras[:, 3:],
@@ -95,7 +97,7 @@ def moved(scene: Scene, lens: Floats, cameras: Floats, boards: Floats, delay: Fl
     )
 
 
-def residuals_px(scene: Scene, seen: Observations) -> Floats:
+def residuals_px(scene: ReprojectionProblem, seen: Observations) -> Floats:
     """(N,2): projected minus observed."""
     turned, shift_m, _ = _on_its_way(scene, seen)
     world = turned + shift_m
@@ -106,7 +108,7 @@ def residuals_px(scene: Scene, seen: Observations) -> Floats:
     return pixels - seen.pixels
 
 
-def _on_its_way(scene: Scene, seen: Observations) -> tuple[Floats, Floats, Floats]:
+def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats, Floats, Floats]:
     """Of the corners, where the board is when their camera exposes.
 
     Turned (N,3) about the board's origin [m], that origin (N,3) [m], and the turn (N,3,3) since the position's own instant.
@@ -142,7 +144,7 @@ def _distorted(xy: Floats, lens: Floats) -> Floats:
 
 
 def jacobians(
-    scene: Scene, seen: Observations, cameras: Floats, boards: Floats
+    scene: ReprojectionProblem, seen: Observations, cameras: Floats, boards: Floats
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """d residual by lens (N,2,9), the camera's step (N,2,6), the board's (N,2,6), delay (N,2,1).
 

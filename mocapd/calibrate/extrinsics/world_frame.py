@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import Observations, Scene
+from mocapd.calibrate.extrinsics.reprojection import Observations, ReprojectionProblem
 from mocapd.errors import ConfigError
 from mocapd.geometry.cameras import normalised
 from mocapd.geometry.triangulation import triangulate
@@ -15,7 +15,7 @@ _FRONT = 0.2  # length of the mean direction to the cameras, above which there i
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class World:
+class WorldFrame:
     """world_from_scene R (3,3), t_m (3,), and what must be said of where it comes from ("": nothing)."""
 
     R: Floats
@@ -32,7 +32,9 @@ class PlayAreaError:
     corners: int
 
 
-def world_on_floor(scene: Scene, position: int, middle_m: Floats, where: str) -> World:
+def world_on_floor(
+    scene: ReprojectionProblem, position: int, middle_m: Floats, where: str
+) -> WorldFrame:
     """The world of a board that lies on the floor, face up, at this position; its middle is the origin.
 
     +Z points from there to the middle of the cameras: that is where a person at rest looks. Raises
@@ -50,14 +52,14 @@ def world_on_floor(scene: Scene, position: int, middle_m: Floats, where: str) ->
     return world
 
 
-def world_guessed(scene: Scene, board_m: Floats) -> World:
+def world_guessed(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
     """A world without a floor: up is what is up in most pictures, the floor under the lowest corner."""
     up = -scene.camera_turn[:, 1].sum(axis=0)
     corners = np.einsum("vij,nj->vni", scene.board_turn, board_m) + scene.board_t_m[:, None]
     corners = corners.reshape(-1, 3)
     world = _world(scene, up, corners.mean(axis=0))
     lowest_m = float((corners @ world.R.T + world.t_m)[:, 1].min())
-    return World(
+    return WorldFrame(
         world.R,
         world.t_m - np.array([0.0, lowest_m, 0.0]),
         "no floor was given: up is guessed from the cameras, the floor is put under the lowest "
@@ -65,7 +67,7 @@ def world_guessed(scene: Scene, board_m: Floats) -> World:
     )
 
 
-def _world(scene: Scene, up: Floats, origin_m: Floats) -> World:
+def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> WorldFrame:
     y = up / np.linalg.norm(up)
     away = camera_centres(scene) - origin_m
     level = away - np.outer(away @ y, y)
@@ -75,17 +77,20 @@ def _world(scene: Scene, up: Floats, origin_m: Floats) -> World:
     z = front if np.linalg.norm(front) > _FRONT else level[0]
     z = z / np.linalg.norm(z)
     R = np.stack([np.cross(y, z), y, z])
-    return World(R, -R @ origin_m)
+    return WorldFrame(R, -R @ origin_m)
 
 
-def camera_centres(scene: Scene) -> Floats:
+def camera_centres(scene: ReprojectionProblem) -> Floats:
     """(C,3) where the cameras are [m, scene]."""
     centres: Floats = -np.einsum("cji,cj->ci", scene.camera_turn, scene.camera_t_m)
     return centres
 
 
 def rig_in(
-    world: World, scene: Scene, names: Sequence[str], sizes_px: Sequence[tuple[int, int]]
+    world: WorldFrame,
+    scene: ReprojectionProblem,
+    names: Sequence[str],
+    sizes_px: Sequence[tuple[int, int]],
 ) -> Rig:
     """The cameras of the scene as a rig of this world."""
     cameras = []

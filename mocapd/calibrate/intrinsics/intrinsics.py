@@ -41,7 +41,7 @@ class LensLimits:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Lens:
+class Intrinsics:
     """K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, of pictures of `size_px`; `free` (5,): which were solved for.
 
     `rms_px`: of the views it was computed from. `held_out_px`: of views that were left out of a
@@ -77,7 +77,7 @@ def solve_lens(
     size_px: tuple[int, int],
     where: str,
     limits: LensLimits | None = None,
-) -> Lens:
+) -> Intrinsics:
     """The lens of camera `where`. Raises ConfigError that says why these views do not give it.
 
     `board_m` (n,3): the board's corners by id.
@@ -103,7 +103,7 @@ def solve_lens(
     model, held_out_px = _best_model(kept, board_m, size_px, where, first)
     solution = _solve(kept, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
-    lens = Lens(
+    lens = Intrinsics(
         size_px,
         solution.K,
         solution.dist,
@@ -226,7 +226,7 @@ def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> Non
         raise _parallel(where)
 
 
-def _refuse_bad(lens: Lens, where: str, limits: LensLimits) -> None:
+def _refuse_bad(lens: Intrinsics, where: str, limits: LensLimits) -> None:
     if lens.rms_px > limits.rms_px or lens.held_out_px > limits.held_out_px:
         raise ConfigError(
             f"the board fits badly: {lens.rms_px:.2f} px, {lens.held_out_px:.2f} px held out",

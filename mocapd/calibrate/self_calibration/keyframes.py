@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, Sighting
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, PatchSighting
 from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import View
@@ -24,8 +24,8 @@ class Keyframe:
     """A moment: its sightings by camera index, and the one of its first camera a frame earlier."""
 
     t_ns: int
-    sightings: dict[int, Sighting]
-    before: Sighting | None
+    sightings: dict[int, PatchSighting]
+    before: PatchSighting | None
 
 
 def choose(
@@ -33,7 +33,7 @@ def choose(
 ) -> list[Keyframe]:
     """Up to `count` moments seen by at least two cameras, spread over time, well seen and slow."""
     rated: list[tuple[float, Keyframe]] = []
-    last: dict[int, Sighting] = {}
+    last: dict[int, PatchSighting] = {}
     for moment in moments:
         seen = {i: moment[name] for i, name in enumerate(names) if name in moment}
         if len(seen) >= 2:
@@ -93,7 +93,7 @@ def starts(
     return out
 
 
-def _local(sighting: Sighting, camera: Camera, model: BodyModel) -> Floats:
+def _local(sighting: PatchSighting, camera: Camera, model: BodyModel) -> Floats:
     """Local rotations (J,4), the hips' in the world."""
     turned = rotations.multiply(rotations.from_matrix(camera.R.T), sighting.quats_xyzw)
     return local_from_global(standard_skeleton(model.stature_m), turned)

@@ -29,7 +29,7 @@ MARKS = np.array(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sighting:
+class PatchSighting:
     """The body that one camera saw at one instant, in that camera's frame.
 
     joints_m (J,3), quats_xyzw (J,4) from the T-pose's axes to the camera's, confidence (J,); ids (h,w): the classified
@@ -51,7 +51,7 @@ class Sighting:
         return xy
 
 
-Moment = Mapping[str, Sighting]  # by camera, of one frame set
+Moment = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 
 def unplaced(lenses: Sequence[Camera]) -> tuple[Camera, ...]:
@@ -93,7 +93,7 @@ class PatchTracks:
 
     def add(self, frames: FrameSet) -> Moment:
         """Follow one frame set: who saw the wearer, and how."""
-        seen: dict[str, Sighting] = {}
+        seen: dict[str, PatchSighting] = {}
         for tracker in self._trackers:
             mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
             if not mine:
@@ -107,7 +107,7 @@ class PatchTracks:
                 if camera.name not in track.evidence:
                     continue
                 to_this = rotations.from_matrix(camera.R)
-                seen[camera.name] = Sighting(
+                seen[camera.name] = PatchSighting(
                     mine[camera.name].t_ns,
                     to_camera(camera, body.joints_m),
                     rotations.multiply(to_this, body.pose.quats_xyzw),

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import Moment, Sighting
+from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchSighting
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, SIDES, sleeve_rings
 from mocapd.clock import nanoseconds
 from mocapd.geometry.cameras import to_camera
@@ -77,7 +77,7 @@ def _rings(
     return sleeve_rings(sightings[i], joints_m, pair[i], factors[i])
 
 
-def _arms_in_depth(sightings: Sequence[Sighting], pair: Sequence[Camera]) -> list[Floats]:
+def _arms_in_depth(sightings: Sequence[PatchSighting], pair: Sequence[Camera]) -> list[Floats]:
     """Each camera's joints (J,3) with the arms as far off as both together place them.
 
     A lone camera errs in how an arm points towards it, and may have it the wrong way round.

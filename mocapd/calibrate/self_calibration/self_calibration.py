@@ -34,7 +34,7 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 
 @dataclass(frozen=True, slots=True)
-class RoomParams:
+class SelfCalibrationParams:
     """How the room is solved."""
 
     keyframes: int = 64
@@ -88,7 +88,7 @@ def room_from_body(
     moments: Sequence[Moment],
     lenses: Sequence[Camera],
     stature_m: float,
-    params: RoomParams | None = None,
+    params: SelfCalibrationParams | None = None,
     near: Rig | None = None,
 ) -> tuple[Rig, RoomReport]:
     """The rig in world coordinates: floor at y = 0, the wearer at the origin facing +Z at the start.
@@ -96,7 +96,7 @@ def room_from_body(
     moments: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
     Raises ConfigError when the moments do not tell where the cameras stand.
     """
-    p = params if params is not None else RoomParams()
+    p = params if params is not None else SelfCalibrationParams()
     keyframes = choose(moments, [camera.name for camera in lenses], p.keyframes)
     model = build_model(stature_m)
     solvers = [RoomSolver(model, first_placing(moments, lenses), keyframes, p)]
@@ -151,7 +151,7 @@ class RoomSolver:
         model: BodyModel,
         cameras: Sequence[Camera],
         keyframes: Sequence[Keyframe],
-        params: RoomParams,
+        params: SelfCalibrationParams,
     ) -> None:
         self._p, self._tracker = params, FitParams()
         self._body: FreeBody = free_body(model, params.off_sd_m)

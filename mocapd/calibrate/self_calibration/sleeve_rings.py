@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.shirt import standard_shirt
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import Sighting
+from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
 from mocapd.geometry.cameras import normalised, project
 from mocapd.types import Camera, Floats
 
@@ -63,7 +63,7 @@ class _Window:
 
 
 def sleeve_rings(
-    sighting: Sighting, joints_m: Floats, lens: Camera, factor: int
+    sighting: PatchSighting, joints_m: Floats, lens: Camera, factor: int
 ) -> tuple[Floats, Floats]:
     """Middles (2 N_ALONG, 2) in undistorted normalised coordinates and half widths (2 N_ALONG,) [m],
     left arm first; NaN where a ring is not seen whole.

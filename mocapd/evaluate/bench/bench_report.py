@@ -6,14 +6,14 @@ from typing import Any
 
 from mocapd.evaluate.bench.bench_endurance import EnduranceFigures
 from mocapd.evaluate.bench.bench_live import LiveFigures
-from mocapd.evaluate.bench.bench_run import Findings
+from mocapd.evaluate.bench.bench_run import BenchResults
 from mocapd.evaluate.bench.bench_step import StepFigures
 from mocapd.evaluate.tables import number, table
 
 _DIGITS = 3  # microseconds of a millisecond
 
 
-def as_json(found: Findings) -> dict[str, Any]:
+def as_json(found: BenchResults) -> dict[str, Any]:
     """By tracker, what was measured, and on which `input`."""
     measured: Mapping[str, Any] = {**found.steps, **found.endurance, **found.live}
     told = {name: {"input": found.recording, **asdict(one)} for name, one in measured.items()}
@@ -21,7 +21,7 @@ def as_json(found: Findings) -> dict[str, Any]:
     return rounded
 
 
-def as_text(found: Findings) -> str:
+def as_text(found: BenchResults) -> str:
     """Tables that read well in a terminal and are Markdown at once."""
     parts = [f"Input: {found.recording}"]
     if found.steps:

@@ -17,7 +17,7 @@ from mocapd.trackers.tracking_state import TrackingStateParams
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Findings:
+class BenchResults:
     """What was measured, by tracker; `skipped` says why a tracker is absent."""
 
     recording: str
@@ -37,17 +37,17 @@ class Bench:
     tracking: TrackingStateParams
     progress: Progress
 
-    def steps(self) -> Findings:
+    def steps(self) -> BenchResults:
         """Time every step of the whole recording. Raises ConfigError for what a tracker lacks."""
-        found = Findings(self.recording.name)
+        found = BenchResults(self.recording.name)
         for name, tracker in self._trackers(found):
             tell = partial(self.progress, f"timing {name}")
             found.steps[name] = bench_tracker(tracker, self.recording, tell)
         return found
 
-    def endurance(self, minutes: float) -> Findings:
+    def endurance(self, minutes: float) -> BenchResults:
         """Run each tracker for so long [min]. Raises ConfigError for what a tracker lacks."""
-        found = Findings(self.recording.name)
+        found = BenchResults(self.recording.name)
         for name, tracker in self._trackers(found):
             tell = partial(self.progress, f"running {name}, seconds")
             found.endurance[name] = endure(tracker, self.recording, minutes, tell)
@@ -55,14 +55,14 @@ class Bench:
 
     def live(
         self, command: Sequence[str], duration_s: float, watching: Watching | None = None
-    ) -> Findings:
+    ) -> BenchResults:
         """Run the daemon for so long [s] with each tracker; see `bench_live` for the command and
         for who is watching.
 
         Each tracker is built and stepped here first, so that the daemon finds its caches warm.
         Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
         """
-        found = Findings(self.recording.name)
+        found = BenchResults(self.recording.name)
         rig = self.recording.inputs.rig
         for name, tracker in self._trackers(found):
             for one in next(self.recording.chunks()):
@@ -76,7 +76,7 @@ class Bench:
             )
         return found
 
-    def _trackers(self, found: Findings) -> Iterator[tuple[str, Tracker]]:
+    def _trackers(self, found: BenchResults) -> Iterator[tuple[str, Tracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
             known = replace(self.recording.inputs, tracking=self.tracking)

@@ -68,7 +68,7 @@ class Found:
 
 
 @dataclass(slots=True)
-class Eye:
+class CameraSegmenter:
     """One camera. Buffers are its own; `memory` is all that it remembers."""
 
     camera: Camera

@@ -12,13 +12,13 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.segmentation.camera_segmenter import Eye
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.types import Floats, Frame, FrameSet, Ints
 
 
-class Eyes:
-    """One `Eye` for each camera of a fitter; `present` below is each seeing camera's own time after
+class RigSegmenter:
+    """One `CameraSegmenter` for each camera of a fitter; `present` below is each seeing camera's own time after
     the frame set's [s], by its index."""
 
     def __init__(
@@ -31,7 +31,7 @@ class Eyes:
         """white_balance: W (3,3) by camera name, identity where absent."""
         self._fitter, self._params = fitter, params
         self.each = [
-            Eye(
+            CameraSegmenter(
                 d.camera, d.factor, model,
                 np.asarray(white_balance.get(d.camera.name, np.eye(3))), params,
             )

@@ -10,7 +10,7 @@ from mocapd.geometry import rotations
 from mocapd.sim.person.footsteps import FootTrack, foot_tracks
 from mocapd.sim.person.legs import leg_rotations
 from mocapd.sim.person.poses import POSES, ArmDirections
-from mocapd.sim.scenario import Keyframe, Scenario
+from mocapd.sim.scenario import PoseKeyframe, Scenario
 from mocapd.types import Floats, Pose, Skeleton
 
 # How a bend or twist of the trunk is shared among its bones.
@@ -111,7 +111,7 @@ def _periodic(times: Floats, values: Floats, loop_s: float, step: Floats) -> Pch
     return PchipInterpolator(around, repeated, axis=0)
 
 
-def _root_track(keys: list[Keyframe]) -> tuple[Floats, float]:
+def _root_track(keys: list[PoseKeyframe]) -> tuple[Floats, float]:
     """x, z, yaw, crouch per keyframe, and the whole turns [rad] made in one loop."""
     x = z = yaw = 0.0
     rows = []
@@ -124,7 +124,7 @@ def _root_track(keys: list[Keyframe]) -> tuple[Floats, float]:
     return out, float(turn)
 
 
-def _local_rotvecs(key: Keyframe) -> Floats:
+def _local_rotvecs(key: PoseKeyframe) -> Floats:
     """Rotation vectors (J,3) [rad] relative to the parent bones."""
     pose = POSES[key.pose]
     out = np.zeros((N_JOINTS, 3))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mocapd.sim.colour import linear_from_srgb
-from mocapd.sim.scenario import Room, Scenario, Surface, Thing
+from mocapd.sim.scenario import Room, Scenario, SurfaceSpec, Thing
 from mocapd.types import Floats, Ints
 
 PATTERNS = {
@@ -100,7 +100,7 @@ def _shell(room: Room) -> list[_Piece]:
     (w, h, d), (x, z), s = room.size_m, room.middle_m, 0.1
 
     def slab(
-        middle: tuple[float, float, float], size: tuple[float, float, float], of: Surface
+        middle: tuple[float, float, float], size: tuple[float, float, float], of: SurfaceSpec
     ) -> _Piece:
         return _Piece(middle, size, 0.0, of.srgb, of.pattern)
 

@@ -12,7 +12,7 @@ from mocapd.geometry.cameras import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_id_map
-from mocapd.shirt.segmentation.camera_segmenter import Eye, Found
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
 from mocapd.types import Camera, Floats
 
 WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales
@@ -21,7 +21,7 @@ _LOOSE_S = 0.4  # a hypothesis is held as loosely as a prediction over this time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sighting:
+class ShirtSighting:
     """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
 
     index: int  # of the camera
@@ -32,7 +32,9 @@ class Sighting:
     distances: Floats
 
 
-def sight(index: int, eye: Eye, database: PoseDatabase, neighbours: int) -> Sighting | None:
+def sight(
+    index: int, eye: CameraSegmenter, database: PoseDatabase, neighbours: int
+) -> ShirtSighting | None:
     """Look for the shirt in one camera's present picture; neighbours: poses asked for."""
     found = eye.find(WINDOWS)
     if found is None:
@@ -42,13 +44,13 @@ def sight(index: int, eye: Eye, database: PoseDatabase, neighbours: int) -> Sigh
     if len(poses) == 0:
         return None
     work = np.array([cx + found.roi[0], cy + found.roi[1]])
-    return Sighting(
+    return ShirtSighting(
         index, found, (work + 0.5) * eye.factor - 0.5, scale * SIZE * eye.factor, poses, distances
     )
 
 
 def hypotheses(
-    sightings: Sequence[Sighting],
+    sightings: Sequence[ShirtSighting],
     cameras: Sequence[Camera],
     database: PoseDatabase,
     factors: Floats,

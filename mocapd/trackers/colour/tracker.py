@@ -24,7 +24,7 @@ from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.shirt.segmentation.rig_segmenter import Eyes
+from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
@@ -79,7 +79,7 @@ class ColourTracker:
         model = build_model(stature_m)
         smaller = work_factors(rig.cameras, p.fit.work_width_px)
         self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
-        self._eyes = Eyes(self._fitter, colour_model, white_balance, p.segmentation)
+        self._eyes = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._tracking = TrackingState(tracking)
         self._measured = factors

@@ -12,8 +12,8 @@ from mocapd.body.posing_kernels import difference, retract
 from mocapd.body.shirt import N_LABELS
 from mocapd.trackers.colour_paper.covariances import Covariances
 from mocapd.trackers.colour_paper.paper_drawing import (
-    Drawing,
     Grid,
+    PatchRenderer,
     Posture,
     draw,
     posed_joints,
@@ -89,7 +89,7 @@ class CentroidSolver:
         return out
 
     def _rows(
-        self, body: Posture, drawing: Drawing, target: Target, wanted: NDArray[np.bool_]
+        self, body: Posture, drawing: PatchRenderer, target: Target, wanted: NDArray[np.bool_]
     ) -> tuple[Floats, Floats]:
         """Jacobian (P,2,n_pose) and residual (P,2) [px] of the wanted patches."""
         model, camera = self.model, pinhole_arrays(camera_arrays(target.camera), 1.0)

@@ -43,7 +43,7 @@ class Posture:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Drawing:
+class PatchRenderer:
     """What a camera sees of a posture: the triangle at each sample (h,w), -1 for none; samples (T,) per
     triangle; per patch 0..20 the samples' count (21,) and mean position (21,2) on the grid."""
 
@@ -80,17 +80,19 @@ def project_body(
     return xy, depth
 
 
-def draw_vertices(model: BodyModel, xy: Floats, depth: Floats, height: int, width: int) -> Drawing:
+def draw_vertices(
+    model: BodyModel, xy: Floats, depth: Floats, height: int, width: int
+) -> PatchRenderer:
     """Rasterise projected vertices."""
     triangle_at = np.empty((height, width), np.int32)
     rasterise(xy, depth, model.triangles, np.empty((height, width), np.float32), triangle_at)
     samples = np.empty(len(model.triangles), np.int64)
     count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
     rendered_patches(triangle_at, model.patch, samples, count, centroid)
-    return Drawing(triangle_at, samples, count, centroid)
+    return PatchRenderer(triangle_at, samples, count, centroid)
 
 
-def draw(model: BodyModel, body: Posture, camera: Camera, grid: Grid) -> Drawing:
+def draw(model: BodyModel, body: Posture, camera: Camera, grid: Grid) -> PatchRenderer:
     """The posture as the camera sees it."""
     return draw_vertices(model, *project_body(model, body, camera, grid), grid.height, grid.width)
 

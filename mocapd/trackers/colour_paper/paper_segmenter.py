@@ -15,7 +15,7 @@ from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
 from mocapd.trackers.colour_paper.chrominance import HistogramSearch
 from mocapd.trackers.colour_paper.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.trackers.colour_paper.mog_background import BackgroundSubtractor
-from mocapd.trackers.colour_paper.paper_drawing import Drawing, Grid
+from mocapd.trackers.colour_paper.paper_drawing import Grid, PatchRenderer
 from mocapd.trackers.colour_paper.params import Params
 from mocapd.trackers.colour_paper.patch_kernels import inner_ids
 from mocapd.types import Bytes, Camera, Floats, Singles
@@ -38,7 +38,7 @@ class Sight:
     mask_shift: int
 
 
-class Eye:
+class PaperSegmenter:
     """Evidence of one camera. Keeps the background, W and the reference illuminations."""
 
     def __init__(self, camera: Camera, colours: ColourModel, W: Floats, params: Params) -> None:
@@ -98,7 +98,7 @@ class Eye:
         return out
 
     def learn(
-        self, pixels: Bytes, grid: Grid, drawing: Drawing, colour: Bytes, refined: Bytes
+        self, pixels: Bytes, grid: Grid, drawing: PatchRenderer, colour: Bytes, refined: Bytes
     ) -> None:
         """Step 5: W for the next frame from the final pose, and a reference if the light is new.
 
@@ -145,7 +145,7 @@ class Eye:
         )  # fmt: skip
         return ids, coloured, foreground
 
-    def _remember_body(self, grid: Grid, drawing: Drawing) -> None:
+    def _remember_body(self, grid: Grid, drawing: PatchRenderer) -> None:
         shift = self.params.background.shift
         body = np.zeros(
             (self.camera.size_px[1] >> shift, self.camera.size_px[0] >> shift), np.uint8

@@ -13,8 +13,8 @@ from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_window
 from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS
 from mocapd.trackers.colour_paper.paper_drawing import (
-    Drawing,
     Grid,
+    PatchRenderer,
     draw_vertices,
     posed_points,
     posture,
@@ -100,7 +100,7 @@ def constraints(model: BodyModel, local_xyzw: Floats, guess: Guess, sight: Sight
 
 def _as_database_draws(
     model: BodyModel, local_xyzw: Floats, view_from_root: Floats
-) -> tuple[Drawing, tuple[float, float, float]]:
+) -> tuple[PatchRenderer, tuple[float, float, float]]:
     """The pose on the database's canvas, and the crop's window on it (centre x, y and side)."""
     local = local_xyzw.copy()
     local[0] = view_from_root

@@ -12,8 +12,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour_paper.centroid_ik import CentroidSolver, Target
 from mocapd.trackers.colour_paper.covariances import load_covariances
-from mocapd.trackers.colour_paper.paper_drawing import Drawing, Posture, draw, posture
-from mocapd.trackers.colour_paper.paper_segmenter import Eye, Sight
+from mocapd.trackers.colour_paper.paper_drawing import PatchRenderer, Posture, draw, posture
+from mocapd.trackers.colour_paper.paper_segmenter import PaperSegmenter, Sight
 from mocapd.trackers.colour_paper.params import Params
 from mocapd.trackers.colour_paper.patch_kernels import classified_patches
 from mocapd.trackers.colour_paper.placement import blended_local, constraints, guess, place
@@ -54,7 +54,7 @@ class PaperTracker:
         self._skeleton = standard_skeleton(stature_m)
         self._solver = CentroidSolver(self._model, load_covariances(), self.params.iterations)
         self._eyes = {
-            camera.name: Eye(
+            camera.name: PaperSegmenter(
                 camera, colour_model, white_balance.get(camera.name, np.eye(3)), self.params
             )
             for camera in rig.cameras
@@ -107,7 +107,7 @@ class PaperTracker:
 
     def _pose(
         self, frames: FrameSet, sights: Mapping[str, Sight]
-    ) -> tuple[Posture | None, float, dict[str, Drawing], dict[str, Bytes]]:
+    ) -> tuple[Posture | None, float, dict[str, PatchRenderer], dict[str, Bytes]]:
         """Steps 2 to 4: the pose, the share of rendered samples classified alike, and per camera what it
         sees of the pose and the ids of step 3."""
         params, model = self.params, self._model
@@ -139,7 +139,7 @@ class PaperTracker:
         return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
 
     def _target(
-        self, eye: Eye, pixels: Bytes, sight: Sight, blended: Posture
+        self, eye: PaperSegmenter, pixels: Bytes, sight: Sight, blended: Posture
     ) -> tuple[Target, Bytes]:
         """Step 3, and the centroids of what it saw."""
         grid, params = sight.grid, self.params
@@ -185,14 +185,14 @@ class PaperTracker:
         return {name: sight.ids for name, sight in sights.items()}, regions
 
 
-def _agreement(drawing: Drawing, colour: Bytes, ids: Bytes) -> tuple[int, int]:
+def _agreement(drawing: PatchRenderer, colour: Bytes, ids: Bytes) -> tuple[int, int]:
     """How many rendered shirt samples are classified as the same colour, and how many there are."""
     rendered = np.empty(ids.shape, np.uint8)
     label_triangles(drawing.triangle_at, colour, rendered)
     return int(((rendered == ids) & (rendered > 0)).sum()), int((rendered > 0).sum())
 
 
-def _confidence(seen: list[Drawing], agreement: float) -> Floats:
+def _confidence(seen: list[PatchRenderer], agreement: float) -> Floats:
     """Per joint (J,): how much of its patches the best camera sees, times the overall agreement."""
     count = np.max([drawing.count for drawing in seen], axis=0)
     out = np.full(N_JOINTS, min(1.0, count[list(TORSO_PATCHES)].sum() / (4.0 * _WELL_SEEN)))

@@ -27,8 +27,8 @@ from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
 from mocapd.shirt.pose_database.pose_sampling import SamplingParams, poses_from_cube, random_cube
 from mocapd.trackers.colour_paper.paper_drawing import (
-    Drawing,
     Grid,
+    PatchRenderer,
     Posture,
     draw,
     posture,
@@ -92,7 +92,7 @@ def motion(rng: np.random.Generator, stature_m: float) -> list[tuple[Floats, Flo
     return out
 
 
-def damaged(drawing: Drawing, colour: Bytes, rng: np.random.Generator) -> Bytes:
+def damaged(drawing: PatchRenderer, colour: Bytes, rng: np.random.Generator) -> Bytes:
     """The colour ids (h,w) as a classifier sees them: frayed borders, blind spots, wrong colours."""
     ids = np.empty(drawing.triangle_at.shape, np.uint8)
     label_triangles(drawing.triangle_at, colour, ids)

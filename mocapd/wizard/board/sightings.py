@@ -15,7 +15,7 @@ Views = Mapping[str, Mapping[int, BoardView]]
 
 
 @dataclass(frozen=True, slots=True)
-class MomentParams:
+class SightingParams:
     """most_motion: of corners [parts of the picture's width per 1/30 s]; most_spread_s: between the
     cameras' pictures. Together they keep the error of pictures not taken at once under a third of a pixel."""
 
@@ -32,10 +32,10 @@ class Moments:
         self,
         sizes_px: Mapping[str, tuple[int, int]],
         board_m: Floats,
-        params: MomentParams | None = None,
+        params: SightingParams | None = None,
     ) -> None:
         self._sizes_px, self._board_m = sizes_px, board_m
-        self._params = params or MomentParams()
+        self._params = params or SightingParams()
         self._views: dict[str, dict[int, BoardView]] = {name: {} for name in sizes_px}
         self._places: dict[tuple[str, str], list[Floats]] = {
             pair: [] for pair in combinations(sorted(sizes_px), 2)

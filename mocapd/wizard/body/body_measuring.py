@@ -19,7 +19,7 @@ from mocapd.pipeline.rehearsal import rehearse
 from mocapd.session.tracker_setup import build_tracker, with_cache
 from mocapd.trackers.base import Tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
-from mocapd.wizard.body.body_observations import BodyMoments, MomentParams
+from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
@@ -60,7 +60,7 @@ def measure(
     watched: Watched,
     tell: Tell,
     make_tracker: MakeTracker,
-    params: MomentParams | None = None,
+    params: BodyObservationParams | None = None,
 ) -> Measured | None:
     """Measure the wearer of a draft whose room, colours and stature are known; None when stopped.
 

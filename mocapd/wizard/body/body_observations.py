@@ -18,7 +18,7 @@ _SIDES = [
 
 
 @dataclass(frozen=True, slots=True)
-class MomentParams:
+class BodyObservationParams:
     """Enough are `good_s` of moments, one every `every_s`, with both elbows bent through `bend_rad`; or
     `longest_good_s` of them without bends."""
 
@@ -32,10 +32,13 @@ class BodyMoments:
     """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last moment only."""
 
     def __init__(
-        self, model: BodyModel, cameras: Sequence[Camera], params: MomentParams | None = None
+        self,
+        model: BodyModel,
+        cameras: Sequence[Camera],
+        params: BodyObservationParams | None = None,
     ) -> None:
         self._model, self._cameras = model, tuple(cameras)
-        self._p = params if params is not None else MomentParams()
+        self._p = params if params is not None else BodyObservationParams()
         self.moments: list[ShapeMoment] = []
         self.pictures: dict[str, Bytes] = {}
         self._last: ShapeMoment | None = None

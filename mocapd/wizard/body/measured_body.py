@@ -8,7 +8,7 @@ from mocapd.body.shape import skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment
-from mocapd.fit.body_drawing import Drawing, work_factors
+from mocapd.fit.body_drawing import IdMapRenderer, work_factors
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.geometry.cameras import project
@@ -32,7 +32,7 @@ def body_picture(
     if view is None:
         return out
     factor = work_factors([camera], FitParams().work_width_px)[0]
-    drawing = Drawing(Shaper(model), camera, factor)
+    drawing = IdMapRenderer(Shaper(model), camera, factor)
     ids = drawing.render(state, view.dt_s, view.roi)
     at = np.array([view.roi[0], view.roi[1]])
     for colour in range(1, int(ids.max(initial=0)) + 1):

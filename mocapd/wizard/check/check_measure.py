@@ -49,7 +49,7 @@ class Measure:
 
 
 @dataclass(slots=True, eq=False)
-class Measures:
+class TrackingMeasures:
     """Written by the pipeline's thread, read by the wizard's."""
 
     _lock: threading.Lock = field(default_factory=threading.Lock)
@@ -73,7 +73,12 @@ class MeasuredTracker:
     """
 
     def __init__(
-        self, tracker: Tracker, rig: Rig, stature_m: float, factors: Floats | None, into: Measures
+        self,
+        tracker: Tracker,
+        rig: Rig,
+        stature_m: float,
+        factors: Floats | None,
+        into: TrackingMeasures,
     ) -> None:
         self.name = tracker.name
         self._tracker, self._rig, self._into = tracker, rig, into

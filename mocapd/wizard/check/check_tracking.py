@@ -15,7 +15,7 @@ from mocapd.pipeline.rehearsal import rehearse
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.session.tracker_setup import build_tracker, with_cache
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, Measures
+from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.only_cameras import OnlyCameras
 
@@ -36,7 +36,7 @@ class Prepared:
 
     tracker: MeasuredTracker
     rig: Rig
-    measures: Measures
+    measures: TrackingMeasures
 
 
 def prepare(
@@ -52,7 +52,7 @@ def prepare(
 
     progress("loading the pose database", 0, 1)
     tracker = build_tracker("colour", with_cache(inputs, cache_dir, progress))
-    measures = Measures()
+    measures = TrackingMeasures()
     measured = MeasuredTracker(tracker, known.rig, inputs.stature_m, known.factors, measures)
     pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
     rehearse(

@@ -7,16 +7,16 @@ import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_extrinsics import (
+    BoardExtrinsicsParams,
     ContradictionError,
     PlacedRoom,
-    RoomParams,
     SolvedRoom,
     placed,
     solve_room,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.pose_graph import lens_row
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import KnownLenses, LensPriors
 from mocapd.calibrate.intrinsics.views import Choice, chosen_views
 from mocapd.calibration.board_spec import BoardSpec
@@ -24,7 +24,7 @@ from mocapd.wizard.board.sightings import Views
 from mocapd.wizard.draft import DraftCamera
 
 # positions are never of neighbouring frames, so no motion is followed: one round is enough
-PARAMS = RoomParams(bundle=BundleParams(rounds=1))
+PARAMS = BoardExtrinsicsParams(bundle=BundleParams(rounds=1))
 _ALONE = Choice(most=12)  # pictures of one camera alone, for its lens
 _OWN_VIEWS = 8  # with fewer pictures its lens is taken as it was measured before
 _MOST_REFUSED = 0.15  # of the corners; above, the cameras have been moved between the steps
@@ -35,7 +35,7 @@ _DIST = (0.02, 0.05, 0.001, 0.001, 0.05)
 
 def solve_live(
     cameras: Sequence[DraftCamera],
-    lenses: Mapping[str, Lens],
+    lenses: Mapping[str, Intrinsics],
     spec: BoardSpec,
     views: Views,
     earlier: frozenset[int],
@@ -56,7 +56,7 @@ def solve_live(
 
 
 def _solved(
-    cameras: Sequence[DraftCamera], lenses: Mapping[str, Lens], spec: BoardSpec, views: Views
+    cameras: Sequence[DraftCamera], lenses: Mapping[str, Intrinsics], spec: BoardSpec, views: Views
 ) -> tuple[SolvedRoom, PlacedRoom]:
     names = [camera.id for camera in cameras]
     sizes_px = [camera.size_px for camera in cameras]
@@ -81,7 +81,7 @@ def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
     return {index: view for index, view in views[camera.id].items() if index not in dropped}
 
 
-def _known(lenses: Sequence[Lens], alone: Sequence[Sequence[BoardView]]) -> KnownLenses:
+def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownLenses:
     """Lenses without pictures of their own stay near what was measured."""
     rows = np.stack([lens_row(lens) for lens in lenses])
     deviation = np.full(rows.shape, np.inf)

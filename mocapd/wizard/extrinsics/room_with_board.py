@@ -47,7 +47,7 @@ _MORE = 3  # moments before another try
 _PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no moment
 
 
-class Stage(StrEnum):
+class RoomPhase(StrEnum):
     """How far it has come."""
 
     COLLECT = "collect"
@@ -74,7 +74,7 @@ class BoardRoom:
         )
         self._advice = BoardAdvice(context, lambda _spec: None)
         self._rest = BoardAtRest()
-        self._stage = Stage.COLLECT
+        self._stage = RoomPhase.COLLECT
         self._asked = False  # by hand, to solve with what there is
         self._solving = False
         self._now_ns = 0
@@ -105,17 +105,17 @@ class BoardRoom:
         """See Step."""
         self._now_ns = now_ns
         self._begun_ns = now_ns if self._begun_ns is None else self._begun_ns
-        if self._stage is Stage.DONE:
+        if self._stage is RoomPhase.DONE:
             return
         look = self._watch.look()
         if look is not None:
             self._advice.take(look)
-            if self._stage is Stage.COLLECT:
+            if self._stage is RoomPhase.COLLECT:
                 self._own += self._moments.offer(look)
             else:
                 self._watch_floor(look)
             self._advice.ask(now_ns, look.frames, self._spec)
-        if self._stage is Stage.COLLECT and self._context.job is None and self._due():
+        if self._stage is RoomPhase.COLLECT and self._context.job is None and self._due():
             self._solve()
 
     def command(self, command: Command) -> None:
@@ -126,7 +126,7 @@ class BoardRoom:
             case SkipFloor():
                 self._skip_floor()
             case Solve():
-                if self._stage is not Stage.COLLECT or not self._moments.linked(FEWEST_SHARED):
+                if self._stage is not RoomPhase.COLLECT or not self._moments.linked(FEWEST_SHARED):
                     raise InputError(
                         "there is nothing to solve yet",
                         "room",
@@ -147,7 +147,7 @@ class BoardRoom:
     def view(self) -> StepView:
         """See Step."""
         state = StepState.WAITING
-        if self._stage is Stage.DONE:
+        if self._stage is RoomPhase.DONE:
             state = StepState.DONE
         elif self._solving:
             state = StepState.WORKING
@@ -159,7 +159,7 @@ class BoardRoom:
             self._sentence(),
             self._progress(),
             self._problems(),
-            {} if self._stage is Stage.DONE else overlays,
+            {} if self._stage is RoomPhase.DONE else overlays,
             self._details(),
         )
 
@@ -202,7 +202,7 @@ class BoardRoom:
     # -- floor -----------------------------------------------------------------------------------
 
     def _to_floor(self) -> None:
-        self._stage, self._refusal = Stage.FLOOR, None
+        self._stage, self._refusal = RoomPhase.FLOOR, None
         self._rest.forget()
         self._context.scene(Scene.FLOOR)
 
@@ -255,7 +255,7 @@ class BoardRoom:
         self._finish(self._room, self._made, floor_known=False)
 
     def _finish(self, room: SolvedRoom, made: PlacedRoom, floor_known: bool) -> None:
-        self._stage, self._refusal = Stage.DONE, None
+        self._stage, self._refusal = RoomPhase.DONE, None
         self._room, self._made, self._plan = room, made, plan_of(room, made)
         area = made.play_area
         self._context.draft = replace(
@@ -276,9 +276,9 @@ class BoardRoom:
     # -- what is told ----------------------------------------------------------------------------
 
     def _sentence(self) -> str:
-        if self._stage is Stage.DONE:
+        if self._stage is RoomPhase.DONE:
             return "The room is known. Go on to the colours."
-        if self._stage is Stage.FLOOR:
+        if self._stage is RoomPhase.FLOOR:
             if self._rest.seen:
                 return "Leave the board where it lies."
             return (
@@ -293,9 +293,9 @@ class BoardRoom:
         return "Hold the board where the cameras see it together, here and there; keep it still each time."
 
     def _progress(self) -> float:
-        if self._stage is Stage.DONE:
+        if self._stage is RoomPhase.DONE:
             return 1.0
-        if self._stage is Stage.FLOOR:
+        if self._stage is RoomPhase.FLOOR:
             return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
         shares = (
             self._own / _OWN,
@@ -306,7 +306,7 @@ class BoardRoom:
 
     def _problems(self) -> tuple[Problem, ...]:
         told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
-        if self._stage is Stage.DONE:
+        if self._stage is RoomPhase.DONE:
             if not self._context.draft.floor_known:
                 told.append(
                     Problem(
@@ -318,7 +318,7 @@ class BoardRoom:
             return tuple(told)
         told += [self._refusal] if self._refusal is not None else []
         patient = self._begun_ns is None or self._now_ns - self._begun_ns < _PATIENCE_NS
-        if self._stage is Stage.COLLECT and not patient:
+        if self._stage is RoomPhase.COLLECT and not patient:
             told += [
                 Problem(
                     "it never sees the board at the same moment as another camera",
@@ -333,7 +333,7 @@ class BoardRoom:
                 )
             ]
         # on the floor one camera that sees the board is enough
-        wanted = {camera.id: self._stage is Stage.COLLECT for camera in self._cameras}
+        wanted = {camera.id: self._stage is RoomPhase.COLLECT for camera in self._cameras}
         return (*told, *self._advice.problems(self._now_ns, wanted))
 
     def _details(self) -> dict[str, Json]:
@@ -364,9 +364,9 @@ class BoardRoom:
                 for a, b in combinations(self._cameras, 2)
             ],
             "at_rest": self._rest.seen,
-            "can_solve": self._stage is Stage.COLLECT and self._moments.linked(FEWEST_SHARED),
-            "can_skip_floor": self._stage is Stage.FLOOR and made is not None,
-            "floor_known": self._stage is Stage.DONE and self._context.draft.floor_known,
+            "can_solve": self._stage is RoomPhase.COLLECT and self._moments.linked(FEWEST_SHARED),
+            "can_skip_floor": self._stage is RoomPhase.FLOOR and made is not None,
+            "floor_known": self._stage is RoomPhase.DONE and self._context.draft.floor_known,
             "quality": quality,
             "plan": self._plan,
         }

@@ -10,8 +10,8 @@ import numpy as np
 from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchTracks, unplaced
 from mocapd.calibrate.self_calibration.self_calibration import (
-    RoomParams,
     RoomReport,
+    SelfCalibrationParams,
     room_from_body,
 )
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
@@ -44,7 +44,7 @@ class WalkParams:
     places: int = 4
     longest_good_s: float = 30.0
     patience_s: float = 75.0
-    room: RoomParams = field(default_factory=RoomParams)
+    room: SelfCalibrationParams = field(default_factory=SelfCalibrationParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

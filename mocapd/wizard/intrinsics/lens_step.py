@@ -1,4 +1,4 @@
-"""The step Lens: the board is shown to every camera, whose lens is solved as soon as enough was seen.
+"""The step Intrinsics: the board is shown to every camera, whose lens is solved as soon as enough was seen.
 
 Its commands are `commands.LENS`.
 """
@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.boundary.numbers import brief
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.view_picking import PickedViews
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError, InputError, MocapdError
@@ -179,11 +179,11 @@ class LensStep:
         views = tuple(one.picked.views)
         self._solving = one
 
-        def job(tell: Tell) -> Lens:
+        def job(tell: Tell) -> Intrinsics:
             tell(f"the lens of {one.name}", 0.0)
             return one.solve(views, board_m)
 
-        def done(lens: Lens) -> None:
+        def done(lens: Intrinsics) -> None:
             self._solving = None
             if begun_in == self._round and one.lens is None:
                 one.take(lens, count)

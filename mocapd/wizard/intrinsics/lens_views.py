@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Lens, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
 from mocapd.calibrate.intrinsics.views import GRID, Choice, chosen_views
 from mocapd.errors import MocapdError
@@ -38,7 +38,7 @@ class GoodLens:
 class Offered:
     """A lens of before. when: the day it was measured, "" in this setup; from_file: of another setup."""
 
-    lens: Lens
+    lens: Intrinsics
     when: str
     from_file: bool
 
@@ -51,8 +51,8 @@ class LensCamera:
     picked: PickedViews
     offered: Offered | None = None
     taken: Offered | None = None  # the one that was offered, when the person took it
-    lens: Lens | None = None  # that the step ends with
-    usable: Lens | None = None  # the newest one that is not good enough yet
+    lens: Intrinsics | None = None  # that the step ends with
+    usable: Intrinsics | None = None  # the newest one that is not good enough yet
     refusal: Problem | None = None
     tried: int = 0  # pictures at the last try
     good: GoodLens = field(default_factory=GoodLens)
@@ -69,12 +69,12 @@ class LensCamera:
             return False
         return count >= (self.tried + _NEXT_TRY if self.tried else _FIRST_TRY)
 
-    def solve(self, views: Sequence[BoardView], board_m: Floats) -> Lens:
+    def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
         """For a job. Raises ConfigError that says what is wrong with the pictures."""
         chosen = chosen_views(views, self.camera.size_px, _CHOICE)
         return solve_lens(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
 
-    def take(self, lens: Lens, tried: int) -> None:
+    def take(self, lens: Intrinsics, tried: int) -> None:
         """The job's lens: good enough to end with, or the best so far."""
         self.tried, self.refusal, self.usable = tried, None, lens
         good = self.good
@@ -96,7 +96,7 @@ class LensCamera:
         self.lens = None if offered is None else offered.lens
         self.refusal = None
 
-    def by_hand(self) -> Lens | None:
+    def by_hand(self) -> Intrinsics | None:
         """The lens that a person may end with now."""
         if self.lens is not None:
             return self.lens
@@ -165,7 +165,7 @@ def _counted(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
     ]
 
 
-def _figures(lens: Lens) -> dict[str, Json]:
+def _figures(lens: Intrinsics) -> dict[str, Json]:
     return {
         "rms_px": _rounded(lens.rms_px, 3),
         "held_out_px": _rounded(lens.held_out_px, 3),

@@ -10,7 +10,7 @@ import numpy as np
 
 from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import convert, parse_toml
-from mocapd.calibrate.intrinsics.intrinsics import Lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
 from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError
@@ -55,9 +55,9 @@ class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
         if not (self.K[0][0] > 0.0 and self.K[1][1] > 0.0 and self.K[2] == (0.0, 0.0, 1.0)):
             raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
 
-    def lens(self) -> Lens:
+    def lens(self) -> Intrinsics:
         """As the lens step finds one."""
-        return Lens(
+        return Intrinsics(
             self.size_px,
             np.array(self.K),
             np.array(self.dist),
@@ -136,7 +136,7 @@ def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
         ) from None
 
 
-def _saved(key: str, camera: DraftCamera, lens: Lens, when: datetime) -> SavedLens:
+def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedLens:
     K: tuple[Row3, Row3, Row3] = msgspec.convert(
         np.round(lens.K, 4).tolist(), tuple[Row3, Row3, Row3]
     )
