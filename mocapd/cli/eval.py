@@ -105,7 +105,7 @@ def evaluate_captures(
         if compare is None:
             results = runs.run(cases, variant.value, setting)
             title = name if name != _COMPARABLE else f"{name}, variant {variant.value}"
-            findings = runs.Findings(title, joints.value, results, {}, ())
+            findings = runs.EvaluationResults(title, joints.value, results, {}, ())
         else:
             findings = runs.compare(cases, name, setting)
     _print(findings, as_json)

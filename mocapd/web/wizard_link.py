@@ -28,7 +28,7 @@ NOT_THE_DRIVER = Problem(
 )
 
 
-class Command(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class PageCommand(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a person did on the page."""
 
     verb: Annotated[str, Meta(max_length=100)]
@@ -75,14 +75,14 @@ class WizardLink:
         while True:
             text = await received(self._socket)
             try:
-                command = decode_json(text, Command)
+                command = decode_json(text, PageCommand)
             except MalformedError as error:
                 self._refused = Problem(f"not understood: {error}", "the page", "reload the page")
                 continue
             self._refused = None
             await self._take(command)
 
-    async def _take(self, command: Command) -> None:
+    async def _take(self, command: PageCommand) -> None:
         begins = command.verb == "begin" and self._host.wizard is None
         if begins or command.verb == "take_over":
             self._seat.take_over(self)

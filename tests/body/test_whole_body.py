@@ -263,7 +263,7 @@ def solved(points_m: Floats, start: tuple[Floats, Floats], rounds: int) -> tuple
             at = slice(3 + 3 * g, 6 + 3 * g)
             H[at, at] += 0.1 * slope[g].T @ slope[g]
             b[at] -= 0.1 * slope[g].T @ residual[g]
-        root, local = moved(root, local, np.linalg.solve(H, b))
+        root, local = moved(root, local, np.asarray(np.linalg.solve(H, b)))
     return root, local
 
 

@@ -14,7 +14,7 @@ from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_nu
 from mocapd.boundary.pictures import decode_picture, read_header
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.errors import MocapdError
-from mocapd.web.wizard_link import Command
+from mocapd.web.wizard_link import PageCommand
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample
 from tests.fuzz.mutations import JSON_VALUES, TOML_LINES, TOML_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError, named, taken
@@ -107,19 +107,19 @@ def pictures(place: Place) -> Attempt:
 def messages(place: Place) -> Attempt:
     """JSON, msgpack and TOML."""
     ways: tuple[Callable[[Random], object], ...] = (
-        lambda random: decode_json(mistyped(random, _JSON, JSON_VALUES), Command),
+        lambda random: decode_json(mistyped(random, _JSON, JSON_VALUES), PageCommand),
         lambda random: decode_json(mistyped(random, _JSON, JSON_VALUES), dict),
         lambda random: decode_msgpack(damaged(random, _MSGPACK), dict),
-        lambda random: decode_msgpack(damaged(random, _MSGPACK), Command),
+        lambda random: decode_msgpack(damaged(random, _MSGPACK), PageCommand),
         lambda random: parse_json(_text(mistyped(random, _JSON, JSON_VALUES))),
         lambda random: parse_toml(_text(mistyped(random, _TOML, TOML_VALUES, TOML_LINES))),
         lambda random: convert(
-            parse_toml(_text(mistyped(random, _TOML, TOML_VALUES, TOML_LINES))), Command
+            parse_toml(_text(mistyped(random, _TOML, TOML_VALUES, TOML_LINES))), PageCommand
         ),
     )
-    decode_json(_JSON, Command)
-    decode_msgpack(_MSGPACK, Command)
-    convert(parse_toml(_TOML.decode()), Command)
+    decode_json(_JSON, PageCommand)
+    decode_msgpack(_MSGPACK, PageCommand)
+    convert(parse_toml(_TOML.decode()), PageCommand)
     return lambda random, number: taken(lambda: ways[number % len(ways)](random))
 
 

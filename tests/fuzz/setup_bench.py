@@ -21,7 +21,7 @@ from mocapd.errors import CannotCreateError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Frame
-from mocapd.web.wizard_link import Command
+from mocapd.web.wizard_link import PageCommand
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import Moved
 from mocapd.wizard.check.check_tracking import CheckSettings
@@ -96,7 +96,7 @@ class SetupBench:
 
         Raises MalformedError, and DeadlyError when it ended the setup, at once or at the next tick.
         """
-        command = decode_json(message, Command)
+        command = decode_json(message, PageCommand)
         self.show()
         before = self.wizard.view().serial
         self.wizard.send(command.verb, command.args)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from mocapd.sim.board.board_path import Place, between, floor_place, lens_places, room_places
+from mocapd.sim.board.board_path import BoardPlace, between, floor_place, lens_places, room_places
 from mocapd.sim.board.board_shots import BoardShots
 from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.clips import Clip
@@ -31,7 +31,7 @@ class _BoardFile(msgspec.Struct, frozen=True):
     scenes: dict[str, dict[str, list[bytes]]]
 
 
-def board_scenes(cameras: Sequence[Camera]) -> dict[SetupScene, list[Place | None]]:
+def board_scenes(cameras: Sequence[Camera]) -> dict[SetupScene, list[BoardPlace | None]]:
     """The places at which the board is held, one after the other and over again; None: no board."""
     return {
         SetupScene.EMPTY: [None],
@@ -65,9 +65,9 @@ def load_board_clips(
     }
 
 
-def _shots(places: Sequence[Place | None]) -> list[tuple[Place | None, int]]:
+def _shots(places: Sequence[BoardPlace | None]) -> list[tuple[BoardPlace | None, int]]:
     """Where the board is, and how many pictures are taken: held, each followed by the way to the next."""
-    out: list[tuple[Place | None, int]] = []
+    out: list[tuple[BoardPlace | None, int]] = []
     for a, b in pairwise([*places, places[0]]):
         out.append((a, _STILL_PICTURES))
         if a is not None and b is not None and a is not b:
@@ -108,5 +108,7 @@ def _render(scenario: Scenario, key: str, progress: Progress | None) -> _BoardFi
     return _BoardFile(key, out)
 
 
-def _shoot(place: Place | None, noise_keys: range, quality: int, shots: BoardShots) -> list[bytes]:
+def _shoot(
+    place: BoardPlace | None, noise_keys: range, quality: int, shots: BoardShots
+) -> list[bytes]:
     return [encode_jpeg(pixels, quality) for pixels in shots.pictures(place, noise_keys)]

@@ -31,7 +31,7 @@ _ROOM_PLACES = (
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class BoardPlace:
     """Where the board is: its middle [m] and world_from_board quaternion (4,) xyzw."""
 
     middle_m: Floats
@@ -44,15 +44,15 @@ class Place:
         return R, self.middle_m - R @ half
 
 
-def between(a: Place, b: Place, u: float) -> Place:
+def between(a: BoardPlace, b: BoardPlace, u: float) -> BoardPlace:
     """On the way from a (u = 0) to b (u = 1), starting and ending at rest."""
     s = u * u * (3.0 - 2.0 * u)
-    return Place(
+    return BoardPlace(
         a.middle_m + s * (b.middle_m - a.middle_m), rotations.slerp(a.quat_xyzw, b.quat_xyzw, s)
     )
 
 
-def lens_places(cameras: Sequence[Camera]) -> list[Place]:
+def lens_places(cameras: Sequence[Camera]) -> list[BoardPlace]:
     """For each camera in its turn, places that together fill its picture to the corners.
 
     The others see many of them too.
@@ -71,7 +71,7 @@ def lens_places(cameras: Sequence[Camera]) -> list[Place]:
     return places
 
 
-def room_places(cameras: Sequence[Camera]) -> list[Place]:
+def room_places(cameras: Sequence[Camera]) -> list[BoardPlace]:
     """Places in the play area, facing the middle between the cameras and tilted."""
     eye = np.mean([centre(camera) for camera in cameras], axis=0)
     places = []
@@ -82,11 +82,11 @@ def room_places(cameras: Sequence[Camera]) -> list[Place]:
     return places
 
 
-def floor_place() -> Place:
+def floor_place() -> BoardPlace:
     """Flat on the floor in the middle of the play area, printed side up, laid there askew."""
     up = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     askew = rotations.exp(np.radians([0.0, 80.0, 0.0]))
-    return Place(np.zeros(3), rotations.multiply(askew, rotations.from_matrix(up)))
+    return BoardPlace(np.zeros(3), rotations.multiply(askew, rotations.from_matrix(up)))
 
 
 def _facing(middle_m: Floats, eye_m: Floats) -> Floats:
@@ -97,10 +97,10 @@ def _facing(middle_m: Floats, eye_m: Floats) -> Floats:
     return np.stack([right, np.cross(away, right), away], axis=-1)
 
 
-def _placed(middle_m: Floats, facing_xyzw: Floats, turns_deg: Floats) -> Place:
+def _placed(middle_m: Floats, facing_xyzw: Floats, turns_deg: Floats) -> BoardPlace:
     pitch, yaw, roll = (
         rotations.exp(np.radians(angle) * axis)
         for angle, axis in zip(turns_deg, np.eye(3), strict=True)
     )
     turned = rotations.multiply(rotations.multiply(pitch, yaw), roll)
-    return Place(middle_m, rotations.canonical(rotations.multiply(facing_xyzw, turned)))
+    return BoardPlace(middle_m, rotations.canonical(rotations.multiply(facing_xyzw, turned)))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from mocapd.sim.board.board_path import Place
+from mocapd.sim.board.board_path import BoardPlace
 from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard
 from mocapd.sim.renderer import CameraRenderer
 from mocapd.sim.scenery.lamps import Lamps
@@ -24,7 +24,7 @@ class BoardShots:
         self._colour = np.zeros((height, width, 3), dtype=np.float32)
         self._cover = np.zeros((height, width), dtype=np.float32)
 
-    def pictures(self, place: Place | None, noise_keys: Sequence[int]) -> list[Bytes]:
+    def pictures(self, place: BoardPlace | None, noise_keys: Sequence[int]) -> list[Bytes]:
         """(H,W,3) BGR each, alike but for the noise, with the board at this place; None: nothing."""
         self._colour[:] = 0.0
         self._cover[:] = 0.0
