@@ -48,7 +48,11 @@ def check_config(
     _print_table(rows)
     if not changed:
         _print_calibration(effective.config)
-    for line in unsafe_settings(effective):
+    from mocapd.outputs.zenoh.zenoh_warnings import warnings
+
+    zenoh = effective.config.zenoh
+    # a daemon logs Zenoh's own when it opens it
+    for line in (*unsafe_settings(effective), *(warnings(zenoh) if zenoh.enabled else ())):
         print(f"# unsafe: {line}")
 
 

@@ -66,6 +66,16 @@ def test_check_config_shows_no_password_and_what_is_unsafe(
             assert "# unsafe: " in outcome.out
 
 
+def test_check_config_shows_what_is_unsafe_of_zenoh(
+    clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    users = tmp_path / "users"
+    users.write_text("game:secret\n")
+    users.chmod(0o644)
+    outcome = mocapd(clean_env, "check-config", "--set", f"zenoh.password_file={users}")
+    assert f"chmod 600 {users}" in outcome.out, outcome.err
+
+
 def test_a_camera_with_an_odd_name_is_a_camera(clean_env: dict[str, str]) -> None:
     words = ("check-config", "--changed", "--json", "--camera", 'a"\n\\=usb:\x7f')
     outcome = mocapd(clean_env, *words)
