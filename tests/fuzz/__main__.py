@@ -74,6 +74,7 @@ def _with_bars(
         MofNCompleteColumn(),
         console=Console(stderr=True),
         transient=True,
+        disable=not sys.stderr.isatty(),
     )
     tasks: dict[str, TaskID] = {}
     with bars:
@@ -84,6 +85,8 @@ def _with_bars(
             name, inputs = one.outcome.row.name, one.outcome.inputs
             if name not in tasks:
                 tasks[name] = bars.add_task(name, total=inputs)
+            if done.get(name) == one.done:
+                return
             done[name] = one.done
             bars.update(tasks[name], completed=one.done, visible=one.done < inputs - 1)
             bars.update(whole, completed=sum(done.values()))

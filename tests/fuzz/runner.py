@@ -15,7 +15,7 @@ from tests.fuzz.row import Place, Row
 HANG_S = 10.0  # after which one input counts as never ending [s]
 _PREPARE_S = 600.0  # its kernels may have to be compiled first
 _MOST_DEATHS = 12  # of a row, before it is given up
-_LOOK_EVERY_S = 0.02
+_LOOK_EVERY_S = 0.05
 
 _FORK = multiprocessing.get_context("fork")
 

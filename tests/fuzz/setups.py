@@ -131,7 +131,7 @@ def solved_strokes(place: Place) -> Attempt:
 
     good = Drawn(sample((64, 48)), strokes_on((64, 48)))
     solve({"cam0": good, "cam1": good}, True, {})
-    for number in range(20):  # until all that is compiled for some of them is compiled
+    for number in range(10):  # until all that is compiled for some of them is compiled
         attempt(Random(number), number)
     return attempt
 
