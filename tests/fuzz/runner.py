@@ -1,5 +1,6 @@
 """Runs rows, each in a process of its own: one that crashes or hangs is ended, and goes on with the next input."""
 
+import gc
 import json
 import multiprocessing
 import os
@@ -147,6 +148,8 @@ def run_rows(
     told: Callable[[Running], None],
 ) -> list[Outcome]:
     """Every row with its inputs, `jobs` at once. `told` is called often with each that runs."""
+    gc.collect()
+    gc.freeze()  # else every child would copy all of it by looking through it
     waiting, running, outcomes = list(rows), list[Running](), list[Outcome]()
     try:
         while waiting or running:
