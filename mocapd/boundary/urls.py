@@ -37,6 +37,8 @@ def without_password(text: str) -> str:
     Hidden are also values of the query that are named as secrets, as many network cameras want them.
     """
     found = _CREDENTIALS.match(text)
+    if found and _SECRET_QUERY.search(found[2]):
+        return f"{found[1]}{HIDDEN}"  # the `@` may be of either secret
     if found:
         user, colon, _ = found[2].partition(":")
         shown = f"{user}:{HIDDEN}" if colon else user
@@ -46,7 +48,7 @@ def without_password(text: str) -> str:
 
 def is_masked(text: str) -> bool:
     """Whether its password is hidden, so that nothing can be reached by it."""
-    return "://" in text and (f":{HIDDEN}@" in text or f"={HIDDEN}" in text)
+    return any(f"{before}{HIDDEN}" in text for before in ("://", ":", "=")) and "://" in text
 
 
 def without_passwords(text: str) -> str:

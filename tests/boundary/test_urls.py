@@ -28,6 +28,7 @@ from mocapd.errors import ConfigError
         ),
         ("http://cam/v?password=hunter2", "http://cam/v?password=***"),
         ("http://cam/v?access_token=hunter2#x", "http://cam/v?access_token=***#x"),
+        ("http://cam:80/v?pwd=hun@ter2", "http://***"),
         ("/dev/video0", "/dev/video0"),
         ("usb:1-3:046d:0825:", "usb:1-3:046d:0825:"),
         ("clips/me@home:1.mp4", "clips/me@home:1.mp4"),
