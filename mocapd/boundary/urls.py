@@ -16,16 +16,16 @@ _SECRET_QUERY = re.compile(
 
 
 def split_url(text: str) -> SplitResult:
-    """The parts of a URL, its secrets hidden. Raises ConfigError for one that has no parts, such as
-    `rtsp://[bad`."""
-    shown = without_password(text)  # first: the errors of a parser repeat what they could not read
+    """The parts of a URL. Raises ConfigError for one that has no parts, such as `rtsp://[bad`."""
     try:
-        parts = urlsplit(shown)
+        parts = urlsplit(text)
         _ = parts.port  # also when it is no number
     except ValueError as error:
+        # the parser's own words repeat what it could not read
+        why = "" if has_password(text) else f": {error}"
         raise ConfigError(
-            f"{shown!r} is no address: {error}",
-            fix="write it as rtsp://user:password@host:port/path",
+            f"{without_password(text)!r} is no address{why}",
+            fix="write it as rtsp://user:password@host:port/path, with %2F for a / in the password",
         ) from None
     return parts
 

@@ -57,10 +57,11 @@ class BoardSpec:
     def __post_init__(self) -> None:
         fewest = FEWEST_SQUARES[self.kind]
         if not all(fewest <= count <= MOST_SQUARES for count in (self.columns, self.rows)):
+            too = "few" if min(self.columns, self.rows) < fewest else "many"
             raise ConfigError(
-                f"a {self.kind} of {brief(self.columns)} x {brief(self.rows)} squares",
+                f"{brief(self.columns)}x{brief(self.rows)} squares are too {too}",
                 _WHERE,
-                f"give columns x rows of squares, {fewest} to {MOST_SQUARES} each",
+                f"give columns x rows of squares, at least {fewest} and at most {MOST_SQUARES} each",
             )
         if not SMALLEST_SQUARE_M <= self.square_m < LARGEST_SQUARE_M:
             raise ConfigError(
