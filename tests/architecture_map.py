@@ -1,14 +1,18 @@
-"""The module map of ARCHITECTURE.md, from the first line of every module's docstring.
+"""The map of all modules, docs/modules.md, from the first line of every module's docstring.
 
-`python -m tests.architecture_map` writes it anew between the markers; a test compares.
+`python -m tests.architecture_map` writes it anew; a test compares.
 """
 
 import ast
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "ARCHITECTURE.md"
-START, END = "<!-- map: python -m tests.architecture_map -->", "<!-- end of map -->"
+PAGE = ROOT / "docs" / "modules.md"
+HEAD = [
+    "# Every module",
+    "",
+    "What each says of itself in its first line; made by `python -m tests.architecture_map`.",
+]
 
 
 def map_lines() -> list[str]:
@@ -27,12 +31,10 @@ def map_lines() -> list[str]:
     return lines
 
 
-def page_with_map(page: str) -> str:
-    """The page with a fresh map between the markers."""
-    before, rest = page.split(START)
-    after = rest.split(END)[1]
-    return before + START + "\n" + "\n".join(map_lines()) + "\n" + END + after
+def page() -> str:
+    """The whole page."""
+    return "\n".join([*HEAD, *map_lines()]) + "\n"
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page_with_map(PAGE.read_text()))
+    PAGE.write_text(page())
