@@ -60,11 +60,12 @@ demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one liv
 test: dev ## run all tests
 	$(BIN)/python -m pytest
 
-check: dev ## lint, format, types, import contract
+check: dev ## lint, format, types, import contract, dead code
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/vulture
 
 bench: env ## time every tracker, stage by stage
 	@$(BIN)/mocapd bench

@@ -21,37 +21,29 @@ class FrameHub:
 
     def __init__(self, names: Iterable[str], *onwards: TakesFrames) -> None:
         self.names = tuple(names)
-        self._changed = threading.Condition()  # guards what follows
+        self._lock = threading.Lock()  # guards what follows
         self._newest: dict[str, Frame] = {}
         self._onwards: tuple[TakesFrames, ...] = onwards
 
     def put(self, frame: Frame) -> None:
         """Hand in a frame."""
-        with self._changed:
+        with self._lock:
             self._newest[frame.camera] = frame
             onwards = self._onwards
-            self._changed.notify_all()
         for one in onwards:
             one.put(frame)
 
     def newest(self, camera: str) -> Frame | None:
         """The camera's newest frame; None before its first."""
-        with self._changed:
+        with self._lock:
             return self._newest.get(camera)
-
-    def newer(self, camera: str, than: Frame | None, timeout_s: float) -> Frame | None:
-        """A frame of this camera other than `than`, waited for; None after `timeout_s` [s]."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._newest.get(camera) is not than, timeout_s)
-            frame = self._newest.get(camera)
-            return None if frame is than else frame
 
     def join(self, taker: TakesFrames) -> None:
         """From now on this one gets every frame too."""
-        with self._changed:
+        with self._lock:
             self._onwards = (*self._onwards, taker)
 
     def leave(self, taker: TakesFrames) -> None:
         """No more frames for this one; nothing happens when it never joined."""
-        with self._changed:
+        with self._lock:
             self._onwards = tuple(one for one in self._onwards if one is not taker)

@@ -17,7 +17,6 @@ UNIX_OFFSET_NS = 1_700_000_000_000_000_000
 PUBLISH_NS = CAPTURE_NS + 15_625_000  # 1/64 s later, exact in a float32
 
 HALF = 0.5
-S = 0.7071067811865476  # sin 45 degrees
 
 
 def small_frame(**changes: object) -> SkeletonFrame:

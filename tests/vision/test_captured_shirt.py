@@ -56,7 +56,7 @@ def test_the_shirt_is_read_under_the_light_it_was_scribbled_in(
     for variant, T in ((model, 3.0), (model.tolerating(), 2.0)):
         precision = shade_precision(model) if variant is not model else None
         W = solve_white_balance(means, model.mean, counts, precision=precision)
-        tables.refill(variant, W, T, 5.0)
+        tables.refill(variant, W, T)
         right = wrong = shirt = 0
         for frame, truth in frames_with_truth(capture):
             ids = np.zeros(truth.shape, dtype=np.uint8)

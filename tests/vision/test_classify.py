@@ -5,11 +5,7 @@ import pytest
 
 from mocapd.errors import ConfigError
 from mocapd.shirt.colour.colour_tables import ColourTables
-from mocapd.shirt.colour.lut_kernels import (
-    STEPS_PER_SIGMA,
-    classify_by_table,
-    classify_by_table_with_prior,
-)
+from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.whitening import fold
 from mocapd.trackers.colour_paper.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.types import Bytes
@@ -62,7 +58,7 @@ def test_a_region_is_that_part_of_the_frame(stride: int) -> None:
     classify(pixels, coarse, 1, whitening.upper, whitening.offset, 3.0, 7, 5, stride, part)
     assert (part == whole[5 : 5 + 10 * stride : stride, 7 : 7 + 12 * stride : stride]).all()
     tables = ColourTables()
-    tables.refill(MODEL, W, 3.0, 5.0)
+    tables.refill(MODEL, W, 3.0)
     classify_by_table(pixels, coarse, 1, tables.ids, 0, 0, 1, whole)
     classify_by_table(pixels, coarse, 1, tables.ids, 7, 5, stride, part)
     assert (part == whole[5 : 5 + 10 * stride : stride, 7 : 7 + 12 * stride : stride]).all()
@@ -76,17 +72,13 @@ def cell_centres() -> Bytes:
 
 
 @pytest.mark.parametrize(("model", "threshold"), [(MODEL, 3.0), (TOLERANT, 1.7)])
-def test_tables_hold_the_distances_at_the_middles_of_the_cells(
+def test_a_table_holds_the_nearest_colours_of_the_middles_of_the_cells(
     model: object, threshold: float
 ) -> None:
     tables = ColourTables()
-    tables.refill(model, W, threshold, 5.0)  # type: ignore[arg-type]
+    tables.refill(model, W, threshold)  # type: ignore[arg-type]
     centres = cell_centres().astype(np.float64) + 0.5
     costs = naive.mahalanobis(centres, W, model).reshape(-1, 10)  # type: ignore[arg-type]
-    in_reach = (tables.colours[:, None] >> np.arange(10)) & 1 > 0
-    assert (in_reach == (costs <= 5.0))[np.abs(costs - 5.0) > 1e-3].all()
-    error = np.abs(tables.distances[in_reach] / STEPS_PER_SIGMA - costs[in_reach])
-    assert error.max() < 0.5 / STEPS_PER_SIGMA + 1e-3
     expected = naive.classify(costs[None], threshold, np.ones((1, 32**3), dtype=np.uint8))[0]
     clear = np.abs(costs.min(axis=1) - threshold) > 1e-3
     clear &= np.diff(np.sort(costs, axis=1)[:, :2], axis=1)[:, 0] > 1e-3
@@ -95,17 +87,16 @@ def test_tables_hold_the_distances_at_the_middles_of_the_cells(
 
 def test_a_table_refilled_is_a_table_made_new() -> None:
     used, fresh = ColourTables(), ColourTables()
-    used.refill(TOLERANT, np.eye(3) * 1.4, 3.0, 5.0)
-    used.refill(MODEL, W, 3.0, 5.0)
-    fresh.refill(MODEL, W, 3.0, 5.0)
+    used.refill(TOLERANT, np.eye(3) * 1.4, 3.0)
+    used.refill(MODEL, W, 3.0)
+    fresh.refill(MODEL, W, 3.0)
     assert (used.ids == fresh.ids).all()
-    assert (used.colours == fresh.colours).all()
 
 
 def test_table_classification_looks_the_cells_up() -> None:
     pixels, mask = picture(), half_mask((48, 64))
     tables = ColourTables()
-    tables.refill(MODEL, W, 3.0, 5.0)
+    tables.refill(MODEL, W, 3.0)
     out = np.full((48, 64), 77, dtype=np.uint8)
     counts = classify_by_table(pixels, mask, 0, tables.ids, 0, 0, 1, out)
     b, g, r = np.moveaxis(pixels.astype(int) >> 3, 2, 0)
@@ -142,37 +133,6 @@ def test_the_prior_adds_its_cost(threshold: float) -> None:
     assert counts == ((out > 0).sum(), (mask > 0).sum())
 
 
-def test_the_table_with_prior_is_the_formula_on_cell_centres() -> None:
-    centres = cell_centres()
-    ones = np.ones((1, 1), dtype=np.uint8)
-    distance = np.random.default_rng(4).uniform(0.0, 80.0, (10, 128, 256)).astype(np.float32)
-    tables = ColourTables()
-    tables.refill(MODEL, W, 3.0, 5.0)
-    out = np.zeros((128, 256), dtype=np.uint8)
-    classify_by_table_with_prior(
-        centres, ones, 31, tables.colours, tables.distances, distance, 0.04, 5.0, 0, 0, 1, out
-    )
-    costs = naive.mahalanobis(centres.astype(np.float64) + 0.5, W, MODEL) + 0.04 * np.moveaxis(
-        distance, 0, 2
-    )
-    clear = np.abs(costs.min(axis=2) - 5.0) > 1.0 / STEPS_PER_SIGMA
-    clear &= np.diff(np.sort(costs, axis=2)[..., :2], axis=2)[..., 0] > 1.0 / STEPS_PER_SIGMA
-    assert (out == naive.classify(costs, 5.0, np.ones((128, 256), dtype=np.uint8)))[clear].all()
-
-
-def test_without_distance_the_prior_changes_nothing() -> None:
-    pixels, mask = picture(5), half_mask((48, 64))
-    tables = ColourTables()
-    tables.refill(MODEL, W, 5.0, 5.0)
-    plain, with_prior = np.zeros((2, 48, 64), dtype=np.uint8)
-    nowhere = np.zeros((10, 48, 64), dtype=np.float32)
-    classify_by_table(pixels, mask, 0, tables.ids, 0, 0, 1, plain)
-    classify_by_table_with_prior(
-        pixels, mask, 0, tables.colours, tables.distances, nowhere, 1.0, 5.0, 0, 0, 1, with_prior
-    )
-    assert (plain == with_prior).mean() > 0.99  # ties within the byte of a distance
-
-
 def test_sums_are_the_means_of_each_id() -> None:
     pixels = picture()
     ids = np.random.default_rng(6).integers(0, 8, (20, 25)).astype(np.uint8)
@@ -184,7 +144,7 @@ def test_sums_are_the_means_of_each_id() -> None:
         assert (sums[k - 1] == samples[ids == k].astype(int).sum(axis=0)[::-1]).all()
 
 
-@pytest.mark.parametrize(("threshold", "reach"), [(0.0, 5.0), (3.0, 2.0), (3.0, 7.0)])
-def test_thresholds_that_no_table_can_hold_are_refused(threshold: float, reach: float) -> None:
-    with pytest.raises(ConfigError, match="thresholds"):
-        ColourTables().refill(MODEL, W, threshold, reach)
+@pytest.mark.parametrize("threshold", [0.0, -1.0, float("nan")])
+def test_thresholds_that_no_colour_is_within_are_refused(threshold: float) -> None:
+    with pytest.raises(ConfigError, match="threshold"):
+        ColourTables().refill(MODEL, W, threshold)

@@ -20,12 +20,10 @@ _NECK = INDEX["neck"]
 class Scale:
     """The wearer as the cameras see them, against the mean body of the typed stature; 1 when they agree.
 
-    bones: from widths and lengths, with its standard deviation; height: of the neck over the floor,
-    NaN when the floor is not known.
+    bones: from widths and lengths; height: of the neck over the floor, NaN when the floor is not known.
     """
 
     bones: float
-    bones_sd: float
     height: float
 
 
@@ -47,7 +45,7 @@ def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
     if floor_known:
         seen_m = [_neck_m(fit.states[k], model) for k in fit.counted]
         height = float(np.median(seen_m) / model.rest_m[_NECK, 1])
-    return Scale(bones, float(weight.sum() ** -0.5), height)
+    return Scale(bones, height)
 
 
 def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> ScaleTrouble | None:

@@ -61,7 +61,7 @@ def colours_alone(
     p = params if params is not None else SegmentationParams()
     tables = ColourTables()
     tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
-    tables.refill(tolerant, W, p.first_threshold, p.first_threshold)
+    tables.refill(tolerant, W, p.first_threshold)
     ids = np.empty(pixels.shape[:2], np.uint8)
     classify_by_table(np.ascontiguousarray(pixels), _EVERYWHERE, 31, tables.ids, 0, 0, 1, ids)
     return ids

@@ -23,12 +23,11 @@ _MOVE = "walk about, turn and move the arms where both cameras see the shirt"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RelativePose:
-    """second_from_first: R (3,3), t_m (3,); inliers (N,) of the points given, and their RMS distance."""
+    """second_from_first: R (3,3), t_m (3,); inliers (N,) of the points given."""
 
     R: Floats
     t_m: Floats
     inliers: NDArray[np.bool_]
-    rms_m: float
 
 
 def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> RelativePose:
@@ -59,7 +58,7 @@ def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> Relativ
             "room",
             "check that each lens belongs to its camera and no picture is mirrored, then " + _MOVE,
         )
-    return RelativePose(R, t, inliers, float(np.sqrt(np.mean(away[inliers] ** 2))))
+    return RelativePose(R, t, inliers)
 
 
 def _rigid(a: Floats, b: Floats, weight: Floats) -> tuple[Floats, Floats]:

@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 CAP_VIDEO_CAPTURE = 0x00000001
-CAP_META_CAPTURE = 0x00800000
-CAP_STREAMING = 0x04000000
 _CAP_DEVICE_CAPS = 0x80000000
 _BUF_TYPE_VIDEO_CAPTURE = 1
 _MEMORY_MMAP = 1

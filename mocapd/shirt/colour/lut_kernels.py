@@ -14,8 +14,6 @@ Float32 = NDArray[np.float32]
 
 CELLS = 32
 TABLE_SIZE = CELLS**3  # index: red cell << 10 | green cell << 5 | blue cell
-STEPS_PER_SIGMA = 40.0  # distances in a table are bytes
-MAX_REACH = 255 / STEPS_PER_SIGMA  # 6.4 standard deviations
 
 
 @njit(cache=True, nogil=True)
@@ -23,22 +21,15 @@ def build_tables(
     upper: Float32,
     offset: Float32,
     threshold: float,
-    reach: float,
     ids: UInt8,
-    colours: NDArray[np.uint16],
-    distances: UInt8,
 ) -> None:
-    """Fill three tables from the maps of `whitening.fold`.
+    """Fill a table from the maps of `whitening.fold`.
 
-    ids (TABLE_SIZE,): the nearest colour's id 1..10 where it is within `threshold`, else 0.
-    colours (TABLE_SIZE,) uint16: bit k - 1 is set where colour k is within `reach`.
-    distances (TABLE_SIZE,10): Mahalanobis distance in 1 / STEPS_PER_SIGMA, written only where the
-    bit is set. A cell counts as the colour at its centre. `reach`, the threshold of step 3, is at
-    least `threshold` and at most MAX_REACH.
+    ids (TABLE_SIZE,): the nearest colour's id 1..10 where it is within `threshold`, else 0. A cell
+    counts as the colour at its centre.
     """
     ids[:] = 0
-    colours[:] = 0
-    reach2 = np.float32(reach * reach)
+    reach2 = np.float32(threshold * threshold)
     limit = np.float32(threshold)
     best = np.full(TABLE_SIZE, limit, dtype=np.float32)
     for k in range(upper.shape[0]):
@@ -65,8 +56,6 @@ def build_tables(
                     z0 = u00 * np.float32(8.0 * blue + 3.5) + rest
                     distance = np.sqrt(z0 * z0 + reach2 - left1)
                     cell = (red << 10) | (green << 5) | blue
-                    colours[cell] |= 1 << k
-                    distances[cell, k] = min(255, int(distance * STEPS_PER_SIGMA + 0.5))
                     if distance < best[cell]:
                         best[cell] = distance
                         ids[cell] = k + 1
@@ -106,49 +95,4 @@ def classify_by_table(
             ids[j] = ids[j] if seen else np.uint8(0)
             foreground += seen
             classified += ids[j] > 0
-    return classified, foreground
-
-
-@njit(cache=True, nogil=True)
-def classify_by_table_with_prior(
-    pixels_bgr: UInt8,
-    mask: UInt8,
-    mask_shift: int,
-    table_colours: NDArray[np.uint16],
-    table_distances: UInt8,
-    distance_px: Float32,
-    prior_per_px: float,
-    threshold: float,
-    x0: int,
-    y0: int,
-    stride: int,
-    out: UInt8,
-) -> tuple[int, int]:
-    """Step 3: as `classify_kernels.classify_with_prior`; `threshold` at most the tables' reach."""
-    per_step = np.float32(1.0 / STEPS_PER_SIGMA)
-    per_px = np.float32(prior_per_px)
-    classified = 0
-    foreground = 0
-    for i in range(out.shape[0]):
-        row = pixels_bgr[y0 + stride * i]
-        mask_row = mask[(y0 + stride * i) >> mask_shift]
-        for j in range(out.shape[1]):
-            x = x0 + stride * j
-            best_id = np.uint8(0)
-            if mask_row[x >> mask_shift] != 0:
-                foreground += 1
-                cell = _cell(row, x)
-                colours = table_colours[cell]
-                best = np.float32(threshold)
-                k = 0
-                while colours > 0:  # most cells have no colour in reach, few have more than two
-                    if colours & 1:
-                        cost = table_distances[cell, k] * per_step + per_px * distance_px[k, i, j]
-                        if cost < best:
-                            best = cost
-                            best_id = np.uint8(k + 1)
-                    colours >>= 1
-                    k += 1
-            out[i, j] = best_id
-            classified += int(best_id > 0)
     return classified, foreground

@@ -254,7 +254,7 @@ class CameraSegmenter:
         best: Found | None = None
         lights = [W * gain for gain in _GAINS for W in memory.references]
         for W in lights:
-            self._tables.refill(model, W, p.first_threshold, p.first_threshold)
+            self._tables.refill(model, W, p.first_threshold)
             ids = np.empty((h, w), np.uint8)
             classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
             suppress_background(

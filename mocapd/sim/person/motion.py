@@ -28,7 +28,6 @@ class Motion:
     loop_s: float
     local_rad: PchipInterpolator  # (J*3,) rotation vectors relative to the parent bone
     root: PchipInterpolator  # x, z [m], yaw [rad], crouch [m]
-    yaw_per_loop_rad: float
     swings: tuple[tuple[int, Floats, float, float, float], ...]  # joint, vector, Hz, from, to
     sway: Floats  # (3, 4): cycles per loop, phase [rad], amplitude about x and z [rad]
     feet: tuple[FootTrack, FootTrack]  # left, right
@@ -52,7 +51,6 @@ def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
         loop_s=loop_s,
         local_rad=_periodic(times, local, loop_s, np.zeros(local.shape[1])),
         root=root_of_t,
-        yaw_per_loop_rad=turn,
         swings=tuple(
             (INDEX[o.joint], np.radians(o.amplitude_deg), o.frequency_hz, o.from_s, o.to_s)
             for o in scenario.motion.oscillations

@@ -64,11 +64,6 @@ class HistogramSearch:
         uniformity(self._integral, self._radii, params.bin_cap, self._u)
         return weighted_mean(self._u, self._radii, params.step_px, params.deviation)
 
-    @property
-    def heat(self) -> Singles:
-        """u (S, H / step, W / step) of the last search, for previews; overwritten by the next."""
-        return self._u
-
 
 def weighted_mean(
     u: Singles, radii: NDArray[np.int64], step_px: int, deviation: float
