@@ -126,10 +126,8 @@ class Track:
     `evidence[camera]` is an id map (h,w) uint8 over the region `roi_px[camera]` = x0, y0, x1, y1 of
     the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
     (colour tracker: colour ids). For previews only.
-    `stage_ms`: milliseconds per stage, when the tracker was asked to time itself.
     """
 
     body: BodyState
     evidence: Mapping[str, Bytes] = field(default_factory=dict)
     roi_px: Mapping[str, tuple[int, int, int, int]] = field(default_factory=dict)
-    notes: Mapping[str, float] = field(default_factory=dict)

@@ -15,7 +15,7 @@ from mocapd.types import Bytes, Floats
 MIREDS = (80, 120, 155, 190, 230, 275, 330, 415)
 # distance from the locus in CIE 1960 uv, ANSI C78.377 allows +-0.006, bare tubes go to twice that
 TINTS_UV = (0.0, 0.012, -0.012)
-LEVELS = (1.0, 1.35)  # of brightness, between the gains that `Eye.find` tries itself
+LEVELS = (1.0, 1.35)  # of brightness, between the gains that `CameraSegmenter.find` tries itself
 _GAMMA = 2.2  # of nearly every webcam
 _XYZ_TO_SRGB = np.array(
     [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]]

@@ -25,7 +25,7 @@ class Params:
     stride_px: int = 2  # every second pixel each way is classified
 
     # 0: the paper's colour model. Cloth in real folds and lamps spreads wider than five even images
-    # show (vision/colour_model.py); `tolerant` has both, and thresholds that let in as much background
+    # show (shirt/colour/colour_model.py); `tolerant` has both, and thresholds that let in as much background
     shading_sigma: float = 0.0
     noise_sigma: float = 0.0
     threshold: float = 3.0  # T of step 1 [standard deviations]

@@ -1,0 +1,131 @@
+"""Every file that the documentation names is there, and every name that the modules' comments speak of."""
+
+import ast
+import keyword
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def _all_files(folder: Path, deep: bool) -> Iterator[Path]:
+    return (p for p in (folder.rglob("*") if deep else folder.glob("*")) if p.is_file())
+
+
+# each begins at the root of the checkout, or at the package
+ROOMS = {p.name for p in (ROOT / "mocapd").iterdir() if p.is_dir()} - {"__pycache__"}
+TOPS = ("mocapd", "docs", "tests", "calib", "clients", "locks")
+PAGES = (
+    *ROOT.glob("*.md"),
+    *(ROOT / "docs").rglob("*.md"),
+    *(ROOT / "locks").rglob("*.md"),
+    *(ROOT / "clients").rglob("*.md"),
+    *(ROOT / "mocapd").rglob("*.md"),
+)
+MODULES = tuple((ROOT / "mocapd").rglob("*.py"))
+FILES = {p.name for top in (".", *TOPS) for p in _all_files(ROOT / top, top != ".")}
+
+_PATH = re.compile(r"(?<![\w./~$<-])((?:[A-Za-z_][\w-]*/)+[\w.*<>-]*)")
+_NAME = re.compile(r"`([\w]+\.(?:py|js|md))`")
+_MODULE = re.compile(r"(?<![\w/.])mocapd(?:\.[a-z_]\w*)+(?:\.[A-Z]\w*)?")
+_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+_QUOTED = re.compile(r"`([A-Za-z_][\w.]*)(?:\(\))?`")
+_COMMENT = re.compile(r"(?:^|  )#:? .*$", re.MULTILINE)
+_SHORT = 60  # characters of a text that may be a key or a name, not prose
+
+
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """The syntax tree of a module, flat."""
+    return tuple(ast.walk(ast.parse(path.read_text())))
+
+
+@cache
+def remarks(path: Path) -> tuple[str, ...]:
+    """The docstrings and the comments of a module."""
+    documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    texts = [ast.get_docstring(node) or "" for node in nodes(path) if isinstance(node, documented)]
+    return (*texts, *_COMMENT.findall(path.read_text()))
+
+
+def names_in(path: Path) -> Iterator[str]:
+    """Everything that the code of a module names: variables, functions, fields, modules, keys."""
+    yield from (path.stem, path.parent.name)
+    for node in nodes(path):
+        for kind in ("id", "attr", "name", "arg", "module"):
+            name = getattr(node, kind, None)
+            if isinstance(name, str):
+                yield from name.split(".")
+        value = getattr(node, "value", None)  # of a constant
+        if isinstance(value, str) and len(value) < _SHORT:
+            yield from re.findall(r"\w+", value)
+
+
+def missing(text: str, beside: Path) -> Iterator[str]:
+    """What `text` names and is not there; `beside`: the folder that it may speak of."""
+    for path in _PATH.findall(text):
+        path = path.rstrip(".-")
+        first = path.split("/")[0]
+        if first not in (*TOPS, *ROOMS) or set("*<>") & set(path):
+            continue
+        places = (ROOT, ROOT / "mocapd", beside)
+        if ("." in path or path.endswith("/")) and not any((p / path).exists() for p in places):
+            yield path
+    for name in _NAME.findall(text):
+        if name not in FILES:
+            yield name
+    for module in _MODULE.findall(text):
+        if not _is_module(module):
+            yield module
+
+
+def _is_module(dotted: str) -> bool:
+    """Whether it begins with a module of the package; what follows a module is a name in it."""
+    here = ROOT
+    for part in dotted.split("."):
+        if (here / f"{part}.py").is_file():
+            return True
+        if not (here / part).is_dir():
+            return (here / "__init__.py").is_file() and part in (here / "__init__.py").read_text()
+        here = here / part
+    return True
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_pages_name_files_that_are_there(page: Path) -> None:
+    text = page.read_text()
+    assert not list(missing(text, page.parent))
+    links = [to for to in _LINK.findall(text) if not (page.parent / to).exists()]
+    assert not links
+
+
+def test_remarks_name_files_that_are_there() -> None:
+    wrong = {
+        str(path.relative_to(ROOT)): gone
+        for path in MODULES
+        if (gone := {one for text in remarks(path) for one in missing(text, path.parent)})
+    }
+    assert not wrong
+
+
+def test_remarks_name_what_the_code_names() -> None:
+    known = {name for path in MODULES for name in names_in(path)} | set(keyword.kwlist)
+    for page in (ROOT / "mocapd" / "web" / "page").iterdir():
+        known |= set(re.findall(r"\w+", page.read_text()))
+    wrong = {
+        str(path.relative_to(ROOT)): gone
+        for path in MODULES
+        if (
+            gone := {
+                quoted
+                for text in remarks(path)
+                for quoted in _QUOTED.findall(text)
+                if not known.issuperset(quoted.split("."))
+            }
+        )
+    }
+    assert not wrong
