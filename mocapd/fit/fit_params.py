@@ -18,7 +18,7 @@ class FitParams:
     fine_iterations: int = (
         2  # the last ones, at all work pixels; the others at every second each way
     )
-    edge_stiffness: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
+    edge_weight: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
 
     # motion: spread about the prediction over 1/30 s, growing with the square root of time

@@ -25,10 +25,10 @@ def search_within(
     grid_px: float,
     every: int,
     phase: int,
-    stiffness: float,
+    edge_weight: float,
 ) -> Search:
     """A search within radius_px [work px], robust in proportion to it; see `Search`."""
-    return Search(offsets, radius_px, _ROBUST * radius_px, grid_px, every, phase, stiffness)
+    return Search(offsets, radius_px, _ROBUST * radius_px, grid_px, every, phase, edge_weight)
 
 
 class CameraRows:

@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 class Search(NamedTuple):
     """Where colours are looked for: offsets (N,2) within radius_px [work px] on a grid of grid_px;
     robust_px: where a residual has lost half of its weight. `every` 1: at all pixels of the grid; 2:
-    at one colour of its checkerboard, given by `phase`. stiffness: weight of edges in place."""
+    at one colour of its checkerboard, given by `phase`. edge_weight: weight of edges in place."""
 
     offsets: NDArray[np.int32]
     radius_px: float
@@ -32,18 +32,18 @@ class Search(NamedTuple):
     grid_px: float
     every: int
     phase: int
-    stiffness: float
+    edge_weight: float
 
 
 class ComparedPictures(NamedTuple):
     """The body as drawn (ids, and the triangle at each pixel) and the picture as classified: ids, and
-    softness 0..255, the weight of a rendered pixel over an unclassified one (255 for sure background,
+    pixel_weight 0..255, the weight of a rendered pixel over an unclassified one (255 for sure background,
     less where something may hide the shirt). All (h,w), on the grid of the search."""
 
     model_ids: Bytes
     triangle_at: NDArray[np.int32]
     image_ids: Bytes
-    softness: Bytes
+    pixel_weight: Bytes
 
 
 class AlignmentSums(NamedTuple):
@@ -57,7 +57,7 @@ class AlignmentSums(NamedTuple):
     unexplained: Array
 
 
-def spiral(radius_px: int) -> NDArray[np.int32]:
+def offsets_by_distance(radius_px: int) -> NDArray[np.int32]:
     """Offsets (N,2) x, y within a radius, nearest first, without the centre."""
     r = np.arange(-radius_px, radius_px + 1)
     x, y = np.meshgrid(r, r)
@@ -160,8 +160,8 @@ def accumulate(
     weight: of a pixel's row. d_joints (N,J,3) is scratch. H has columns for the pose alone, or for pose
     and shape.
     """
-    model_ids, triangle_at, image_ids, softness = pictures
-    offsets, radius_px, robust_px, grid_px, every, phase, stiffness = search
+    model_ids, triangle_at, image_ids, pixel_weight = pictures
+    offsets, radius_px, robust_px, grid_px, every, phase, edge_weight = search
     triangles, _, patch, triangle_bones, triangle_weights, d_centres, sleeves, sleeve_start = (
         surface
     )
@@ -201,7 +201,7 @@ def accumulate(
                     matched[patch[triangle_at[y, x]]] += counted
                 # an edge that is in place holds the body there: without it the few pixels that
                 # disagree by less than their width would move it by all of that width
-                if stiffness == 0.0 or k_model == 0 or (x + y) // 2 & 1:  # half of them will do
+                if edge_weight == 0.0 or k_model == 0 or (x + y) // 2 & 1:  # half of them will do
                     continue
                 if x == 0 or y == 0 or x == w - 1 or y == h - 1:
                     continue
@@ -214,7 +214,7 @@ def accumulate(
                     if direction == 1:
                         continue
                     dx, dy = float(ex), float(ey)
-                    t, row_weight = triangle_at[y, x], 2.0 * stiffness * weight
+                    t, row_weight = triangle_at[y, x], 2.0 * edge_weight * weight
                 elif direction == 0:
                     if k_model == 0:
                         continue
@@ -223,7 +223,7 @@ def accumulate(
                         i = _nearest(image_ids, x, y, k_model, offsets, n_offsets)
                     row_weight = weight
                     if k_image == 0:
-                        row_weight *= softness[y, x] / 255.0
+                        row_weight *= pixel_weight[y, x] / 255.0
                     if i < 0:
                         cost += row_weight * r2_robust
                         continue

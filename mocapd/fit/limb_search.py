@@ -127,7 +127,7 @@ def best_arm_poses(
         score_arms(
             hypotheses, samples, model.parents, base.posed, drawing.projection,
             np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,
-            base.zbuffer, view.ids, view.softness, scores,
+            base.zbuffer, view.ids, view.pixel_weight, scores,
         )  # fmt: skip
     out: list[MotionState] = []
     for n in np.argsort(-scores, kind="stable"):

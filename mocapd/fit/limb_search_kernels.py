@@ -36,7 +36,7 @@ def score_arms(
     scale: float,
     base_z: NDArray[np.float32],
     image_ids: NDArray[np.uint8],
-    softness: NDArray[np.uint8],
+    pixel_weight: NDArray[np.uint8],
     scores: Array,
 ) -> None:
     """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2].
@@ -123,5 +123,5 @@ def score_arms(
             elif seen > 0:
                 score -= 0.5 * size
             else:
-                score -= 0.5 * size * softness[t, u] / 255.0
+                score -= 0.5 * size * pixel_weight[t, u] / 255.0
         scores[n] += score

@@ -18,7 +18,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
-from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, spiral
+from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
 from mocapd.fit.step_kernels import PosePriors, gauss_newton_step
 from mocapd.geometry import rotations
@@ -30,12 +30,12 @@ _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """One camera's evidence: ids and softness (h,w) over `roi`, taken dt_s after the asked instant."""
+    """One camera's evidence: ids and pixel_weight (h,w) over `roi`, taken dt_s after the asked instant."""
 
     index: int
     roi: Roi
     ids: NDArray[np.uint8]
-    softness: NDArray[np.uint8]
+    pixel_weight: NDArray[np.uint8]
     dt_s: float
 
 
@@ -88,7 +88,7 @@ def _coarse(view: View) -> View:
     return replace(
         view,
         ids=np.ascontiguousarray(view.ids[::2, ::2]),
-        softness=np.ascontiguousarray(view.softness[::2, ::2]),
+        pixel_weight=np.ascontiguousarray(view.pixel_weight[::2, ::2]),
     )
 
 
@@ -105,8 +105,8 @@ class Fitter:
             IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)
         ]
         self._rows = [CameraRows(model) for _ in cameras]
-        self._spiral = spiral(params.first_radius_px)
-        self._spiral_r2 = (self._spiral**2).sum(axis=1)
+        self._offsets = offsets_by_distance(params.first_radius_px)
+        self._offsets_r2 = (self._offsets**2).sum(axis=1)
         p = params
         self._prediction_sd = np.concatenate([
             np.full(3, p.root_sd_m),
@@ -222,17 +222,17 @@ class Fitter:
             drawn = drawing.last_coarse(view.roi) if coarse else drawing.last(view.roi)
             drawing.pose(root, local, one.body.rest)
         rows.gather(
-            drawing, one.body, ComparedPictures(*drawn, view.ids, view.softness), one.search,
+            drawing, one.body, ComparedPictures(*drawn, view.ids, view.pixel_weight), one.search,
             one.n_shape, self.params.row_weight,
         )  # fmt: skip
 
     def _search(self, radius_px: float, fine: bool, phase: int) -> Search:
         """Half of all pixels, or, not `fine`, a quarter: every second each way."""
         grid_px = 1.0 if fine else 2.0
-        n = np.searchsorted(self._spiral_r2, (radius_px / grid_px) ** 2, side="right")
+        n = np.searchsorted(self._offsets_r2, (radius_px / grid_px) ** 2, side="right")
         return search_within(
-            self._spiral[:n], radius_px, grid_px,
-            every=2 if fine else 1, phase=phase, stiffness=self.params.edge_stiffness if fine else 0.0,
+            self._offsets[:n], radius_px, grid_px,
+            every=2 if fine else 1, phase=phase, edge_weight=self.params.edge_weight if fine else 0.0,
         )  # fmt: skip
 
     def shape_information(self, H: Floats) -> Floats:

@@ -75,13 +75,13 @@ def accumulate(
     camera: Camera,
     factor: int,
     image_ids: Bytes,
-    softness: Bytes,
+    pixel_weight: Bytes,
     grid_px: float,
     radius_px: float,
     robust_px: float,
     phase: int,
     every: int,
-    stiffness: float,
+    edge_weight: float,
     n_shape: int,
     weight: float,
 ) -> Sums:
@@ -105,12 +105,12 @@ def accumulate(
                 out.matched[patch] += units * (want == have)
             if want == have:
                 edge = _edge(drawn.ids, x, y)
-                if stiffness and want and edge.any() and (x + y) // 2 % 2 == 0:
+                if edge_weight and want and edge.any() and (x + y) // 2 % 2 == 0:
                     row = slopes[drawn.triangle_at[y, x]] @ (edge / np.hypot(*edge))
-                    out.H += 2.0 * stiffness * weight * np.outer(row, row)
+                    out.H += 2.0 * edge_weight * weight * np.outer(row, row)
                 continue
             if want:
-                strength = weight * (softness[y, x] / 255.0 if have == 0 else 1.0)
+                strength = weight * (pixel_weight[y, x] / 255.0 if have == 0 else 1.0)
                 to = _nearest(image_ids, x, y, want, reach)
                 if to is None:
                     out.cost += strength * robust_px**2

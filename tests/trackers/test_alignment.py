@@ -14,7 +14,7 @@ from mocapd.fit.idmap_term_kernels import (
     Search,
     accumulate,
     colours_in_reach,
-    spiral,
+    offsets_by_distance,
 )
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
@@ -31,8 +31,8 @@ UPPER = [
 ]
 
 
-def test_the_spiral_goes_outwards_through_every_offset_once() -> None:
-    offsets = spiral(6).astype(int)
+def test_offsets_by_distance_go_outwards_through_every_offset_once() -> None:
+    offsets = offsets_by_distance(6).astype(int)
     squared = (offsets**2).sum(axis=1)
     assert (np.diff(squared) >= 0).all()
     assert squared[0] == 1
@@ -51,21 +51,21 @@ def accumulated(
     state: MotionState,
     drawn: Posed,
     image_ids: Bytes,
-    softness: Bytes,
+    pixel_weight: Bytes,
     phase: int = 0,
     every: int = 2,
-    stiffness: float = 0.0,
+    edge_weight: float = 0.0,
     n_shape: int = 0,
     grid_px: float = 1.0,
 ) -> Sums:
     out = Sums.zero(MODEL.n_pose + n_shape)
     d_joints = np.zeros((MODEL.n_shape, N_JOINTS, 3))
-    camera, offsets = CAMERAS[0], spiral(20)
+    camera, offsets = CAMERAS[0], offsets_by_distance(20)
     within = int(((offsets.astype(int) ** 2).sum(axis=1) <= (RADIUS_PX / grid_px) ** 2).sum())
     fx, fy = (float(grid_px * camera.K[i, i] / COARSE) for i in (0, 1))
     out.cost = accumulate(
-        ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, softness),
-        Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, stiffness),
+        ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, pixel_weight),
+        Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, edge_weight),
         drawn.xy, MODEL.surface, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
         drawn.joints, d_joints, PinholeArrays(camera.R, camera.t_m, fx, fy), WEIGHT,
         AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained),
@@ -74,7 +74,7 @@ def accumulated(
 
 
 @pytest.mark.parametrize(
-    ("phase", "every", "stiffness", "n_shape", "grid_px"),
+    ("phase", "every", "edge_weight", "n_shape", "grid_px"),
     [
         (0, 2, 1.0, MODEL.n_shape, 1.0),
         (1, 2, 0.0, 0, 1.0),
@@ -83,7 +83,7 @@ def accumulated(
     ],
 )
 def test_accumulate_equals_the_naive_twin(
-    phase: int, every: int, stiffness: float, n_shape: int, grid_px: float
+    phase: int, every: int, edge_weight: float, n_shape: int, grid_px: float
 ) -> None:
     """The twin's derivatives are differences with h = 1e-6: rows agree to 1e-10 / 1e-6 = 1e-4 px and
     better, against rows of tens of px per radian or metre, hundreds of them added up."""
@@ -94,12 +94,14 @@ def test_accumulate_equals_the_naive_twin(
     image_ids = posed(MODEL, truth, camera, COARSE).ids
     wrong = rng.random(image_ids.shape) < 0.1
     image_ids[wrong] = rng.integers(0, 11, wrong.sum())
-    softness = rng.integers(0, 256, image_ids.shape).astype(np.uint8)
+    pixel_weight = rng.integers(0, 256, image_ids.shape).astype(np.uint8)
     drawn = posed(MODEL, state, camera, COARSE)
-    got = accumulated(state, drawn, image_ids, softness, phase, every, stiffness, n_shape, grid_px)
+    got = accumulated(
+        state, drawn, image_ids, pixel_weight, phase, every, edge_weight, n_shape, grid_px
+    )
     wanted = naive_alignment.accumulate(
-        MODEL, state, drawn, camera, COARSE, image_ids, softness,
-        grid_px, RADIUS_PX, ROBUST_PX, phase, every, stiffness, n_shape, WEIGHT,
+        MODEL, state, drawn, camera, COARSE, image_ids, pixel_weight,
+        grid_px, RADIUS_PX, ROBUST_PX, phase, every, edge_weight, n_shape, WEIGHT,
     )  # fmt: skip
     for name in ("visible", "matched", "unexplained"):
         np.testing.assert_array_equal(getattr(got, name), getattr(wanted, name))
@@ -141,7 +143,7 @@ def test_perfect_agreement_asks_for_no_step() -> None:
     np.testing.assert_array_equal(got.matched, got.visible)
 
 
-def test_softness_weighs_what_the_picture_denies() -> None:
+def test_pixel_weight_weighs_what_the_picture_denies() -> None:
     """A body before nothing but unclassified pixels costs as much as those deny it."""
     state = standing()
     drawn = posed(MODEL, state, CAMERAS[0], COARSE)
@@ -218,12 +220,12 @@ def test_missing_and_wrong_pixels_do_not_matter_much() -> None:
     rng = np.random.default_rng(0)
     views = []
     for view in views_of(by, truth):
-        ids, softness = view.ids.copy(), view.softness.copy()
+        ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()
         missing = rng.random(ids.shape) < 0.2
-        ids[missing], softness[missing] = 0, 64
+        ids[missing], pixel_weight[missing] = 0, 64
         wrong = rng.random(ids.shape) < 0.005
         ids[wrong] = rng.integers(1, 11, wrong.sum())
-        views.append(replace(view, ids=ids, softness=softness))
+        views.append(replace(view, ids=ids, pixel_weight=pixel_weight))
     for seed in range(3):
         fit = fitted(by, beside(by, truth, seed), views)
         after_m, _ = errors(by, fit.state, truth)

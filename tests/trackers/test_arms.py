@@ -150,7 +150,7 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
         elif have:
             score -= 0.5 * facing
         else:
-            score -= 0.5 * facing * view.softness[y, x] / 255.0
+            score -= 0.5 * facing * view.pixel_weight[y, x] / 255.0
     return score
 
 
@@ -169,7 +169,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
         ),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
-        base.zbuffer, view.ids, view.softness, out,
+        base.zbuffer, view.ids, view.pixel_weight, out,
     )  # fmt: skip
     return out
 
@@ -178,7 +178,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
 def test_scores_equal_the_naive_twin(side: str) -> None:
     by, state = fitter(2), standing("guarding", "hand_on_belly")
     for view in views_of(by, standing("waving", "side_low")):
-        soft = replace(view, softness=np.full_like(view.softness, 90))
+        soft = replace(view, pixel_weight=np.full_like(view.pixel_weight, 90))
         tries = [standing(pose, pose) for pose in ("guarding", "waving", "crossed", "raised")]
         # the hand keeps straight in a hypothesis, as it does in these poses
         bones = [INDEX[side + bone] for bone in BONES]

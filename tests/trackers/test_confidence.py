@@ -33,9 +33,9 @@ def behind_a_board(n_cameras: int) -> Fit:
         shoulder, wrist = project(drawing.camera, arm)[:, 0] / drawing.factor
         x = np.arange(view.roi[0], view.roi[2])
         beyond = x < shoulder if wrist < shoulder else x > shoulder
-        ids, softness = view.ids.copy(), view.softness.copy()
-        ids[:, beyond], softness[:, beyond] = 0, 60
-        views.append(replace(view, ids=ids, softness=softness))
+        ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()
+        ids[:, beyond], pixel_weight[:, beyond] = 0, 60
+        views.append(replace(view, ids=ids, pixel_weight=pixel_weight))
     return by.fit(state, views, 1 / 30, 5, learn_shape=False)
 
 

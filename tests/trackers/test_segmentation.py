@@ -146,10 +146,10 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     counts = [
         (rng.random(1 << 15) * 30 * (rng.random(1 << 15) < 0.4)).astype(np.float32) for _ in "ab"
     ]
-    ids, softness = np.empty((h, w), np.uint8), np.empty((h, w), np.uint8)
+    ids, pixel_weight = np.empty((h, w), np.uint8), np.empty((h, w), np.uint8)
     classify(
         picture, *at, distance, affine(), LearnedPixels(mean, age, *counts),
-        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5), ids, softness,
+        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5), ids, pixel_weight,
     )  # fmt: skip
     costs, background = naive_classify(
         picture, at, distance, 0.05, 3.0, mean, age, (counts[0], counts[1]), (1.5, 1.2)
@@ -158,8 +158,8 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     decided = ordered[..., 1] - ordered[..., 0] > 1e-4
     assert decided.mean() > 0.98
     np.testing.assert_array_equal(ids[decided], costs.argmin(axis=2)[decided])
-    # 1 for sure background, else the given softness, of 255
-    np.testing.assert_array_equal(softness, np.array([127, 63, 255])[background])
+    # 1 for sure background, else the given pixel_weight, of 255
+    np.testing.assert_array_equal(pixel_weight, np.array([127, 63, 255])[background])
     assert 0.05 < (ids > 0).mean() < 0.9
 
 
@@ -171,14 +171,14 @@ def test_the_prior_tells_two_patches_of_one_look_apart() -> None:
     predicted = np.where(np.arange(40) < 20, ids, 0).astype(np.uint8)
     distance = np.empty((5, 10, 10), np.uint8)
     colour_distances(predicted, *NOBODY, 3, np.ones(10, np.int64), distance)
-    got, softness = np.empty_like(ids), np.empty_like(ids)
+    got, pixel_weight = np.empty_like(ids), np.empty_like(ids)
     no_count = np.zeros(1 << 15, np.float32)
     learned = LearnedPixels(
         np.zeros((20, 40, 3), np.float32), np.zeros((20, 40), np.uint8), no_count, no_count
     )
     classify(
         picture, 0, 0, distance, affine(), learned,
-        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5), got, softness,
+        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5), got, pixel_weight,
     )  # fmt: skip
     assert (got[6:14, 5:9] == 6).mean() > 0.9
     assert not got[:, 26:].any()
@@ -275,9 +275,9 @@ def test_colours_are_counted_on_the_shirt_and_away_from_the_body() -> None:
     seen[::5] = 0
     picture = picture_of(blobs(4, H + 6, W + 8), 4)
     body = (np.random.default_rng(1).random(picture.shape[:2]) < 0.5).astype(np.uint8)
-    softness = np.where(np.random.default_rng(0).random((H, W)) < 0.5, 255, 60).astype(np.uint8)
+    pixel_weight = np.where(np.random.default_rng(0).random((H, W)) < 0.5, 255, 60).astype(np.uint8)
     shirt, other = np.zeros(1 << 15, np.float32), np.zeros(1 << 15, np.float32)
-    count_colours(picture, 4, 2, body, model, seen, softness, shirt, other)
+    count_colours(picture, 4, 2, body, model, seen, pixel_weight, shirt, other)
     wanted_shirt, wanted_other = np.zeros(1 << 15), np.zeros(1 << 15)
     for y in range(0, H, 2):
         for x in range(0, W, 2):
@@ -286,7 +286,7 @@ def test_colours_are_counted_on_the_shirt_and_away_from_the_body() -> None:
             assert bin_ == bin_of(picture[2 + y, 4 + x])
             if model[y, x]:
                 wanted_shirt[bin_] += seen[y, x] == model[y, x]
-            elif softness[y, x] != 255 and not body[2 + y, 4 + x]:
+            elif pixel_weight[y, x] != 255 and not body[2 + y, 4 + x]:
                 wanted_other[bin_] += 1
     np.testing.assert_array_equal(shirt, wanted_shirt)
     np.testing.assert_array_equal(other, wanted_other)

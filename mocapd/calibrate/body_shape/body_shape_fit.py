@@ -27,7 +27,7 @@ from mocapd.fit.motion_state import (
 from mocapd.fit.solver import Fitter, View
 from mocapd.types import Camera, Floats, FrameSet, Track
 
-_SOFTNESS = 255  # of unclassified pixels: less would let the body grow beyond its picture
+_PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 
@@ -89,8 +89,8 @@ def moment_of(
         i = index[name]
         x0, y0, x1, y1 = (edge // work[i] for edge in track.roi_px[name])
         late_s = seconds(frames.frames[name].t_ns - body.t_ns)
-        softness = np.full(ids.shape, _SOFTNESS, np.uint8)
-        views.append(View(i, (x0, y0, x1, y1), ids, softness, late_s))
+        pixel_weight = np.full(ids.shape, _PIXEL_WEIGHT, np.uint8)
+        views.append(View(i, (x0, y0, x1, y1), ids, pixel_weight, late_s))
     local = local_from_global(standard_skeleton(model.stature_m), body.pose.quats_xyzw)
     velocity = np.zeros(model.n_pose)
     if before is not None:

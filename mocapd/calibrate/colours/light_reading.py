@@ -314,10 +314,10 @@ class LightReader:
         predicted = drawing.render(fit.state, 0.0, roi)
         # no arm is called doubtful: looked for far away, its colours are found in the room, whose
         # background is not known yet
-        ids, softness = self._eyes[index].classify(
+        ids, pixel_weight = self._eyes[index].classify(
             predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
         )
-        return View(index, roi, ids.copy(), softness.copy(), 0.0)
+        return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
 
     def _relight(self, index: int, state: MotionState, view: View) -> None:
         """Read on in the light that the fitted body's patches ask for."""

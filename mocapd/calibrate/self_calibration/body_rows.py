@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.fit.idmap_term import CameraRows, search_within
-from mocapd.fit.idmap_term_kernels import ComparedPictures, spiral
+from mocapd.fit.idmap_term_kernels import ComparedPictures, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
@@ -46,8 +46,8 @@ class RowGatherer:
         """radius_px: work px within which a colour is looked for."""
         self.fitter = fitter
         self._search = search_within(
-            spiral(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
-            stiffness=fitter.params.edge_stiffness,
+            offsets_by_distance(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
+            edge_weight=fitter.params.edge_weight,
         )  # fmt: skip
 
     def gather(self, state: MotionState, view: View) -> BodyRows:
@@ -57,7 +57,7 @@ class RowGatherer:
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
         drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
         rows.gather(
-            drawing, body, ComparedPictures(*drawn, view.ids, view.softness), self._search,
+            drawing, body, ComparedPictures(*drawn, view.ids, view.pixel_weight), self._search,
             n_shape, fitter.params.row_weight,
         )  # fmt: skip
         H, b = rows.system(fitter.model.n_pose + n_shape)

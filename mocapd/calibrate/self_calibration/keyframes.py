@@ -15,7 +15,7 @@ from mocapd.geometry import rotations
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
-_SOFTNESS = 255  # of unclassified pixels: less would let the body grow beyond its picture
+_PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
 _STILL_M_S = 0.3  # a mark that moves so fast halves a moment's worth
 
 
@@ -63,8 +63,8 @@ def views(keyframe: Keyframe, factors: Sequence[int]) -> list[View]:
     out = []
     for i, s in keyframe.sightings.items():
         x0, y0, x1, y1 = (edge // factors[i] for edge in s.roi_px)
-        softness = np.full(s.ids.shape, _SOFTNESS, np.uint8)
-        out.append(View(i, (x0, y0, x1, y1), s.ids, softness, seconds(s.t_ns - keyframe.t_ns)))
+        pixel_weight = np.full(s.ids.shape, _PIXEL_WEIGHT, np.uint8)
+        out.append(View(i, (x0, y0, x1, y1), s.ids, pixel_weight, seconds(s.t_ns - keyframe.t_ns)))
     return out
 
 

@@ -79,13 +79,13 @@ class CameraSegmenter:
     memory: Memory = field(init=False)
     picture: Bytes = field(init=False)
     _ids: Ids = field(init=False)
-    _softness: Ids = field(init=False)
+    _pixel_weight: Ids = field(init=False)
     _distance: Ids = field(init=False)
     _tables: ColourTables = field(init=False)
 
     def __post_init__(self) -> None:
         w, h = self.size
-        self._ids, self._softness = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
+        self._ids, self._pixel_weight = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
         self._distance = np.empty((h // CELL + 1) * (w // CELL + 1) * 10, np.uint8)
         self._tables = ColourTables()
         self.reset()
@@ -121,7 +121,7 @@ class CameraSegmenter:
     def classify(
         self, predicted: Ids, outline: Outline, roi: Roi, doubted: Ints, may_relight: bool
     ) -> tuple[Ids, Ids]:
-        """ids and softness (h,w) over the region, given the predicted id map and where its vertices
+        """ids and pixel_weight (h,w) over the region, given the predicted id map and where its vertices
         are (buffers of this eye).
 
         doubted: colours (0..9) whose place is in doubt. When the shirt is badly classified, or much
@@ -136,9 +136,9 @@ class CameraSegmenter:
         distance = self._distances(
             predicted, outline, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )
-        ids, softness = self._classified(memory.appearance, roi, distance, prior)
+        ids, pixel_weight = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
-            return ids, softness
+            return ids, pixel_weight
         inside = agreement(predicted, ids)[1] / rendered
         usual = memory.usual if memory.usual > 0 else inside
         keep = float(np.exp(-TICK_S / p.usual_s))
@@ -147,8 +147,8 @@ class CameraSegmenter:
             best = self._relit(predicted, ids, roi, distance, prior)
             if best is not memory.appearance:
                 memory.appearance = best
-            ids, softness = self._classified(best, roi, distance, prior)
-        return ids, softness
+            ids, pixel_weight = self._classified(best, roi, distance, prior)
+        return ids, pixel_weight
 
     def _relit(self, predicted: Ids, ids: Ids, roi: Roi, distance: Ids, prior: float) -> Appearance:
         memory = self.memory
@@ -170,7 +170,10 @@ class CameraSegmenter:
     ) -> tuple[Ids, Ids]:
         p, memory = self.params, self.memory
         h, w = roi[3] - roi[1], roi[2] - roi[0]
-        ids, softness = self._ids[: h * w].reshape(h, w), self._softness[: h * w].reshape(h, w)
+        ids, pixel_weight = (
+            self._ids[: h * w].reshape(h, w),
+            self._pixel_weight[: h * w].reshape(h, w),
+        )
         mean, covariance = looks.gaussians(
             appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
         )
@@ -183,9 +186,9 @@ class CameraSegmenter:
                 prior, p.threshold, p.background_tolerance, p.background_penalty, p.other_penalty,
                 p.soft_unclassified, p.soft_unknown,
             ),
-            ids, softness,
+            ids, pixel_weight,
         )  # fmt: skip
-        return ids, softness
+        return ids, pixel_weight
 
     def _distances(self, predicted: Ids, outline: Outline, limit: int, divisor: Ints) -> Ids:
         h, w = predicted.shape
@@ -197,7 +200,9 @@ class CameraSegmenter:
         )  # fmt: skip
         return out
 
-    def learn(self, final: Ids, ids: Ids, softness: Ids, roi: Roi, dt_s: float, sure: bool) -> None:
+    def learn(
+        self, final: Ids, ids: Ids, pixel_weight: Ids, roi: Roi, dt_s: float, sure: bool
+    ) -> None:
         """Follow the light from the id map of the final pose (paper section 5.2, step 5).
 
         sure: the pose agrees well enough to tell shirt from other things.
@@ -213,7 +218,7 @@ class CameraSegmenter:
         if sure:
             memory.references = remember_illumination(memory.references, W)
             count_colours(
-                self.picture, roi[0], roi[1], memory.body, final, ids, softness,
+                self.picture, roi[0], roi[1], memory.body, final, ids, pixel_weight,
                 memory.shirt_count, memory.other_count,
             )  # fmt: skip
         if memory.looks % 8 == 0:

@@ -27,7 +27,7 @@ class ClassifierWeights(NamedTuple):
     """prior: standard deviations per work px away from a colour's place; threshold [standard
     deviations]. tolerance: largest channel difference to the background, 0..1; a pixel that looks
     like it pays background_penalty, one whose colour is rather seen on other things than on the
-    shirt up to other_penalty. soft_unclassified, soft_unknown: softness 0..1 of an unclassified
+    shirt up to other_penalty. soft_unclassified, soft_unknown: pixel_weight 0..1 of an unclassified
     pixel before a background that is known and that is not."""
 
     prior: float
@@ -134,12 +134,12 @@ def classify(
     learned: LearnedPixels,
     weights: ClassifierWeights,
     ids: NDArray[np.uint8],
-    softness: NDArray[np.uint8],
+    pixel_weight: NDArray[np.uint8],
 ) -> None:
-    """Fill ids and softness (h,w) of the region at x0, y0 of picture (H,W,3) BGR.
+    """Fill ids and pixel_weight (h,w) of the region at x0, y0 of picture (H,W,3) BGR.
 
     distance (h4,w4,10): of `colour_distances`. affine (10,3,4): whitened distance of colour k is
-    |A (b,g,r,1)|. softness: how firmly an unclassified pixel denies the shirt, 255 where background
+    |A (b,g,r,1)|. pixel_weight: how firmly an unclassified pixel denies the shirt, 255 where background
     is seen, and out of reach of every colour.
     """
     mean, age, shirt_count, other_count = learned
@@ -173,7 +173,7 @@ def classify(
                 for y in range(CELL * cy, CELL * cy + rows):
                     for x in range(CELL * cx, CELL * cx + columns):
                         ids[y, x] = 0
-                        softness[y, x] = sure
+                        pixel_weight[y, x] = sure
                 continue
             for i in range(rows):
                 v = y0 + CELL * cy + i
@@ -190,7 +190,7 @@ def classify(
                         & (abs(g[n] - mean[v, u, 1]) < tol)
                         & (abs(r[n] - mean[v, u, 2]) < tol)
                     )
-                    softness[CELL * cy + i, CELL * cx + j] = (
+                    pixel_weight[CELL * cy + i, CELL * cx + j] = (
                         sure if still else (soft if known else unknown)
                     )
                     # the penalties are the same for every colour, so they lower the threshold and

@@ -66,10 +66,10 @@ class RigSegmenter:
             if roi is None:
                 continue
             predicted = drawing.render(state, dt_s, roi)
-            ids, softness = self.each[i].classify(
+            ids, pixel_weight = self.each[i].classify(
                 predicted, drawing.outline(), roi, colours, may_relight=True
             )
-            views.append(View(i, roi, ids, softness, dt_s))
+            views.append(View(i, roi, ids, pixel_weight, dt_s))
         return views
 
     def learn_with(self, state: MotionState, fit: Fit, views: list[View], redraw: bool) -> None:
@@ -85,7 +85,7 @@ class RigSegmenter:
             else:
                 final = drawing.last(view.roi)[0]
             eye.mark_body(final, view.roi)
-            eye.learn(final, view.ids, view.softness, view.roi, TICK_S, sure)
+            eye.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
         """Follow the background, in all of the picture when nobody is known."""

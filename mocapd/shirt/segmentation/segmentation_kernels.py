@@ -17,7 +17,7 @@ def count_colours(
     body: NDArray[np.uint8],
     model_ids: NDArray[np.uint8],
     image_ids: NDArray[np.uint8],
-    softness: NDArray[np.uint8],
+    pixel_weight: NDArray[np.uint8],
     shirt_count: NDArray[np.float32],
     other_count: NDArray[np.float32],
 ) -> None:
@@ -29,7 +29,7 @@ def count_colours(
             if k > 0:
                 if image_ids[y, x] == k:
                     shirt_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
-            elif softness[y, x] != 255 and body[y0 + y, x0 + x] == 0:
+            elif pixel_weight[y, x] != 255 and body[y0 + y, x0 + x] == 0:
                 other_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
 
 

@@ -222,7 +222,7 @@ class ColourTracker:
         pause_s = p.search_pause_s if known is None else p.doubt_pause_s
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
         before = [eye.memory.appearance for eye in self._eyes.each]
-        views = [replace(v, ids=v.ids.copy(), softness=v.softness.copy()) for v in views]
+        views = [replace(v, ids=v.ids.copy(), pixel_weight=v.pixel_weight.copy()) for v in views]
         found = self._found(present)
         if found is not None:
             fit, seen = found
