@@ -1,9 +1,10 @@
-"""What the kernels take: named tuples of arrays, made once and passed as one argument.
+"""What the kernels take: named tuples of arrays, passed as one argument.
 
-All arrays are C-contiguous and writable, so that each kernel is compiled for one set of types.
+All arrays are C-contiguous and writable, so that each kernel is compiled for one set of types. Kernels
+unpack them in their first lines, so that they take `plain` ones as well.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,16 @@ from numpy.typing import NDArray
 from mocapd.types import Bytes, Camera, Floats, Ints
 
 Int32s = NDArray[np.int32]
+_Arrays = TypeVar("_Arrays", bound=tuple[Any, ...])
+
+
+def plain(arrays: _Arrays) -> _Arrays:
+    """The same without its name, for kernels that are called in every frame.
+
+    To call a compiled function takes 0.8 us more for each named tuple among its arguments and 0.1 us
+    for a plain one: over all kernels of a frame, 4 % of it. Each form is compiled for itself.
+    """
+    return cast(_Arrays, tuple(arrays))
 
 
 class Articulation(NamedTuple):

@@ -31,6 +31,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mocapd.body.arrays import plain
 from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
@@ -90,7 +91,7 @@ def soft_limit(limits: JointLimits, local_xyzw: Floats) -> tuple[float, Floats, 
     """
     G = len(limits.axis)
     residual, derivative = np.zeros((G, 3)), np.zeros((G, 3, 3))
-    limit_residuals(np.asarray(local_xyzw, dtype=float), limits, residual, derivative)
+    limit_residuals(np.asarray(local_xyzw, dtype=float), plain(limits), residual, derivative)
     return 0.5 * float((residual**2).sum()), residual, derivative
 
 

@@ -214,8 +214,9 @@ def pose_and_project(
     out_xy: Array,
     out_depth: Array,
 ) -> None:
-    """`forward_kinematics` of a body with the joints posed.rest into `posed`, then `skin_and_project`."""
-    forward_kinematics(parents, posed.rest, root, local, posed.R, posed.joints, posed.quats)
+    """`forward_kinematics` of a body into `posed`, then `skin_and_project`."""
+    rest, R, joints, quats = posed
+    forward_kinematics(parents, rest, root, local, R, joints, quats)
     skin_and_project(vertices, skin, posed, camera, offset, scale, out_xy, out_depth)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays
+from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, pose_and_project
 from mocapd.body.shaping import Shaped, Shaper
@@ -166,7 +166,7 @@ class IdMapRenderer:
         if self.posed.rest is not body.rest:
             self.posed = self.posed._replace(rest=body.rest)
         pose_and_project(
-            m.parents, root_m, local_xyzw, self.posed, body.vertices, m.skin, self.projection,
+            m.parents, root_m, local_xyzw, plain(self.posed), body.vertices, plain(m.skin), plain(self.projection),
             np.array([float(roi[0] * factor), float(roi[1] * factor)]), 1.0 / factor,
             self.xy, self._depth,
         )  # fmt: skip

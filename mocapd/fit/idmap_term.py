@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.body.shirt import N_LABELS
@@ -36,8 +37,10 @@ class CameraRows:
 
     def __init__(self, model: BodyModel) -> None:
         P = model.n_pose + model.n_shape
-        self._H, self._b = np.zeros(P * P), np.zeros(P)
+        H, b = np.zeros(P * P), np.zeros(P)
         self.visible, self.matched, self.unexplained = (np.zeros(N_LABELS) for _ in range(3))
+        self._systems = {n: (H[: n * n].reshape(n, n), b[:n]) for n in (model.n_pose, P)}
+        self._tables = plain(model.surface), plain(model.articulation)
         self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))
         self.cost = 0.0
 
@@ -52,16 +55,23 @@ class CameraRows:
     ) -> None:
         """Add up anew, from the body that `drawing` posed last; the pictures are on the search's grid.
 
-        n_shape: how many shape factors are columns after those of the pose. weight: of a pixel's row.
+        n_shape: how many shape factors are columns after those of the pose, none or all. weight: of a
+        pixel's row.
         """
-        m = drawing.model
-        H, b = self.system(m.n_pose + n_shape)
+        surface, articulation = self._tables
+        sums = AlignmentSums(
+            *self._systems[drawing.model.n_pose + n_shape],
+            self.visible,
+            self.matched,
+            self.unexplained,
+        )
         self.cost = accumulate(
-            pictures, search, drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy,
-            m.surface, body.centres, m.articulation, drawing.posed, self._d_joints, drawing.pinhole, weight,
-            AlignmentSums(H, b, self.visible, self.matched, self.unexplained),
+            plain(pictures), plain(search),
+            drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy,
+            surface, body.centres, articulation, plain(drawing.posed), self._d_joints,
+            plain(drawing.pinhole), weight, plain(sums),
         )  # fmt: skip
 
     def system(self, P: int) -> tuple[Floats, Floats]:
         """H and b as last added up."""
-        return self._H[: P * P].reshape(P, P), self._b[:P]
+        return self._systems[P]

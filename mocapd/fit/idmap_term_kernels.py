@@ -173,8 +173,9 @@ def accumulate(
     visible[:] = 0.0
     matched[:] = 0.0
     unexplained[:] = 0.0
-    if b.shape[0] > 3 + 3 * articulation.joint_of_group.shape[0]:
-        joint_shape_derivatives(articulation.parents, articulation.d_rest, R, d_joints)
+    parents, _, _, joint_of_group, d_rest = articulation
+    if b.shape[0] > 3 + 3 * joint_of_group.shape[0]:
+        joint_shape_derivatives(parents, d_rest, R, d_joints)
     n_offsets = offsets.shape[0]
     h, w = model_ids.shape
     P = H.shape[0]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
@@ -135,8 +136,10 @@ class Fitter:
             ):
                 vector = np.array([x, mirror * y, mirror * z])
                 rest[INDEX[side + bone]] = rotations.exp(vector)
-        self._priors = PosePriors(
-            rest, self._rest_information, model.space.limits, 1.0 / p.limit_sd_rad**2
+        self._priors = plain(
+            PosePriors(
+                rest, self._rest_information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2
+            )
         )
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:

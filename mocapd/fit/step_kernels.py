@@ -42,7 +42,7 @@ def gauss_newton_step(
     from the factors to what is known of them, with shape_information.
     """
     rest_local, rest_information, limits, limit_information = priors
-    joint_of_group, share_of_joint = limits.joint, limits.share
+    _, joint_of_group, share_of_joint, _, _ = limits
     n_pose = motion_information.shape[0]
     P = b.shape[0]
     A = H.copy()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.body.arrays import PosedJoints, camera_arrays
+from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import build_model, shaped
 from mocapd.body.posing_kernels import (
     difference,
@@ -96,7 +96,7 @@ def test_skinning_and_projection_equal_the_plain_path(seed: int) -> None:
     camera, offset, scale = ring(3)[seed % 3], np.array([37.0, -14.0]), 0.5
     xy, depth = np.empty((len(used), 2)), np.empty(len(used))
     skin_and_project(
-        MODEL.vertices_m, MODEL.skin, posed, camera_arrays(camera), offset, scale, xy, depth,
+        MODEL.vertices_m, plain(MODEL.skin), plain(posed), plain(camera_arrays(camera)), offset, scale, xy, depth,
     )  # fmt: skip
     # block k of a picture averaged down by two covers pixels 2k and 2k + 1: its centre is 2k + 0.5
     wanted = (project(camera, world) - offset + 0.5) * scale - 0.5
@@ -112,7 +112,7 @@ def test_points_behind_the_camera_are_marked() -> None:
     n = len(MODEL.vertices_m)
     xy, depth = np.zeros((n, 2)), np.zeros(n)
     skin_and_project(
-        MODEL.vertices_m, MODEL.skin, posed, camera_arrays(behind), np.zeros(2), 1.0, xy, depth,
+        MODEL.vertices_m, plain(MODEL.skin), plain(posed), plain(camera_arrays(behind)), np.zeros(2), 1.0, xy, depth,
     )  # fmt: skip
     assert (depth < 0).all()
     assert np.isfinite(xy).all()
@@ -195,7 +195,7 @@ def test_surface_row_equals_central_differences(seed: int) -> None:
         row = np.full(MODEL.n_pose + MODEL.n_shape, np.nan)
         surface_row(
             vertices[corners].mean(axis=0), MODEL.triangle_bones[t], MODEL.triangle_weights[t],
-            MODEL.d_vertices[:, corners].mean(axis=1), g, MODEL.articulation, posed, d_joints, row,
+            MODEL.d_vertices[:, corners].mean(axis=1), g, plain(MODEL.articulation), plain(posed), d_joints, row,
         )  # fmt: skip
         wanted = np.empty_like(row)
         for k in range(len(row)):

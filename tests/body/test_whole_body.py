@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from mocapd.body.arrays import PosedJoints
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.joint_limit_kernels import limit_residuals
 from mocapd.body.joint_limits import from_swing_twist, soft_limit
 from mocapd.body.model import build_model, shape_of, shaped
@@ -214,7 +214,7 @@ def test_rows_of_legs_and_head_equal_central_differences(part: int) -> None:
         row = np.full(MODEL.n_pose + N, np.nan)
         surface_row(
             vertices[corners].mean(axis=0), MODEL.triangle_bones[t], MODEL.triangle_weights[t],
-            MODEL.d_centres[:, t], g, MODEL.articulation, posed, d_joints, row,
+            MODEL.d_centres[:, t], g, plain(MODEL.articulation), plain(posed), d_joints, row,
         )  # fmt: skip
         wanted = np.empty_like(row)
         for k in range(len(row)):
@@ -253,17 +253,18 @@ def solved(points_m: Floats, start: tuple[Floats, Floats], rounds: int) -> tuple
             here = posed.joints[j] + posed.R[j] @ (point - MODEL.rest_m[j])
             for axis in np.eye(3):
                 surface_row(
-                    point, np.array([j], np.int32), np.ones(1), none, axis, MODEL.articulation,
-                    posed, no_joints, row,
+                    point, np.array([j], np.int32), np.ones(1), none, axis,
+                    plain(MODEL.articulation), plain(posed), no_joints, row,
                 )  # fmt: skip
                 H += np.outer(row, row)
                 b += row * float(axis @ (wanted - here))
-        limit_residuals(local, SPACE.limits, residual, slope)
+        limit_residuals(local, plain(SPACE.limits), residual, slope)
         for g in range(G):
             at = slice(3 + 3 * g, 6 + 3 * g)
             H[at, at] += 0.1 * slope[g].T @ slope[g]
             b[at] -= 0.1 * slope[g].T @ residual[g]
-        root, local = moved(root, local, np.asarray(np.linalg.solve(H, b)))
+        step: Floats = np.asarray(np.linalg.solve(H, b), dtype=np.float64)
+        root, local = moved(root, local, step)
     return root, local
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import PosedJoints, camera_arrays
+from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
 from mocapd.body.shirt import N_LABELS
@@ -36,7 +36,7 @@ def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> 
     forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, turned)
     xy, depth = np.empty((len(vertices), 2)), np.empty(len(vertices))
     skin_and_project(
-        vertices, model.skin, PosedJoints(rest, R, joints, turned), camera_arrays(camera),
+        vertices, plain(model.skin), plain(PosedJoints(rest, R, joints, turned)), plain(camera_arrays(camera)),
         np.zeros(2), 1.0 / factor, xy, depth,
     )  # fmt: skip
     h, w = camera.size_px[1] // factor, camera.size_px[0] // factor

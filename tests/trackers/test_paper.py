@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.arrays import camera_arrays, pinhole_arrays
+from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import retract
 from mocapd.body.shirt import N_LABELS, standard_shirt
@@ -159,8 +159,8 @@ def test_centroid_derivative_equals_differences() -> None:
     wanted[0] = False
     J = np.empty((N_LABELS, 2, MODEL.n_pose))
     centroid_rows(
-        seen.samples, wanted, seen.count, points, MODEL.surface, MODEL.articulation,
-        posed_joints(MODEL, body), pinhole_arrays(camera_arrays(c), 1.0), J,
+        seen.samples, wanted, seen.count, points, plain(MODEL.surface), plain(MODEL.articulation),
+        plain(posed_joints(MODEL, body)), plain(pinhole_arrays(camera_arrays(c), 1.0)), J,
     )  # fmt: skip
 
     def centroids(at: Posture) -> Floats:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import plain
 from mocapd.body.shirt import standard_shirt
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation.cell_kernels import (
@@ -148,8 +149,8 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     ]
     ids, pixel_weight = np.empty((h, w), np.uint8), np.empty((h, w), np.uint8)
     classify(
-        picture, *at, distance, affine(), LearnedPixels(mean, age, *counts),
-        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5), ids, pixel_weight,
+        picture, *at, distance, affine(), plain(LearnedPixels(mean, age, *counts)),
+        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5)), ids, pixel_weight,
     )  # fmt: skip
     costs, background = naive_classify(
         picture, at, distance, 0.05, 3.0, mean, age, (counts[0], counts[1]), (1.5, 1.2)
@@ -177,8 +178,8 @@ def test_the_prior_tells_two_patches_of_one_look_apart() -> None:
         np.zeros((20, 40, 3), np.float32), np.zeros((20, 40), np.uint8), no_count, no_count
     )
     classify(
-        picture, 0, 0, distance, affine(), learned,
-        ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5), got, pixel_weight,
+        picture, 0, 0, distance, affine(), plain(learned),
+        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5)), got, pixel_weight,
     )  # fmt: skip
     assert (got[6:14, 5:9] == 6).mean() > 0.9
     assert not got[:, 26:].any()

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import plain
 from mocapd.fit.body_drawing import Outline, Roi
 from mocapd.fit.fit_params import TICK_S
 from mocapd.shirt.colour.colour_model import ColourModel
@@ -177,16 +178,16 @@ class CameraSegmenter:
         mean, covariance = looks.gaussians(
             appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
         )
+        learned = LearnedPixels(
+            memory.background_mean, memory.background_age, memory.shirt_count, memory.other_count
+        )
+        weights = ClassifierWeights(
+            float(prior), p.threshold, p.background_tolerance, p.background_penalty,
+            p.other_penalty, p.soft_unclassified, p.soft_unknown,
+        )  # fmt: skip
         classify(
             self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance),
-            LearnedPixels(
-                memory.background_mean, memory.background_age, memory.shirt_count, memory.other_count
-            ),
-            ClassifierWeights(
-                prior, p.threshold, p.background_tolerance, p.background_penalty, p.other_penalty,
-                p.soft_unclassified, p.soft_unknown,
-            ),
-            ids, pixel_weight,
+            plain(learned), plain(weights), ids, pixel_weight,
         )  # fmt: skip
         return ids, pixel_weight
 

@@ -146,13 +146,13 @@ def classify(
     h, w = ids.shape
     h4, w4, _ = distance.shape
     sure = np.uint8(255)
-    soft = np.uint8(255 * weights.soft_unclassified)
-    unknown = np.uint8(255 * weights.soft_unknown)
-    tol = np.float32(weights.tolerance * 255.0)
-    step = np.float32(weights.prior)
-    top = np.float32(weights.threshold)
-    behind = np.float32(weights.background_penalty)
-    elsewhere = np.float32(weights.other_penalty)
+    prior, threshold, tolerance, behind_, elsewhere_, soft_, unknown_ = weights
+    soft, unknown = np.uint8(255 * soft_), np.uint8(255 * unknown_)
+    tol = np.float32(tolerance * 255.0)
+    step = np.float32(prior)
+    top = np.float32(threshold)
+    behind = np.float32(behind_)
+    elsewhere = np.float32(elsewhere_)
     # a cell's pixels side by side, so that the compiler makes vector instructions of the loops
     b, g, r = (
         np.empty(_LANES, np.float32),

@@ -80,6 +80,7 @@ class ColourTracker:
         smaller = work_factors(rig.cameras, p.fit.work_width_px)
         self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
         self._eyes = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
+        self._arm_columns = {side: model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._tracking = TrackingState(tracking)
         self._measured = factors
@@ -198,9 +199,7 @@ class ColourTracker:
         for side in SIDES:
             # what is hardly seen is hardly known to move; what was changed over jumped
             trust = np.clip((confirmed(side, fit) - 0.15) / p.arm_trust, 0.0, 1.0)
-            velocity[fitter.model.space.columns(f"{side}_arm")] *= (
-                0.0 if side in switched else trust
-            )
+            velocity[self._arm_columns[side]] *= 0.0 if side in switched else trust
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 

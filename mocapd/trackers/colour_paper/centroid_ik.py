@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import camera_arrays, pinhole_arrays
+from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import difference, retract
 from mocapd.body.shirt import N_LABELS
@@ -95,8 +95,8 @@ class CentroidSolver:
         model, camera = self.model, pinhole_arrays(camera_arrays(target.camera), 1.0)
         J = np.empty((N_LABELS, 2, model.n_pose))
         centroid_rows(
-            drawing.samples, wanted, drawing.count, self._points, model.surface,
-            model.articulation, posed_joints(model, body), camera, J,
+            drawing.samples, wanted, drawing.count, self._points, plain(model.surface),
+            plain(model.articulation), plain(posed_joints(model, body)), plain(camera), J,
         )  # fmt: skip
         residual = target.grid.to_pixels(drawing.centroid[wanted]) - target.centroid_px[wanted]
         return J[wanted], residual

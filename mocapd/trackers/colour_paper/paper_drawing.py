@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import PosedJoints, camera_arrays
+from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.shirt import N_LABELS
@@ -74,7 +74,8 @@ def project_body(
     # the kernel averages blocks of pixels; here a sample is one pixel
     offset = np.array([grid.x0, grid.y0]) + 0.5 - 0.5 * grid.stride
     skin_and_project(
-        model.vertices_m, model.skin, posed_joints(model, body), camera_arrays(camera), offset,
+        model.vertices_m, plain(model.skin), plain(posed_joints(model, body)),
+        plain(camera_arrays(camera)), offset,
         1.0 / grid.stride, xy, depth,
     )  # fmt: skip
     return xy, depth
