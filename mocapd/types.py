@@ -55,6 +55,15 @@ class FrameSet:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LabelledPicture:
+    """A picture and a person's strokes on it: pixels (h,w,3) uint8 BGR; labels (h,w) uint8, 0 none, 1..10
+    the shirt's colour ids."""
+
+    pixels: Bytes
+    labels: Bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Camera:
     """A calibrated camera: lens K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
 

@@ -24,12 +24,11 @@ from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
 from mocapd.shirt.colour.strokes import read_labelled, strokes_beside
 from mocapd.trackers.colour.build import colour_model
-from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Camera, Floats, Rig
+from mocapd.types import Camera, Floats, LabelledPicture, Rig
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
 
-def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, StrokedPicture]:
+def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
     """NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, and
     naming what is wrong with the strokes of one."""
     model = colour_model(())
@@ -38,10 +37,9 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, StrokedPicture]:
         image = strokes / f"{camera.name}.png"
         if not is_file(image):
             continue
-        drawn = strokes_beside(image)
-        pixels, labels = read_labelled(image, drawn)
-        require_good_strokes(pixels, labels, model, str(drawn))
-        pictures[camera.name] = StrokedPicture(pixels, labels)
+        one = read_labelled(image)
+        require_good_strokes(one.pixels, one.labels, model, str(strokes_beside(image)))
+        pictures[camera.name] = one
     if not pictures:
         names = ", ".join(f"{name}.png" for name in rig.names)
         raise InputError("holds no picture of a camera", str(strokes), f"put {names} there")
@@ -53,7 +51,7 @@ def save_from_folder(
     found: Calibration,
     recordings: Path,
     floor_known: bool,
-    pictures: Mapping[str, StrokedPicture],
+    pictures: Mapping[str, LabelledPicture],
     cameras: tuple[CameraSection, ...],
 ) -> None:
     """Write it all. cameras: those of the configuration, whose sources are taken where the ids agree;
@@ -81,12 +79,7 @@ def save_from_folder(
             for one in found.rig.cameras
         ),
     )
-    write_calibration(
-        out,
-        saved,
-        {name: (one.pixels, one.strokes) for name, one in pictures.items()},
-        own_folder=False,
-    )
+    write_calibration(out, saved, pictures, own_folder=False)
 
 
 def _camera(camera: Camera, source: str, report: CameraReport, W: Floats | None) -> SavedCamera:

@@ -10,8 +10,8 @@ from mocapd.body.shape import FACTORS
 from mocapd.calibration.saved_calibration import SavedCalibration
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.shirt.colour.white_balance import balanced
-from mocapd.trackers.registry import StrokedPicture, TrackerInputs
-from mocapd.types import Floats, Rig
+from mocapd.trackers.registry import TrackerInputs
+from mocapd.types import Floats, LabelledPicture, Rig
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class Calibrated:
     rig: Rig
     stature_m: float | None = None
     factors: Floats | None = None
-    pictures: Mapping[str, StrokedPicture] = field(default_factory=dict)
+    pictures: Mapping[str, LabelledPicture] = field(default_factory=dict)
     W: Mapping[str, Floats] = field(default_factory=dict)
     personal: bool = False
 
@@ -39,9 +39,7 @@ def read_calibrated(saved: SavedCalibration, path: Path) -> Calibrated:
         stature_m=None if wearer is None else wearer.stature_m,
         factors=factors,
         pictures={
-            name: StrokedPicture(
-                *read_labelled(path.parent / one.picture, path.parent / one.strokes)
-            )
+            name: read_labelled(path.parent / one.picture, path.parent / one.strokes)
             for name, one in colours.items()
         },
         W={name: np.array(one.W) for name, one in colours.items()},
@@ -51,11 +49,11 @@ def read_calibrated(saved: SavedCalibration, path: Path) -> Calibrated:
 
 def inputs_of_calibration(known: Calibrated, stature_m: float) -> TrackerInputs:
     """`stature_m` is for calibrations that do not say."""
-    model: tuple[StrokedPicture, ...] = ()
+    model: tuple[LabelledPicture, ...] = ()
     if known.personal:
         # each in the light of the model: a dye that differs stays as a difference, the light does not
         model = tuple(
-            StrokedPicture(balanced(one.pixels, known.W[name]), one.strokes)
+            LabelledPicture(balanced(one.pixels, known.W[name]), one.labels)
             for name, one in known.pictures.items()
         )
     return TrackerInputs(

@@ -35,7 +35,7 @@ from mocapd.errors import (
     MalformedError,
     MocapdError,
 )
-from mocapd.types import Bytes
+from mocapd.types import Bytes, LabelledPicture
 from mocapd.whole_file import tidy, whole_file
 
 FILE_NAME = "calibration.toml"
@@ -102,12 +102,12 @@ def _read(path: Path) -> SavedCalibration:
 def write_calibration(
     path: Path,
     saved: SavedCalibration,
-    pictures: Mapping[str, tuple[Bytes, Bytes]],
+    pictures: Mapping[str, LabelledPicture],
     own_folder: bool = True,
 ) -> None:
     """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml.
 
-    pictures: by camera id the picture (h,w,3) BGR and the strokes (h,w) that its `colour` is from.
+    pictures: by camera id the picture with the strokes that its `colour` is from.
     Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
     The file comes last, so what was there stays in force until all is written.
     Raises CannotCreateError, or ConfigError where passwords are kept and cannot be read.
@@ -122,7 +122,7 @@ def write_calibration(
         for camera in saved.camera:
             colour = camera.colour
             if colour is not None:
-                colour = _with_files(folder, camera.id, *pictures[camera.id], colour)
+                colour = _with_files(folder, camera.id, pictures[camera.id], colour)
             cameras.append(msgspec.structs.replace(camera, colour=colour))
         text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
         if path.exists():
@@ -188,10 +188,10 @@ def _text(saved: SavedCalibration) -> str:
 
 
 def _with_files(
-    folder: Path, camera: str, pixels: Bytes, strokes: Bytes, colour: ColourFit
+    folder: Path, camera: str, labelled: LabelledPicture, colour: ColourFit
 ) -> ColourFit:
     """Pictures are named by their content: one that is there already is the same one."""
-    picture, drawn = _png(pixels), _png(strokes)
+    picture, drawn = _png(labelled.pixels), _png(labelled.labels)
     stem = re.sub(r"[^\w.-]", "_", camera)
     mark = hashlib.sha256(picture + drawn).hexdigest()[:12]
     names = f"{stem}-{mark}.png", f"{stem}-{mark}_strokes.png"

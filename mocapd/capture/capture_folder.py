@@ -23,16 +23,9 @@ _STATURES_M = (0.5, 2.6)
 
 
 @dataclass(frozen=True, slots=True)
-class StrokedImage:
-    """An image and a user's strokes on it (PNG: 0 none, 1..10 the colour id)."""
-
-    image: Path
-    strokes: Path
-
-
-@dataclass(frozen=True, slots=True)
 class RecordedCamera:
-    """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble` is None when there is none."""
+    """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble`: an image with strokes beside
+    it; None when there is none."""
 
     name: str
     video: Path
@@ -40,21 +33,21 @@ class RecordedCamera:
     fps_hz: float
     time_offset_s: float
     frames: int
-    scribble: StrokedImage | None
+    scribble: Path | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CaptureFolder:
     """A recorded session; `cameras` in the rig's order. `stature_m` is None where no subject is given.
 
-    `model`: images of the shirt in neutral light with strokes, for the offline colour model.
+    `model`: images of the shirt in neutral light with strokes beside them, for the offline colour model.
     """
 
     path: Path
     rig: Rig
     cameras: tuple[RecordedCamera, ...]
     stature_m: float | None
-    model: tuple[StrokedImage, ...]
+    model: tuple[Path, ...]
 
     @property
     def fps_hz(self) -> float:
@@ -133,19 +126,19 @@ def _stature_m(path: Path) -> float | None:
         raise ConfigError(f"'stature_m': {error.what}", str(path), fix) from None
 
 
-def _stroked(image: Path) -> StrokedImage | None:
-    """The image and its `_strokes.png`; None without an image. Raises InputError for one alone."""
+def _stroked(image: Path) -> Path | None:
+    """The image that has strokes beside it; None without an image. Raises InputError for one alone."""
     if not image.exists():
         return None
     strokes = strokes_beside(image)
     if not strokes.exists():
         raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
-    return StrokedImage(image, strokes)
+    return image
 
 
-def _model(folder: Path) -> tuple[StrokedImage, ...]:
-    pairs = (_stroked(image) for image in stroked_pictures(folder))
-    return tuple(pair for pair in pairs if pair is not None)
+def _model(folder: Path) -> tuple[Path, ...]:
+    images = (_stroked(image) for image in stroked_pictures(folder))
+    return tuple(image for image in images if image is not None)
 
 
 def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -> FileSource:

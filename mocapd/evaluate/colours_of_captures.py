@@ -38,7 +38,7 @@ def score_capture(
     )
     W = white_balances(user, model)
     return {
-        f"{capture.name} {name}": score_by_strokes(one.strokes, user[name].strokes, one.W, W[name])
+        f"{capture.name} {name}": score_by_strokes(one.strokes, user[name].labels, one.W, W[name])
         for name, one in found.items()
     }
 

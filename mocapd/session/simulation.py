@@ -14,9 +14,8 @@ from mocapd.session.camera_inputs import CameraInput, in_rig_order
 from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import load_scenario
-from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import SimSetup
-from mocapd.trackers.registry import StrokedPicture, TrackerInputs
+from mocapd.trackers.registry import TrackerInputs
 
 _log = logging.getLogger(__name__)
 
@@ -81,10 +80,6 @@ def inputs_of_simulation(setup: SimSetup) -> TrackerInputs:
     return TrackerInputs(
         rig=setup.rig,
         stature_m=setup.stature_m,
-        model=tuple(_labelled(image) for image in setup.model),
-        white_balance={name: _labelled(image) for name, image in setup.scribbles.items()},
+        model=setup.model,
+        white_balance=setup.scribbles,
     )
-
-
-def _labelled(image: LabelledImage) -> StrokedPicture:
-    return StrokedPicture(image.pixels, image.strokes)

@@ -11,15 +11,15 @@ import numpy as np
 
 from mocapd.body.shirt import N_COLOURS, standard_shirt
 from mocapd.boundary.files import is_file, is_folder
-from mocapd.capture.capture_folder import CaptureFolder, StrokedImage
+from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.config.sections import CameraSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.shirt.colour.strokes import read_labelled, stroked_pictures, strokes_beside
 from mocapd.trackers import registry
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import StrokedPicture, TrackerInputs, build
+from mocapd.trackers.registry import TrackerInputs, build
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Rig
+from mocapd.types import LabelledPicture, Rig
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
 
@@ -73,7 +73,7 @@ def inputs_of_capture(
         stature_m=folder.stature_m or stature_m,
         model=read_model(folder.model),
         white_balance={
-            c.name: read_stroked(c.scribble) for c in folder.cameras if c.scribble is not None
+            c.name: read_labelled(c.scribble) for c in folder.cameras if c.scribble is not None
         },
         variant=variant,
         tracking=tracking,
@@ -90,46 +90,40 @@ def inputs_of_config(
         stature_m=tracker.stature_m,
         model=read_model(stroked_folder(folder)) if folder else (),
         white_balance={
-            c.id: read_stroked(stroked_image(c.white_balance)) for c in cameras if c.white_balance
+            c.id: read_labelled(stroked_image(c.white_balance)) for c in cameras if c.white_balance
         },
         variant=tracker.variant,
         tracking=tracker,
     )
 
 
-def stroked_image(image: Path) -> StrokedImage:
-    """An image with its `_strokes.png` beside it. Raises InputError when one is missing."""
-    strokes = strokes_beside(image)
-    for path in (image, strokes):
+def stroked_image(image: Path) -> Path:
+    """The same image. Raises InputError when it is missing, or the strokes beside it are."""
+    for path in (image, strokes_beside(image)):
         if not is_file(path):
             raise InputError("no such file", str(path), _PAINT)
-    return StrokedImage(image, strokes)
+    return image
 
 
-def stroked_folder(folder: Path) -> tuple[StrokedImage, ...]:
-    """Every image of a folder with its strokes. Raises InputError when there is none."""
+def stroked_folder(folder: Path) -> tuple[Path, ...]:
+    """Every image of a folder, its strokes beside it. Raises InputError when there is none."""
     images = stroked_pictures(folder) if is_folder(folder) else []
     if not images:
         raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
     return tuple(stroked_image(image) for image in images)
 
 
-def read_model(images: tuple[StrokedImage, ...]) -> tuple[StrokedPicture, ...]:
+def read_model(images: tuple[Path, ...]) -> tuple[LabelledPicture, ...]:
     """The images of the shirt. Raises ConfigError when a colour has no stroke on any of them."""
-    pictures = tuple(read_stroked(image) for image in images)
+    pictures = tuple(read_labelled(image) for image in images)
     if pictures:
-        painted = np.unique(np.concatenate([np.unique(p.strokes) for p in pictures]))
+        painted = np.unique(np.concatenate([np.unique(p.labels) for p in pictures]))
         missing = sorted(set(range(1, N_COLOURS + 1)) - set(painted.tolist()))
         if missing:
             names = ", ".join(f"{i} ({standard_shirt().colour_names[i - 1]})" for i in missing)
             raise ConfigError(
                 f"no stroke of colour {names} on any image",
-                str(images[0].strokes.parent),
+                str(images[0].parent),
                 "paint it where the shirt shows it",
             )
     return pictures
-
-
-def read_stroked(image: StrokedImage) -> StrokedPicture:
-    """Read both pictures. Raises InputError naming the file."""
-    return StrokedPicture(*read_labelled(image.image, image.strokes))

@@ -15,10 +15,9 @@ from mocapd.geometry.rig_file import camera_to_dict
 from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
-from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.types import Bytes
+from mocapd.types import Bytes, LabelledPicture
 
 LABEL_EVERY = 15  # frames
 TRUTH_POINTS = 500  # skin points in truth.npz
@@ -99,9 +98,9 @@ def _write_pictures(job: _Job) -> None:
         _write_labelled(job.directory / "model" / str(i), image)
 
 
-def _write_labelled(stem: Path, image: LabelledImage) -> None:
+def _write_labelled(stem: Path, image: LabelledPicture) -> None:
     write_png(stem.with_name(stem.name + ".png"), image.pixels)
-    write_png(stem.with_name(stem.name + "_strokes.png"), image.strokes)
+    write_png(stem.with_name(stem.name + "_strokes.png"), image.labels)
 
 
 def write_png(path: Path, pixels: Bytes) -> None:

@@ -18,10 +18,9 @@ from mocapd.boundary.pictures import decode_picture
 from mocapd.sim.cache_file import read_cached, write_cached
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
-from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.world import World, rig_of
-from mocapd.types import Bytes
+from mocapd.types import Bytes, LabelledPicture
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
@@ -118,14 +117,14 @@ def _shoot(frame: int, quality: int, renderer: CameraRenderer) -> bytes:
     return encode_jpeg(renderer.frame(frame), quality)
 
 
-def _png_pair(image: LabelledImage) -> tuple[bytes, bytes]:
-    pair = [bytes(cv2.imencode(".png", array)[1]) for array in (image.pixels, image.strokes)]
+def _png_pair(image: LabelledPicture) -> tuple[bytes, bytes]:
+    pair = [bytes(cv2.imencode(".png", array)[1]) for array in (image.pixels, image.labels)]
     return pair[0], pair[1]
 
 
-def _labelled(pair: tuple[bytes, bytes]) -> LabelledImage:
-    pixels, strokes = (
+def _labelled(pair: tuple[bytes, bytes]) -> LabelledPicture:
+    pixels, labels = (
         decode_picture(data, flags)
         for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
     )
-    return LabelledImage(pixels, strokes)
+    return LabelledPicture(pixels, labels)

@@ -1,7 +1,5 @@
 """A user's sloppy strokes on a picture, made from the exact labels."""
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 
@@ -10,14 +8,6 @@ from mocapd.types import Bytes
 
 _MARGIN_PX = 2  # users stay off the borders, more or less
 _LEAST_PX = 40  # patches smaller than this are left out
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LabelledImage:
-    """pixels (H,W,3) BGR and a user's strokes (H,W): 0 nothing, 1..10 colour id."""
-
-    pixels: Bytes
-    strokes: Bytes
 
 
 def scribble(patch: Bytes, rng: np.random.Generator) -> Bytes:

@@ -12,9 +12,9 @@ from mocapd.sim.renderer import CameraRenderer, Set, camera_renderers
 from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario, load_scenario
 from mocapd.sim.scenery.furniture import backdrop
 from mocapd.sim.scenery.lamps import studio_lamps
-from mocapd.sim.scribbles import LabelledImage, scribble
+from mocapd.sim.scribbles import scribble
 from mocapd.sim.world import World, rig_of
-from mocapd.types import Rig
+from mocapd.types import LabelledPicture, Rig
 
 # How the user poses for the pictures of the shirt: pose, yaw [deg]
 MODEL_POSES = (
@@ -29,8 +29,8 @@ class SimSetup:
 
     rig: Rig
     stature_m: float
-    scribbles: Mapping[str, LabelledImage]
-    model: tuple[LabelledImage, ...]
+    scribbles: Mapping[str, LabelledPicture]
+    model: tuple[LabelledPicture, ...]
 
 
 def sim_setup(scenario_path: Path) -> SimSetup:
@@ -49,20 +49,20 @@ def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:
     )
 
 
-def scribble_picture(scenario: Scenario, renderer: CameraRenderer) -> LabelledImage:
+def scribble_picture(scenario: Scenario, renderer: CameraRenderer) -> LabelledPicture:
     """The picture of one camera at `scribble_s`, with strokes."""
     state = World(scenario).at(scenario.scribble_s)
     pixels = renderer.picture((state.pose, state.pose), state.light_levels, noise_key=-1)
     patch, _ = renderer.labels(state.pose)
-    return LabelledImage(pixels, scribble(patch, np.random.default_rng([scenario.seed, 5])))
+    return LabelledPicture(pixels, scribble(patch, np.random.default_rng([scenario.seed, 5])))
 
 
-def model_pictures(scenario: Scenario) -> tuple[LabelledImage, ...]:
+def model_pictures(scenario: Scenario) -> tuple[LabelledPicture, ...]:
     """The person before a grey backdrop in neutral light, with strokes."""
     camera = CameraSpec(
         name="studio", position_m=(0.0, 1.30, 3.1), look_at_m=(0.0, 1.12, 0.0), vignetting=0.0
     )
-    out: list[LabelledImage] = []
+    out: list[LabelledPicture] = []
     renderer: CameraRenderer | None = None
     stage = Set(backdrop(), studio_lamps(), np.zeros(3))
     for i, (pose, yaw_deg) in enumerate(MODEL_POSES):
@@ -77,5 +77,5 @@ def model_pictures(scenario: Scenario) -> tuple[LabelledImage, ...]:
         pixels = renderer.picture((at_rest, at_rest), np.ones(2), noise_key=i)
         patch, _ = renderer.labels(at_rest)
         rng = np.random.default_rng([scenario.seed, 6, i])
-        out.append(LabelledImage(pixels, scribble(patch, rng)))
+        out.append(LabelledPicture(pixels, scribble(patch, rng)))
     return tuple(out)

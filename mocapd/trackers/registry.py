@@ -10,20 +10,12 @@ from mocapd.body.skeleton import standard_skeleton
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Bytes, Floats, Rig
+from mocapd.types import Floats, LabelledPicture, Rig
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StrokedPicture:
-    """pixels (h,w,3) BGR and strokes (h,w): 0 none, 1.. the shirt's colour ids."""
-
-    pixels: Bytes
-    strokes: Bytes
 
 
 def _quiet(_: object) -> None:
@@ -44,8 +36,8 @@ class TrackerInputs:
 
     rig: Rig | None
     stature_m: float
-    model: tuple[StrokedPicture, ...] = ()
-    white_balance: Mapping[str, StrokedPicture] = field(default_factory=dict)
+    model: tuple[LabelledPicture, ...] = ()
+    white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
     variant: str = "full"
     cache_dir: Path = field(default_factory=Path)
     progress: Callable[[float], None] = _quiet

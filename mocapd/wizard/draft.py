@@ -7,7 +7,7 @@ from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.capture.webcam.controls import Controls
-from mocapd.types import Bytes, Floats, Rig
+from mocapd.types import Floats, LabelledPicture, Rig
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +42,10 @@ class RoomQuality:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DraftColours:
-    """One camera's frozen picture (h,w,3) BGR with the strokes (h,w) 0 none, 1..10 that were accepted,
-    and W (3,3), model_from_camera on RGB 0..1, solved from them."""
+    """One camera's frozen picture with the strokes that were accepted, and W (3,3), model_from_camera on
+    RGB 0..1, solved from them."""
 
-    pixels: Bytes
-    strokes: Bytes
+    picture: LabelledPicture
     W: Floats
 
 

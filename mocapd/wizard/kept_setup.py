@@ -31,7 +31,7 @@ from mocapd.calibration.board_spec import BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
-from mocapd.types import Bytes, Rig
+from mocapd.types import Bytes, LabelledPicture, Rig
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 from mocapd.wizard.step import StepName
@@ -204,7 +204,11 @@ def _told(draft: Draft) -> _Draft:
         room=None if draft.room is None else _room_told(draft.room),
         floor_known=draft.floor_known,
         colours={
-            name: _Colours(picture=_png(one.pixels), strokes=_png(one.strokes), W=one.W.tolist())
+            name: _Colours(
+                picture=_png(one.picture.pixels),
+                strokes=_png(one.picture.labels),
+                W=one.W.tolist(),
+            )
             for name, one in draft.colours.items()
         },
         personal=draft.personal,
@@ -330,7 +334,7 @@ def _colours(told: Mapping[str, _Colours]) -> dict[str, DraftColours]:
         strokes = decode_picture(one.strokes, cv2.IMREAD_GRAYSCALE, (width, height))
         if strokes.max() > N_COLOURS:
             raise MalformedError(f"has strokes of a colour {strokes.max()}")
-        found[name] = DraftColours(pixels, strokes, np.array(one.W))
+        found[name] = DraftColours(LabelledPicture(pixels, strokes), np.array(one.W))
     return found
 
 

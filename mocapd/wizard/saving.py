@@ -30,8 +30,7 @@ from mocapd.calibration.saved_calibration import (
     Wearer,
 )
 from mocapd.errors import ConfigError, InputError
-from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Bytes, Camera
+from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 
 _MOST_VIEWS = 10**6  # of one lens
@@ -50,7 +49,7 @@ def save_draft(draft: Draft, state_dir: Path) -> Path:
     return path
 
 
-def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, tuple[Bytes, Bytes]]]:
+def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
     """The draft as the tables of the file, and its pictures by camera."""
     if draft.rig is None or draft.room is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
@@ -72,7 +71,7 @@ def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, tuple[Bytes, Byt
         wearer=_wearer(draft),
         board=draft.board,
         camera=cameras,
-    ), {name: (one.pixels, one.strokes) for name, one in draft.colours.items()}
+    ), {name: one.picture for name, one in draft.colours.items()}
 
 
 def load_draft(place: Path) -> Draft:
@@ -108,10 +107,7 @@ def load_draft(place: Path) -> Draft:
             math.nan if room.play_area_cm is None else room.play_area_cm,
         ),
         floor_known=room.floor_known,
-        colours={
-            name: DraftColours(one.pixels, one.strokes, known.W[name])
-            for name, one in known.pictures.items()
-        },
+        colours={name: DraftColours(one, known.W[name]) for name, one in known.pictures.items()},
         personal=known.personal,
         stature_m=known.stature_m,
         factors=known.factors,
@@ -126,7 +122,7 @@ def calibrated_of(draft: Draft) -> Calibrated:
         draft.rig,
         draft.stature_m,
         draft.factors,
-        {name: StrokedPicture(one.pixels, one.strokes) for name, one in draft.colours.items()},
+        {name: one.picture for name, one in draft.colours.items()},
         {name: one.W for name, one in draft.colours.items()},
         draft.personal,
     )

@@ -85,7 +85,7 @@ def truth_strokes(camera: str) -> Bytes:
     """Where a careful user would draw, from the simulator's labels."""
     scenario = load_scenario(SCENARIO)
     renderer = {r.camera.name: r for r in camera_renderers(World(scenario))}[camera]
-    return scribble_picture(scenario, renderer).strokes
+    return scribble_picture(scenario, renderer).labels
 
 
 def rms_after_turning_cm(capture: Path, track: Path) -> float:

@@ -36,10 +36,9 @@ from mocapd.calibration.saved_calibration import (
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import CannotCreateError, ConfigError, InputError
-from mocapd.types import Bytes
+from mocapd.types import LabelledPicture
 
 ONE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-Pictures = dict[str, tuple[Bytes, Bytes]]
 
 
 def camera(name: str, colour: bool = False) -> SavedCamera:
@@ -70,10 +69,10 @@ def saved_calibration() -> SavedCalibration:
     )
 
 
-def pictures(shade: int = 0) -> Pictures:
+def pictures(shade: int = 0) -> dict[str, LabelledPicture]:
     strokes = np.zeros((48, 64), np.uint8)
     strokes[10:20, 10:20] = 3
-    return {"left": (np.full((48, 64, 3), shade, np.uint8), strokes)}
+    return {"left": LabelledPicture(np.full((48, 64, 3), shade, np.uint8), strokes)}
 
 
 @pytest.fixture
@@ -94,8 +93,8 @@ def test_what_is_read_is_what_was_written(path: Path) -> None:
         wanted.board,
     )
     known = read_calibrated(read, path)
-    assert np.array_equal(known.pictures["left"].pixels, pictures()["left"][0])
-    assert np.array_equal(known.pictures["left"].strokes, pictures()["left"][1])
+    assert np.array_equal(known.pictures["left"].pixels, pictures()["left"].pixels)
+    assert np.array_equal(known.pictures["left"].labels, pictures()["left"].labels)
     inputs = inputs_of_calibration(known, stature_m=1.9)
     assert inputs.stature_m == 1.71
     assert inputs.factors is not None

@@ -19,8 +19,7 @@ from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.colour.build import colour_model
-from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Bytes, Camera
+from mocapd.types import Bytes, Camera, LabelledPicture
 from tests.calibrate.swatches import MODEL, swatches
 from tests.sim import small
 
@@ -40,13 +39,8 @@ class Scene:
         self.patch = {r.camera.name: r.labels(state.pose)[0] for r in self.renderers}
         self.pixels: dict[str, Bytes] = {n: s.pixels for n, s in self.setup.scribbles.items()}
         self.cameras: dict[str, Camera] = {c.name: c for c in self.setup.rig.cameras}
-        self.model: ColourModel = colour_model(
-            tuple(StrokedPicture(m.pixels, m.strokes) for m in self.setup.model)
-        )
-        self.W = white_balances(
-            {n: StrokedPicture(s.pixels, s.strokes) for n, s in self.setup.scribbles.items()},
-            self.model,
-        )
+        self.model: ColourModel = colour_model(self.setup.model)
+        self.W = white_balances(self.setup.scribbles, self.model)
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +90,7 @@ def test_cameras_of_a_rig_are_read_together(scene: Scene, database: PoseDatabase
     assert set(found) == {"left", "right"}
     for name, one in found.items():
         score = score_by_strokes(
-            one.strokes, scene.setup.scribbles[name].strokes, one.W, scene.W[name]
+            one.strokes, scene.setup.scribbles[name].labels, one.W, scene.W[name]
         )
         assert score.right > 0.9
         assert score.W_error < 0.3
@@ -142,11 +136,11 @@ def test_lights_undo_what_they_do() -> None:
 def test_a_personal_model_keeps_the_dye_and_drops_the_light() -> None:
     light = np.array([1.0, 0.9, 0.7])
     pixels, strokes = swatches(light)
-    again = personal_colour_model({"cam0": StrokedPicture(pixels, strokes)}, MODEL)
+    again = personal_colour_model({"cam0": LabelledPicture(pixels, strokes)}, MODEL)
     np.testing.assert_allclose(again.mean, MODEL.mean, atol=0.08)
     pale = pixels.copy()
     pale[strokes == 5] = (0.7 * pale[strokes == 5] + 40).astype(np.uint8)
-    other = personal_colour_model({"cam0": StrokedPicture(pale, strokes)}, MODEL)
+    other = personal_colour_model({"cam0": LabelledPicture(pale, strokes)}, MODEL)
     moved = np.linalg.norm(other.mean - again.mean, axis=1)
     assert moved.argmax() == 4
 

@@ -106,7 +106,7 @@ def test_the_inputs_of_a_folder_hold_strokes_of_every_colour(capture: Path) -> N
     inputs = inputs_of_capture(load_folder(capture), 1.9)
     assert inputs.stature_m == 1.7
     assert set(inputs.white_balance) == {"cam1"}
-    assert set(inputs.model[0].strokes.ravel().tolist()) == set(range(11))
+    assert set(inputs.model[0].labels.ravel().tolist()) == set(range(11))
 
 
 def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_a_folder_of_pictures_is_read_by_one_rule_wherever_it_is_named(capture: 
     write_stroked(folder / "by_the_window.png", range(1, 5))
     named = stroked_folder(folder)
     assert named == load_folder(capture).model
-    assert [one.image.name for one in named] == ["0.png", "by_the_window.png"]
+    assert [one.name for one in named] == ["0.png", "by_the_window.png"]
 
 
 def test_a_model_is_checked(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def _shown(film: Film) -> dict[str, object]:
     pictures |= {f"model {number}": one for number, one in enumerate(film.setup.model)}
     shown: dict[str, object] = {"first": film.first, **film.frames}
     for name, one in pictures.items():
-        shown |= {name: one.pixels, f"{name} strokes": one.strokes}
+        shown |= {name: one.pixels, f"{name} strokes": one.labels}
     return shown
 
 

@@ -1,12 +1,12 @@
 """Strokes: as the page sends them, and as files beside a picture."""
 
 import base64
+from pathlib import Path
 from random import Random
 
 import numpy as np
 
-from mocapd.capture.capture_folder import StrokedImage
-from mocapd.session.tracker_setup import read_model, read_stroked, stroked_folder
+from mocapd.session.tracker_setup import read_model, stroked_folder
 from mocapd.shirt.colour.strokes import read_labelled, stroke_means
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample, strokes_on
@@ -60,7 +60,7 @@ def labelled_images(place: Place) -> Attempt:
     image.write_bytes(goods[image][0])
     strokes.write_bytes(goods[strokes][0])
     read_model(stroked_folder(place.folder))
-    stroke_means(*read_labelled(image, strokes))
+    _means(image)
 
     def attempt(random: Random, number: int) -> bool:
         for path, ways in goods.items():
@@ -69,7 +69,12 @@ def labelled_images(place: Place) -> Attempt:
         good = random.choice(goods[path])
         change = damaged_png if good.startswith(b"\x89PNG") else damaged_jpeg
         path.write_bytes(change(random, good))
-        read = named(lambda: read_stroked(StrokedImage(image, strokes)))
-        return named(lambda: stroke_means(*read_labelled(image, strokes))) or read
+        read = named(lambda: read_labelled(image))
+        return named(lambda: _means(image)) or read
 
     return attempt
+
+
+def _means(image: Path) -> None:
+    one = read_labelled(image)
+    stroke_means(one.pixels, one.labels)

@@ -136,7 +136,7 @@ def test_the_room_is_seen_through_the_same_lens_as_truth() -> None:
 
 def test_strokes_lie_on_their_colours() -> None:
     patch, _ = renderers()[0].labels(World(scenario()).pose(0.0))
-    strokes = scribble_picture(scenario(), renderers()[0]).strokes
+    strokes = scribble_picture(scenario(), renderers()[0]).labels
     colour = standard_shirt().colour_of_patch[patch]
     on = strokes > 0
     assert on.sum() > 50
@@ -148,8 +148,8 @@ def test_model_pictures_show_all_ten_colours_as_the_standard_has_them() -> None:
     assert len(pictures) == 5
     seen: dict[int, list[np.ndarray]] = {}
     for picture in pictures:
-        for c in np.unique(picture.strokes[picture.strokes > 0]):
-            seen.setdefault(int(c), []).append(picture.pixels[picture.strokes == c])
+        for c in np.unique(picture.labels[picture.labels > 0]):
+            seen.setdefault(int(c), []).append(picture.pixels[picture.labels == c])
     assert sorted(seen) == list(range(1, 11))
     standard = standard_shirt().srgb.astype(float)
     hue = standard / standard.sum(axis=1, keepdims=True)

@@ -11,7 +11,6 @@ from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
 
@@ -77,7 +76,7 @@ def tracker_of(filmed: Filmed, database: PoseDatabase) -> Tracker:
     return build_colour_tracker(
         setup.rig,
         setup.stature_m,
-        tuple(StrokedPicture(m.pixels, m.strokes) for m in setup.model),
-        {name: StrokedPicture(s.pixels, s.strokes) for name, s in setup.scribbles.items()},
+        setup.model,
+        setup.scribbles,
         database,
     )

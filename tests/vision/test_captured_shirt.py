@@ -22,8 +22,8 @@ FRAMES = (60, 120, 180)
 
 def model_of(capture: Path) -> ColourModel:
     folder = capture / "model"
-    labelled = [read_labelled(folder / f"{i}.png", folder / f"{i}_strokes.png") for i in range(5)]
-    return fit_colour_model([a for a, _ in labelled], [b for _, b in labelled], NAMES)
+    labelled = [read_labelled(folder / f"{i}.png") for i in range(5)]
+    return fit_colour_model([a.pixels for a in labelled], [a.labels for a in labelled], NAMES)
 
 
 def frames_with_truth(capture: Path) -> list[tuple[Bytes, Bytes]]:
@@ -46,10 +46,8 @@ def test_the_shirt_is_read_under_the_light_it_was_scribbled_in(
 ) -> None:
     capture = dev_captures(name)
     model = model_of(capture)
-    image, strokes = read_labelled(
-        capture / "scribble" / "cam0.png", capture / "scribble" / "cam0_strokes.png"
-    )
-    means, counts = stroke_means(image, strokes)
+    scribble = read_labelled(capture / "scribble" / "cam0.png")
+    means, counts = stroke_means(scribble.pixels, scribble.labels)
     everywhere = np.ones((1, 1), dtype=np.uint8)
     tables = ColourTables()
     correct = {}

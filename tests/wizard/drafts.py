@@ -6,7 +6,7 @@ from mocapd.body.shape import N_FACTORS
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.capture.webcam.controls import Controls
-from mocapd.types import Camera, Rig
+from mocapd.types import Camera, LabelledPicture, Rig
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 
 SIZE_PX = (64, 48)
@@ -57,7 +57,7 @@ def full_draft() -> Draft:
         rig=rig,
         room=RoomQuality("wearer", float("nan"), {"cam0": 0.3, "cam1": 0.4}, 0.5),
         floor_known=True,
-        colours={name: DraftColours(pixels, strokes, np.eye(3) * 1.1) for name in NAMES},
+        colours={name: DraftColours(LabelledPicture(pixels, strokes), np.eye(3) * 1.1) for name in NAMES},
         personal=True,
         stature_m=1.72,
         factors=np.linspace(0.9, 1.1, N_FACTORS).round(4),

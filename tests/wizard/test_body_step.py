@@ -17,7 +17,6 @@ from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, bu
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.colour.tracker import ColourTracker
-from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Frame, FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import Drawn, solve
@@ -50,11 +49,9 @@ def bends(person: Wearer) -> list[FrameSet]:
 @pytest.fixture(scope="module")
 def draft(person: Wearer) -> Draft:
     """Room and colours are done."""
-    solved = solve(
-        {n: Drawn(one.pixels, one.strokes) for n, one in person.scribbles.items()}, True, {}
-    )
+    solved = solve({n: Drawn(one) for n, one in person.scribbles.items()}, True, {})
     colours = {
-        name: DraftColours(one.drawn.pixels, one.drawn.strokes, one.W)
+        name: DraftColours(one.drawn.picture, one.W)
         for name, one in solved.cameras.items()
         if one.W is not None
     }
@@ -249,10 +246,7 @@ def test_leaving_ends_the_measurement(
 ) -> None:
     def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
         step.leave()
-        stroked = {
-            n: StrokedPicture(one.pixels, one.strokes) for n, one in person.scribbles.items()
-        }
-        return build_colour_tracker(person.rig, person.stature_m, (), stroked, database)
+        return build_colour_tracker(person.rig, person.stature_m, (), person.scribbles, database)
 
     context = FakeContext(tmp_path, draft)
     step = BodyStep(context, make)

@@ -12,11 +12,10 @@ import pytest
 from mocapd.body.shirt import standard_shirt
 from mocapd.capture.capture_folder import load_folder
 from mocapd.errors import CannotCreateError, InputError
-from mocapd.session.tracker_setup import read_stroked
+from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.shirt.colour.white_balance import frobenius_distance
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.colour.build import colour_model, white_balance_of
-from mocapd.trackers.registry import StrokedPicture
 from mocapd.types import Bytes
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -91,14 +90,12 @@ def test_proposed_strokes_give_the_light_of_a_users_own(
     assert view.state is StepState.DONE
     assert set(context.draft.colours) == {"left", "right"}
     for name, mine in person.scribbles.items():
-        own = white_balance_of(
-            StrokedPicture(mine.pixels, mine.strokes), colour_model(()), plain=False
-        )
+        own = white_balance_of(mine, colour_model(()), plain=False)
         found = context.draft.colours[name]
         assert frobenius_distance(found.W, own) < 0.3
         truth = standard_shirt().colour_of_patch[person.patch[name]]
-        on = found.strokes > 0
-        assert (found.strokes == truth)[on].mean() > 0.9
+        on = found.picture.labels > 0
+        assert (found.picture.labels == truth)[on].mean() > 0.9
     assert context.draft.personal
     for camera in view.details["cameras"].values():  # type: ignore[attr-defined]
         for key in (camera["picture"], camera["strokes"], camera["seen"]):
@@ -114,7 +111,7 @@ def test_before_the_room_is_known_each_camera_is_read_alone(
     assert frozen(step, context, person.pictures).state is StepState.DONE
     for name, one in context.draft.colours.items():
         truth = standard_shirt().colour_of_patch[person.patch[name]]
-        assert (one.strokes == truth)[one.strokes > 0].mean() > 0.85
+        assert (one.picture.labels == truth)[one.picture.labels > 0].mean() > 0.85
 
 
 def test_nobody_in_the_pictures_leaves_an_empty_canvas_to_draw_on(
@@ -133,10 +130,10 @@ def test_nobody_in_the_pictures_leaves_an_empty_canvas_to_draw_on(
 def test_without_a_proposal_it_is_drawn_by_hand(context: FakeContext, person: Wearer) -> None:
     step = by_hand(context, person)
     assert "cannot be written" in step.view().problems[0].what
-    view = drawn(step, context, "left", person.scribbles["left"].strokes)
+    view = drawn(step, context, "left", person.scribbles["left"].labels)
     assert view.state is StepState.DONE
     assert "right" in view.sentence  # where nothing is drawn yet
-    view = drawn(step, context, "right", person.scribbles["right"].strokes)
+    view = drawn(step, context, "right", person.scribbles["right"].labels)
     assert view.state is StepState.DONE
     assert set(context.draft.colours) == {"left", "right"}
 
@@ -144,7 +141,7 @@ def test_without_a_proposal_it_is_drawn_by_hand(context: FakeContext, person: We
 def test_three_of_ten_colours_are_refused_with_the_names_of_the_others(
     context: FakeContext, person: Wearer
 ) -> None:
-    strokes = person.scribbles["left"].strokes.copy()
+    strokes = person.scribbles["left"].labels.copy()
     present = [k for k in range(1, 11) if (strokes == k).sum() > 30][:3]
     strokes[~np.isin(strokes, present)] = 0
     view = drawn(by_hand(context, person), context, "left", strokes)
@@ -159,7 +156,7 @@ def test_three_of_ten_colours_are_refused_with_the_names_of_the_others(
 def test_strokes_on_the_wrong_patch_are_named_and_marked(
     context: FakeContext, person: Wearer
 ) -> None:
-    strokes = person.scribbles["left"].strokes.copy()
+    strokes = person.scribbles["left"].labels.copy()
     red, lime = strokes == 1, strokes == 4
     strokes[red], strokes[lime] = 4, 1
     step = by_hand(context, person)
@@ -170,14 +167,14 @@ def test_strokes_on_the_wrong_patch_are_named_and_marked(
     camera = view.details["cameras"]["left"]  # type: ignore[index]
     assert any(red[y, x] or lime[y, x] for x, y in camera["marks"])
     # mended, it goes on
-    assert drawn(step, context, "left", person.scribbles["left"].strokes).state is StepState.DONE
+    assert drawn(step, context, "left", person.scribbles["left"].labels).state is StepState.DONE
 
 
 def test_what_is_no_picture_of_strokes_is_refused_and_nothing_changes(
     context: FakeContext, person: Wearer
 ) -> None:
     step = by_hand(context, person)
-    good = person.scribbles["left"].strokes
+    good = person.scribbles["left"].labels
     drawn(step, context, "left", good)
     before = step.view()
     coloured = np.repeat(good[..., None], 3, axis=2)
@@ -219,7 +216,7 @@ def test_pages_know_strokes_that_they_drew_themselves(context: FakeContext, pers
     step = by_hand(context, person)
     first = step.view().details["cameras"]["left"]  # type: ignore[index]
     assert first["by"] == "mocapd"
-    strokes = person.scribbles["left"].strokes
+    strokes = person.scribbles["left"].labels
     view = drawn(step, context, "left", strokes)
     camera = view.details["cameras"]["left"]  # type: ignore[index]
     assert camera["by"] == "page"
@@ -233,14 +230,14 @@ def test_the_own_shirts_colours_can_be_left_out_and_need_every_colour(
 ) -> None:
     step = by_hand(context, person)
     for name, mine in person.scribbles.items():
-        drawn(step, context, name, mine.strokes)
+        drawn(step, context, name, mine.labels)
     assert is_personal(context)
     do(step, "personal", {"on": False})
     context.drive(step, {})
     assert not is_personal(context)
     do(step, "personal", {"on": True})
     for name, mine in person.scribbles.items():
-        drawn(step, context, name, np.where(mine.strokes == 10, 0, mine.strokes).astype(np.uint8))
+        drawn(step, context, name, np.where(mine.labels == 10, 0, mine.labels).astype(np.uint8))
     view = step.view()
     assert view.state is StepState.DONE
     assert view.details["personal"] == {"wanted": True, "on": False, "missing": ["pink"]}
@@ -249,7 +246,7 @@ def test_the_own_shirts_colours_can_be_left_out_and_need_every_colour(
 
 def test_it_shows_what_was_found_before(context: FakeContext, person: Wearer) -> None:
     step = by_hand(context, person)
-    drawn(step, context, "left", person.scribbles["left"].strokes)
+    drawn(step, context, "left", person.scribbles["left"].labels)
     before = context.draft
     again = ColourStep(context, no_database)
     again.enter()
@@ -262,7 +259,7 @@ def test_a_recorded_pair_in_its_own_light(
     dev_captures: Callable[[str], Path], tmp_path: Path, database: PoseDatabase
 ) -> None:
     folder = load_folder(dev_captures("pair_office_traffic"))
-    mine = {c.name: read_stroked(c.scribble) for c in folder.cameras if c.scribble is not None}
+    mine = {c.name: read_labelled(c.scribble) for c in folder.cameras if c.scribble is not None}
     cameras = tuple(DraftCamera(c.name, "file", c.size_px) for c in folder.rig.cameras)
     context = FakeContext(
         tmp_path, Draft(cameras=cameras, rig=folder.rig, stature_m=folder.stature_m)

@@ -33,8 +33,8 @@ def test_a_saved_draft_can_be_gone_on_with(tmp_path: Path) -> None:
         for field in ("K", "dist", "R", "t_m"):
             assert np.array_equal(getattr(read, field), getattr(wrote, field))
     for name, colours in draft.colours.items():
-        assert np.array_equal(loaded.colours[name].pixels, colours.pixels)
-        assert np.array_equal(loaded.colours[name].strokes, colours.strokes)
+        assert np.array_equal(loaded.colours[name].picture.pixels, colours.picture.pixels)
+        assert np.array_equal(loaded.colours[name].picture.labels, colours.picture.labels)
         assert np.array_equal(loaded.colours[name].W, colours.W)
 
 

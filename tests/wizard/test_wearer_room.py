@@ -41,9 +41,7 @@ def database() -> PoseDatabase:
 def draft() -> Draft:
     """Lenses, colours and stature are known, the room is not."""
     person = wearer()
-    solved = solve(
-        {n: Drawn(one.pixels, one.strokes) for n, one in person.scribbles.items()}, True, {}
-    )
+    solved = solve({n: Drawn(one) for n, one in person.scribbles.items()}, True, {})
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
         lenses={
@@ -51,7 +49,7 @@ def draft() -> Draft:
             for c in person.rig.cameras
         },
         colours={
-            name: DraftColours(one.drawn.pixels, one.drawn.strokes, one.W)
+            name: DraftColours(one.drawn.picture, one.W)
             for name, one in solved.cameras.items()
             if one.W is not None
         },

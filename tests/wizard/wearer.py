@@ -9,10 +9,9 @@ import numpy as np
 
 from mocapd.body.shape import FACTORS
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
-from mocapd.sim.scribbles import LabelledImage
 from mocapd.sim.setup import scribble_picture
 from mocapd.sim.world import World, rig_of
-from mocapd.types import Bytes, Floats, Frame, FrameSet, Rig
+from mocapd.types import Bytes, Floats, Frame, FrameSet, LabelledPicture, Rig
 from tests.sim import small
 
 FPS_HZ = 30.0
@@ -39,7 +38,7 @@ class Wearer:
     rig: Rig
     stature_m: float
     factors: Floats
-    scribbles: Mapping[str, LabelledImage]
+    scribbles: Mapping[str, LabelledPicture]
     patch: Mapping[str, Bytes]
     renderers: tuple[CameraRenderer, ...]
     truth: World

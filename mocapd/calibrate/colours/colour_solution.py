@@ -5,17 +5,18 @@ from collections.abc import Mapping
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
 from mocapd.shirt.colour.white_balance import balanced
 from mocapd.trackers.colour.build import white_balance_of
-from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Floats
+from mocapd.types import Floats, LabelledPicture
 
 
-def white_balances(pictures: Mapping[str, StrokedPicture], model: ColourModel) -> dict[str, Floats]:
+def white_balances(
+    pictures: Mapping[str, LabelledPicture], model: ColourModel
+) -> dict[str, Floats]:
     """W (3,3), model_from_camera on RGB 0..1, by camera, as the full tracker reads it."""
     return {name: white_balance_of(p, model, plain=False) for name, p in pictures.items()}
 
 
 def personal_colour_model(
-    pictures: Mapping[str, StrokedPicture], model: ColourModel
+    pictures: Mapping[str, LabelledPicture], model: ColourModel
 ) -> ColourModel:
     """The colours of the wearer's own shirt, from stroked pictures in any light.
 
@@ -26,7 +27,7 @@ def personal_colour_model(
     W = white_balances(pictures, model)
     return fit_colour_model(
         [balanced(p.pixels, W[name]) for name, p in pictures.items()],
-        [p.strokes for p in pictures.values()],
+        [p.labels for p in pictures.values()],
         model.names,
         f"{model.version} (personal)",
     )

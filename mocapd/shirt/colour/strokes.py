@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.boundary.files import read_file
 from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
 from mocapd.errors import InputError, MalformedError
-from mocapd.types import Bytes, Floats
+from mocapd.types import Bytes, Floats, LabelledPicture
 
 COLOURS = 10
 _SCRIBBLE_AGAIN = "scribble again: 0 where nothing is drawn, 1..10 the colour id"
@@ -61,10 +61,11 @@ def read_strokes(path: Path, size_px: tuple[int, int] | None = None) -> Bytes:
     return image
 
 
-def read_labelled(image_path: Path, strokes_path: Path) -> tuple[Bytes, Bytes]:
-    """An image and the strokes on it: (h,w,3) uint8 BGR and (h,w) uint8. Raises InputError."""
-    image = read_image(image_path)
-    return image, read_strokes(strokes_path, (image.shape[1], image.shape[0]))
+def read_labelled(image: Path, strokes: Path | None = None) -> LabelledPicture:
+    """An image and the strokes beside it, or in the file that is named. Raises InputError."""
+    pixels = read_image(image)
+    size_px = pixels.shape[1], pixels.shape[0]
+    return LabelledPicture(pixels, read_strokes(strokes or strokes_beside(image), size_px))
 
 
 def stroke_colours(image: Bytes, strokes: Bytes) -> list[Floats]:

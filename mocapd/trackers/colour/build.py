@@ -16,9 +16,8 @@ from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.trackers.colour_paper.params import Params as PaperParams
 from mocapd.trackers.colour_paper.params import tolerant
 from mocapd.trackers.colour_paper.tracker import PaperTracker
-from mocapd.trackers.registry import StrokedPicture
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Floats, Rig
+from mocapd.types import Floats, LabelledPicture, Rig
 
 VARIANTS = ("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant")
 # Spread of a printed or dyed standard colour, where no pictures of the shirt are given
@@ -28,8 +27,8 @@ _DYE_SD = 0.05
 def build_colour_tracker(
     rig: Rig | None,
     stature_m: float,
-    model: tuple[StrokedPicture, ...],
-    white_balance: Mapping[str, StrokedPicture],
+    model: tuple[LabelledPicture, ...],
+    white_balance: Mapping[str, LabelledPicture],
     database: PoseDatabase | None,
     variant: str = "full",
     tracking: TrackingStateParams | None = None,
@@ -66,13 +65,13 @@ def build_colour_tracker(
     return PaperTracker(rig, stature_m, colours, W, database, published)
 
 
-def colour_model(pictures: tuple[StrokedPicture, ...]) -> ColourModel:
+def colour_model(pictures: tuple[LabelledPicture, ...]) -> ColourModel:
     """From the painted pictures; without any, the colours of the shirt's standard as printed."""
     shirt = standard_shirt()
     if pictures:
         return fit_colour_model(
             [p.pixels for p in pictures],
-            [p.strokes for p in pictures],
+            [p.labels for p in pictures],
             shirt.colour_names,
             shirt.version,
         )
@@ -80,9 +79,9 @@ def colour_model(pictures: tuple[StrokedPicture, ...]) -> ColourModel:
     return ColourModel(shirt.colour_names, shirt.srgb / 255.0, covariance, shirt.version)
 
 
-def white_balance_of(picture: StrokedPicture, model: ColourModel, plain: bool) -> Floats:
+def white_balance_of(picture: LabelledPicture, model: ColourModel, plain: bool) -> Floats:
     """W (3,3) from one painted picture; `plain`: the paper's least squares, else hue before brightness."""
-    means, counts = stroke_means(picture.pixels, picture.strokes)
+    means, counts = stroke_means(picture.pixels, picture.labels)
     return solve_white_balance(
         means, model.mean, counts.astype(float), precision=None if plain else shade_precision(model)
     )

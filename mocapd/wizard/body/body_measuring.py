@@ -99,7 +99,7 @@ def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
         lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total),
     )
     tracker = build_tracker("colour", inputs)
-    pictures = {name: one.pixels for name, one in draft.colours.items()}
+    pictures = {name: one.picture.pixels for name, one in draft.colours.items()}
     rehearse(
         tracker,
         known.rig,

@@ -17,8 +17,7 @@ from mocapd.calibrate.colours.stroke_check import StrokeProblem, check_strokes
 from mocapd.shirt.colour.colour_model import MIN_PIXELS, ColourModel
 from mocapd.shirt.colour.strokes import COLOURS, stroke_means
 from mocapd.trackers.colour.build import colour_model
-from mocapd.trackers.registry import StrokedPicture
-from mocapd.types import Bytes, Floats
+from mocapd.types import Bytes, Floats, LabelledPicture
 from mocapd.wizard.colour.stroke_images import encode_seen
 
 _SEEN_WIDTH_PX = 640  # of the picture "as the tracker sees it"
@@ -26,17 +25,11 @@ _SEEN_WIDTH_PX = 640  # of the picture "as the tracker sees it"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawn:
-    """A frozen picture (h,w,3) BGR and the strokes (h,w) on it; shirt (h,w): non-zero on the body that
-    they were proposed from, None when it is not known."""
+    """A frozen picture with the strokes on it; shirt (h,w): non-zero on the body that they were proposed
+    from, None when it is not known."""
 
-    pixels: Bytes
-    strokes: Bytes
+    picture: LabelledPicture
     shirt: Bytes | None = None
-
-    @property
-    def picture(self) -> StrokedPicture:
-        """As trackers take it."""
-        return StrokedPicture(self.pixels, self.strokes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,9 +70,9 @@ def solve(
     judged = {
         name: before[name].problems
         if name in before and before[name].drawn is one
-        else check_strokes(one.pixels, one.strokes, standard)
+        else check_strokes(one.picture.pixels, one.picture.labels, standard)
         for name, one in drawn.items()
-        if one.strokes.any()
+        if one.picture.labels.any()
     }
     good = {
         name: drawn[name].picture
@@ -102,20 +95,21 @@ def solve(
 def _seen(
     drawn: Drawn, problems: tuple[StrokeProblem, ...], model: ColourModel, W: Floats
 ) -> CameraSolution:
-    shirt = drawn.shirt if drawn.shirt is not None else hull_of(drawn.strokes)
-    found = lookalikes(drawn.pixels, shirt, model, W)
-    h, w = drawn.pixels.shape[:2]
+    shirt = drawn.shirt if drawn.shirt is not None else hull_of(drawn.picture.labels)
+    pixels = drawn.picture.pixels
+    found = lookalikes(pixels, shirt, model, W)
+    h, w = pixels.shape[:2]
     step = -(-w // _SEEN_WIDTH_PX)
-    small = np.ascontiguousarray(drawn.pixels[::step, ::step])
+    small = np.ascontiguousarray(pixels[::step, ::step])
     return CameraSolution(
         drawn, problems, W, encode_seen(small, colours_alone(small, model, W)),
         found, described(found, (w, h)),
     )  # fmt: skip
 
 
-def _missing(pictures: Mapping[str, StrokedPicture], model: ColourModel) -> tuple[str, ...]:
+def _missing(pictures: Mapping[str, LabelledPicture], model: ColourModel) -> tuple[str, ...]:
     """Names of the colours that have too few strokes in all cameras together."""
     pixels = np.zeros(COLOURS)
     for one in pictures.values():
-        pixels += stroke_means(one.pixels, one.strokes)[1]
+        pixels += stroke_means(one.pixels, one.labels)[1]
     return tuple(model.names[k] for k in range(COLOURS) if pixels[k] < MIN_PIXELS)

@@ -14,7 +14,7 @@ from mocapd.boundary.numbers import brief
 from mocapd.calibrate.colours.stroke_check import StrokeProblem
 from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
-from mocapd.types import Bytes
+from mocapd.types import Bytes, LabelledPicture
 from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn, Solution, solve
 from mocapd.wizard.colour.freezing import Countdown, Frozen
 from mocapd.wizard.colour.proposing import LoadDatabase, pose_database, propose
@@ -49,7 +49,7 @@ class _Canvas:
 
     def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
         """These are the strokes now."""
-        self.drawn = replace(self.drawn, strokes=strokes, shirt=shirt)
+        self.drawn = Drawn(replace(self.drawn.picture, labels=strokes), shirt)
         self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
 
 
@@ -81,9 +81,7 @@ class ColourStep:
         self._context.scene(Scene.T_POSE)
         if draft.colours:
             self._personal = draft.personal
-            self._canvases = {
-                name: _canvas(one.pixels, one.strokes) for name, one in draft.colours.items()
-            }
+            self._canvases = {name: _canvas(one.picture) for name, one in draft.colours.items()}
             self._to_solve = True
 
     def tick(self, now_ns: int) -> None:
@@ -116,7 +114,7 @@ class ColourStep:
                 self._to_propose = True
             case Strokes():
                 canvas = self._canvas_of(command.camera)
-                h, w = canvas.drawn.pixels.shape[:2]
+                h, w = canvas.drawn.picture.pixels.shape[:2]
                 strokes = decode_strokes(command.png_base64, (w, h), command.camera)
                 canvas.draw(strokes, canvas.drawn.shirt, command.by)
                 self._to_solve = True
@@ -137,7 +135,10 @@ class ColourStep:
     def _begin(self, frozen: Frozen) -> None:
         """New pictures: old strokes are of no use, and the light may be another."""
         self._take += 1
-        self._canvases = {name: _canvas(one.pixels) for name, one in frozen.frames.items()}
+        self._canvases = {
+            name: _canvas(LabelledPicture(one.pixels, one.pixels[..., 0] * 0))
+            for name, one in frozen.frames.items()
+        }
         self._solution = Solution({}, False, ())
         self._troubles = tuple(
             Problem("this camera gave no picture", name, "check its cable, then take them again")
@@ -150,7 +151,7 @@ class ColourStep:
         self._to_propose, self._proposing = False, True
         context, take = self._context, self._take
         serials = {name: one.serial for name, one in self._canvases.items()}
-        pictures = {name: one.drawn.pixels for name, one in self._canvases.items()}
+        pictures = {name: one.drawn.picture.pixels for name, one in self._canvases.items()}
         draft, cache_dir, load = context.draft, context.cache_dir, self._load
 
         def job(tell: Tell) -> dict[str, Proposal | InputError]:
@@ -191,7 +192,7 @@ class ColourStep:
         """What is good goes to the draft."""
         context = self._context
         colours = {
-            name: DraftColours(one.drawn.pixels, one.drawn.strokes, one.W)
+            name: DraftColours(one.drawn.picture, one.W)
             for name, one in self._solution.cameras.items()
             if one.W is not None
         }
@@ -246,7 +247,7 @@ class ColourStep:
     ) -> Json:
         """Also puts the camera's pictures where the page finds them."""
         base = f"colour-{self._id}-{self._take}-{name}"
-        h, w = canvas.drawn.pixels.shape[:2]
+        h, w = canvas.drawn.picture.pixels.shape[:2]
         picture, strokes = f"{base}.jpg", f"{base}-strokes-{canvas.serial}.png"
         pictures[picture], pictures[strokes] = canvas.jpeg, canvas.png
         seen = None
@@ -329,10 +330,8 @@ def _solved(
     return solve(drawn, personal, before)
 
 
-def _canvas(pixels: Bytes, strokes: Bytes | None = None) -> _Canvas:
-    if strokes is None:
-        strokes = pixels[..., 0] * 0
-    return _Canvas(Drawn(pixels, strokes), encode_picture(pixels), encode_strokes(strokes))
+def _canvas(picture: LabelledPicture) -> _Canvas:
+    return _Canvas(Drawn(picture), encode_picture(picture.pixels), encode_strokes(picture.labels))
 
 
 def _problem(one: StrokeProblem, camera: str) -> Problem:
