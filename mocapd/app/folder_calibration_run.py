@@ -10,7 +10,7 @@ import typer
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
-    from mocapd.calibrate.extrinsics.folder_calibration import Calibration
+    from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration
     from mocapd.calibration.board_spec import BoardSpec
     from mocapd.config.sections import Config
 
@@ -92,7 +92,7 @@ def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
     )  # fmt: skip
 
 
-def _as_dict(found: "Calibration") -> dict[str, object]:
+def _as_dict(found: "FolderCalibration") -> dict[str, object]:
     area = found.play_area
     return {
         "rms_px": round(found.rms_px, 4),
@@ -125,7 +125,7 @@ def _as_dict(found: "Calibration") -> dict[str, object]:
     }
 
 
-def _as_text(found: "Calibration", out: Path) -> str:
+def _as_text(found: "FolderCalibration", out: Path) -> str:
     area = found.play_area
     cm = "" if area is None else f", {area.median_cm:.2f} cm in the play area"
     lines = [f"{out}: {found.rms_px:.2f} px{cm}, {found.positions} positions of the board"]

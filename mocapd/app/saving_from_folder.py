@@ -9,7 +9,7 @@ from mocapd.boundary.files import is_file
 from mocapd.calibrate.board.recordings import find_recordings
 from mocapd.calibrate.colours.colour_solution import white_balances
 from mocapd.calibrate.colours.stroke_check import require_good_strokes
-from mocapd.calibrate.extrinsics.folder_calibration import Calibration, CameraReport
+from mocapd.calibrate.extrinsics.folder_calibration import CameraReport, FolderCalibration
 from mocapd.calibration.calibration_file import write_calibration
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
@@ -48,7 +48,7 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
 
 def save_from_folder(
     out: Path,
-    found: Calibration,
+    found: FolderCalibration,
     recordings: Path,
     floor_known: bool,
     pictures: Mapping[str, LabelledPicture],

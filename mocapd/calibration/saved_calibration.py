@@ -44,7 +44,7 @@ class RoomFit(_Table, frozen=True, kw_only=True):
     floor_known: bool = True
 
 
-class Wearer(_Table, frozen=True, kw_only=True):
+class SavedWearer(_Table, frozen=True, kw_only=True):
     """stature_m [m]; proportions: factors on the mean body, by name; personal_colours: whether the
     colours of the wearer's own shirt, from the strokes, replace the standard."""
 
@@ -100,7 +100,7 @@ class SavedCalibration(_Table, frozen=True, kw_only=True):
     schema: int
     made: Made
     room: RoomFit
-    wearer: Wearer | None = None
+    wearer: SavedWearer | None = None
     board: BoardSpec | None = None
     camera: Annotated[tuple[SavedCamera, ...], msgspec.Meta(min_length=1, max_length=100)]
 

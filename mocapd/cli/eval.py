@@ -86,18 +86,18 @@ def evaluate_captures(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.progress import ProgressBars
+    from mocapd.calibration.record import Calibration
     from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.page import write_page
-    from mocapd.session.tracker_setup import build_tracker, with_cache
+    from mocapd.session.tracker_setup import build_tracker, cached
     from mocapd.trackers.base import Tracker
-    from mocapd.trackers.registry import TrackerInputs
 
     cases = [open_case(capture) for capture in captures]
     with ProgressBars() as progress:
 
-        def build(inputs: TrackerInputs) -> Tracker:
-            return build_tracker(name, with_cache(inputs, effective.cache_dir, progress))
+        def build(known: Calibration, variant: str) -> Tracker:
+            return build_tracker(name, known, cached(effective.cache_dir, progress), variant)
 
         setting = runs.EvaluationSettings(
             build, effective.tracker.stature_m, joints.value, progress

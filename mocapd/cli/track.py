@@ -50,22 +50,28 @@ def track(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.progress import ProgressBars
+    from mocapd.calibration.from_capture import from_capture
     from mocapd.capture.capture_folder import frame_sets, load_folder
     from mocapd.session.offline import check_writable, track_all, write_track
-    from mocapd.session.saved_session import inputs_of_saved, load_saved
-    from mocapd.session.tracker_setup import build_tracker, inputs_of_capture, with_cache
+    from mocapd.session.saved_session import known_of_recording, load_saved
+    from mocapd.session.tracker_setup import build_tracker, cached
 
     check_writable(out)
     folder = load_folder(capture)
     frames = max(camera.frames for camera in folder.cameras)
     own = effective.tracker
     if calibration is None:
-        inputs = inputs_of_capture(folder, own.stature_m, own.variant, own)
+        known = from_capture(folder)
     else:
-        inputs = inputs_of_saved(load_saved(calibration), folder, own)
+        known = known_of_recording(load_saved(calibration), folder)
     with ProgressBars() as progress:
         result = track_all(
-            build_tracker(own.name, with_cache(inputs, effective.cache_dir, progress)),
+            build_tracker(
+                own.name,
+                known.assuming(own.stature_m),
+                cached(effective.cache_dir, progress, own),
+                own.variant,
+            ),
             frame_sets(folder),
             lambda done: progress(f"tracking {capture.name}", done, frames),
         )

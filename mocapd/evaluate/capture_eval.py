@@ -7,17 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import Score, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Bytes, FrameSet, Skeleton, Track
 
-BuildTracker = Callable[[TrackerInputs], Tracker]
+BuildTracker = Callable[[Calibration, str], Tracker]  # in one of its variants
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +106,7 @@ def evaluate(
     `stature_m` is for captures that do not say. What the tracker is given is what `mocapd track`
     gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
     """
-    tracker = build(inputs_of_capture(case.folder, stature_m, variant))
+    tracker = build(from_capture(case.folder).assuming(stature_m), variant)
     watched = _Watched(tracker.name, tracker, keep_evidence)
     track = track_all(watched, frame_sets(case.folder), on_frame)
     return CaptureResult(

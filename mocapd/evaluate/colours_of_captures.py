@@ -9,10 +9,11 @@ from pathlib import Path
 
 from mocapd.calibrate.colours.colour_solution import white_balances
 from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.colour_proposals import ProposalScore, score_by_strokes, table
-from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.trackers.colour.build import colour_model
@@ -26,15 +27,15 @@ def score_capture(
     Raises InputError when there is no rig, no scribble, or nobody in the pictures.
     """
     folder = load_folder(capture)
-    inputs = inputs_of_capture(folder, TrackerSection().stature_m)
-    model = colour_model(() if standard else inputs.model)
-    user = inputs.white_balance
+    shirt = from_capture(folder).shirt or ShirtColours()
+    model = colour_model(() if standard else shirt.model)
+    user = shirt.white_balance
     found = propose_strokes_together(
         {name: one.pixels for name, one in user.items()},
         folder.rig,
         model,
         database,
-        inputs.stature_m,
+        folder.stature_m or TrackerSection().stature_m,
     )
     W = white_balances(user, model)
     return {

@@ -12,6 +12,8 @@ import cv2
 import numpy as np
 
 from mocapd.body.model import build_model
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence
@@ -29,7 +31,6 @@ from mocapd.evaluate.truth import labelled_frames, read_label
 from mocapd.fit.body_drawing import work_factors
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
-from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.white_balance import solve_white_balance
 from mocapd.shirt.colour.whitening import fold
@@ -79,16 +80,18 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     `stature_m` is for captures that do not say.
     """
     folder = result.case.folder
-    inputs = inputs_of_capture(folder, stature_m)
-    params, colours = Params(), colour_model(inputs.model)
+    shirt = from_capture(folder).shirt or ShirtColours()
+    params, colours = Params(), colour_model(shirt.model)
     factors = work_factors(folder.rig.cameras, params.fit.work_width_px)
     eyes: dict[str, _Eye] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
-        strokes = inputs.white_balance.get(camera.name)
+        strokes = shirt.white_balance.get(camera.name)
         W = np.eye(3) if strokes is None else white_balance_of(strokes, colours, plain=True)
         labelled = labelled_frames(folder.path, recorded.video)
         eyes[camera.name] = _Eye(i, camera, recorded.video, factors[i], labelled, colours, W)
-    fitter = Fitter(build_model(inputs.stature_m), folder.rig.cameras, factors, params.fit)
+    fitter = Fitter(
+        build_model(folder.stature_m or stature_m), folder.rig.cameras, factors, params.fit
+    )
 
     total = no_roc()
     for frames, state in _tracked(result, fitter):

@@ -14,13 +14,14 @@ import numpy as np
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.calibrate.self_calibration.self_calibration import RoomReport, room_from_body
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.score import JOINT_SETS, match, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.geometry import rotations
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
@@ -78,13 +79,13 @@ def _relative(first: Camera, second: Camera) -> tuple[Floats, Floats]:
 
 def _known(capture: Path) -> _Known:
     folder = load_folder(capture)
-    inputs = inputs_of_capture(folder, TrackerSection().stature_m)
-    colours = colour_model(inputs.model)
+    shirt = from_capture(folder).shirt or ShirtColours()
+    colours = colour_model(shirt.model)
     W = {
         name: white_balance_of(picture, colours, plain=False)
-        for name, picture in inputs.white_balance.items()
+        for name, picture in shirt.white_balance.items()
     }
-    return _Known(folder, inputs.stature_m, colours, W)
+    return _Known(folder, folder.stature_m or TrackerSection().stature_m, colours, W)
 
 
 def find_room(known: _Known, database: PoseDatabase) -> tuple[Rig, RoomReport]:

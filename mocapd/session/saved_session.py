@@ -2,25 +2,21 @@
 
 import logging
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from mocapd.boundary.files import is_file, is_folder
 from mocapd.boundary.urls import without_password
-from mocapd.calibrate.calibrated_inputs import (
-    Calibrated,
-    inputs_of_calibration,
-    read_calibrated,
-)
 from mocapd.calibration.calibration_file import FILE_NAME, calibration_path, read_calibration
+from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.record import Calibration, Wearer
 from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.file import size_error
 from mocapd.capture.webcam.identity import PREFIX, parse_identity
-from mocapd.config.sections import CameraSection, Config, ControlsSection, TrackerSection
+from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
-from mocapd.trackers.registry import TrackerInputs
 
 _log = logging.getLogger(__name__)
 
@@ -31,7 +27,7 @@ class Saved:
 
     path: Path
     tables: SavedCalibration
-    known: Calibrated
+    known: Calibration
 
 
 def calibration_of(config: Config) -> Saved | None:
@@ -64,7 +60,7 @@ def load_saved(place: Path) -> Saved:
     """The calibration of a file or folder, with its pictures. Raises InputError or ConfigError."""
     path = calibration_path(place)
     tables = read_calibration(path)
-    return Saved(path, tables, read_calibrated(tables, path))
+    return Saved(path, tables, from_saved(tables, path))
 
 
 def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
@@ -98,9 +94,9 @@ def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
     )
 
 
-def inputs_of_saved(saved: Saved, folder: CaptureFolder, tracker: TrackerSection) -> TrackerInputs:
-    """What the calibration tells a tracker of a capture that its cameras recorded. Raises ConfigError
-    when they did not."""
+def known_of_recording(saved: Saved, folder: CaptureFolder) -> Calibration:
+    """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
+    where it does not. Raises ConfigError when they did not."""
     sizes = {camera.id: camera.size_px for camera in saved.tables.camera}
     for camera in folder.cameras:
         if camera.name not in sizes:
@@ -111,6 +107,4 @@ def inputs_of_saved(saved: Saved, folder: CaptureFolder, tracker: TrackerSection
             )
         if sizes[camera.name] != camera.size_px:
             raise size_error(str(camera.video), camera.name, camera.size_px, sizes[camera.name])
-    stature_m = folder.stature_m or tracker.stature_m
-    inputs = inputs_of_calibration(saved.known, stature_m)
-    return replace(inputs, variant=tracker.variant, tracking=tracker)
+    return Calibration(wearer=Wearer(folder.stature_m)).overlaid(saved.known)

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.url import is_url
 from mocapd.config.sections import CameraSection, Config
@@ -18,16 +19,11 @@ from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M,
 from mocapd.geometry.rig_file import load_rig
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
+from mocapd.session.from_configuration import from_configuration
 from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
-from mocapd.session.tracker_setup import (
-    Progress,
-    build_tracker,
-    inputs_of_capture,
-    inputs_of_config,
-    with_cache,
-)
+from mocapd.session.tracker_setup import Progress, build_tracker, cached
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import TrackerInputs, entry
+from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
 _log = logging.getLogger(__name__)
@@ -75,14 +71,13 @@ def open_session(config: Config, progress: Progress) -> Session:
     rig, rig_source = _given_rig(config, saved)
     if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
         rig, rig_source = _assumed_rig(cameras[0]), "assumed"
-    inputs = _own_inputs(config, rig, saved)
+    known = _known(config, rig, saved)
     if origin and saved is None:
         folder = load_folder(Path(origin))
-        told = inputs_of_capture(folder, config.tracker.stature_m)
-        inputs = _merged(inputs, told)
+        known = from_capture(folder).overlaid(known)
         rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
     return Session(
-        camera_inputs(cameras, rig), rig, rig_source, _ready_tracker(config, inputs, progress)
+        camera_inputs(cameras, rig), rig, rig_source, _ready_tracker(config, known, progress)
     )
 
 
@@ -93,12 +88,10 @@ def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
     return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
 
 
-def _own_inputs(config: Config, rig: Rig | None, saved: Saved | None) -> TrackerInputs:
-    """What configuration and calibration tell a tracker."""
-    own = inputs_of_config(config.tracker, config.camera, rig)
-    if saved is None:
-        return own
-    return _merged(own, inputs_of_calibration(saved.known, config.tracker.stature_m))
+def _known(config: Config, rig: Rig | None, saved: Saved | None) -> Calibration:
+    """From configuration and calibration: what the configuration itself gives goes before."""
+    own = from_configuration(config.tracker, config.camera, rig)
+    return own if saved is None else saved.known.overlaid(own)
 
 
 def _assumed_rig(camera: CameraSection) -> Rig:
@@ -116,25 +109,25 @@ def _simulated(config: Config, source: str, saved: Saved | None, progress: Progr
     from mocapd.session import simulation
 
     film = simulation.open_film(source, config.cache_dir, progress)
+    known, rig_source = _known(config, None, saved), source
     if saved is None:
-        rig, rig_source = film.setup.rig, source
-        inputs = _merged(
-            _own_inputs(config, None, None), simulation.inputs_of_simulation(film.setup)
-        )
+        known = simulation.from_scenario(film.setup).overlaid(known)
     else:
-        rig, rig_source = saved.known.rig, str(saved.path)
-        inputs = _own_inputs(config, rig, saved)
-    tracker = _ready_tracker(config, inputs, progress)
+        rig_source = str(saved.path)
+    tracker = _ready_tracker(config, known, progress)
     # last, as they begin to play now
     cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, rig, rig_source, tracker)
+    return Session(cameras, known.rig, rig_source, tracker)
 
 
-def _ready_tracker(config: Config, inputs: TrackerInputs, progress: Progress) -> Tracker:
+def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Tracker:
     """Built, and its kernels warm."""
-    tracker = build_tracker(config.tracker.name, with_cache(inputs, config.cache_dir, progress))
-    pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
-    rehearse(tracker, inputs.rig, pictures, partial(progress, "preparing the tracker"))
+    own = config.tracker
+    resources = cached(config.cache_dir, progress, own)
+    tracker = build_tracker(own.name, known.assuming(own.stature_m), resources, own.variant)
+    shirt = known.shirt or ShirtColours()
+    pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
+    rehearse(tracker, known.rig, pictures, partial(progress, "preparing the tracker"))
     return tracker
 
 
@@ -150,15 +143,3 @@ def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
             "write source = sim:SCENARIO#CAMERA for each",
         )
     return origins.pop() if len(origins) == 1 else ""
-
-
-def _merged(own: TrackerInputs, told: TrackerInputs) -> TrackerInputs:
-    """What the configuration itself gives goes before what came with the cameras."""
-    return replace(
-        told,
-        rig=own.rig or told.rig,
-        model=own.model or told.model,
-        white_balance={**told.white_balance, **own.white_balance},
-        variant=own.variant,
-        tracking=own.tracking,
-    )

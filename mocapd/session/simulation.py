@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mocapd.assets import asset_path
 from mocapd.boundary.files import user_path
+from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.capture.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.config.sections import CameraSection
@@ -15,7 +16,6 @@ from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.setup import SimSetup
-from mocapd.trackers.registry import TrackerInputs
 
 _log = logging.getLogger(__name__)
 
@@ -75,11 +75,8 @@ def simulated_inputs(cameras: Sequence[CameraSection], film: Film) -> tuple[Came
     )
 
 
-def inputs_of_simulation(setup: SimSetup) -> TrackerInputs:
-    """What a user's calibration of the simulated rig would tell."""
-    return TrackerInputs(
-        rig=setup.rig,
-        stature_m=setup.stature_m,
-        model=setup.model,
-        white_balance=setup.scribbles,
+def from_scenario(setup: SimSetup) -> Calibration:
+    """What a user's calibration of the simulated rig would know."""
+    return Calibration(
+        setup.rig, Wearer(setup.stature_m), ShirtColours(setup.model, setup.scribbles)
     )

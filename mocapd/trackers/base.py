@@ -2,6 +2,8 @@
 
 from typing import Protocol
 
+from mocapd.calibration.record import Calibration
+from mocapd.errors import ConfigError
 from mocapd.types import FrameSet, Skeleton, Track
 
 
@@ -27,3 +29,12 @@ class Tracker(Protocol):
     def step(self, frames: FrameSet) -> Track:
         """Track one frame set; times never decrease from call to call."""
         ...
+
+
+def stature_m(calibration: Calibration) -> float:
+    """The wearer's height [m]. Raises ConfigError where it is not known."""
+    if calibration.wearer.stature_m is None:
+        raise ConfigError(
+            "the wearer's height is not known", "tracker.stature_m", "give it in metres"
+        )
+    return calibration.wearer.stature_m

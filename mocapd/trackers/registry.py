@@ -7,10 +7,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from mocapd.body.skeleton import standard_skeleton
+from mocapd.calibration.record import Calibration
 from mocapd.errors import ConfigError
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Tracker, stature_m
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Floats, LabelledPicture, Rig
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
@@ -23,76 +23,60 @@ def _quiet(_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TrackerInputs:
-    """What may be known before the first frame; a tracker refuses what it needs and is not given.
+class Resources:
+    """What any tracker may use, whoever is tracked.
 
-    stature_m: the wearer's height [m]; model: the shirt in neutral light; white_balance: by camera,
-    the shirt in the place's own light; variant: one of the tracker's; cache_dir: where the pose
-    database is kept, progress(0..1) while it is made, map_chunks: `map`, or that of a thread pool,
-    tell: hears a line about a cache that was made anew or cannot be kept; tracking: when a person
-    counts as lost, None for the defaults; factors (N_FACTORS,): the wearer's proportions as measured,
-    None for the mean body's.
+    cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
+    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept;
+    tracking: when a person counts as lost, None for the defaults.
     """
 
-    rig: Rig | None
-    stature_m: float
-    model: tuple[LabelledPicture, ...] = ()
-    white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
-    variant: str = "full"
     cache_dir: Path = field(default_factory=Path)
     progress: Callable[[float], None] = _quiet
     map_chunks: MapChunks = map
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
-    factors: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class TrackerEntry:
-    """`build` makes the tracker and raises ConfigError naming what it lacks; it imports it only then.
+    """`build` makes the tracker in one of its variants and raises ConfigError naming what it lacks; it imports it only then.
 
     `sees`: whether it looks at the pictures, so that it needs calibrated cameras, and an empty room
     must give `lost`; `variants`: the first is the usual one; `make_caches`: what it keeps in the
     cache folder, made if need be.
     """
 
-    build: Callable[[TrackerInputs], Tracker]
+    build: Callable[[Calibration, Resources, str], Tracker]
     sees: bool
     variants: tuple[str, ...] = ("full",)
-    make_caches: Callable[[TrackerInputs], object] = _quiet
+    make_caches: Callable[[Resources], object] = _quiet
 
 
-def _canned(inputs: TrackerInputs) -> Tracker:
+def _canned(calibration: Calibration, _resources: Resources, _variant: str) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
-    return CannedTracker(standard_skeleton(inputs.stature_m))
+    return CannedTracker(standard_skeleton(stature_m(calibration)))
 
 
-def _database(inputs: TrackerInputs) -> "PoseDatabase":
+def _database(resources: Resources) -> "PoseDatabase":
     from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
 
-    stale = (inputs.cache_dir / FILE_NAME).exists()
-    loaded = load_or_build(inputs.cache_dir, progress=inputs.progress, map_chunks=inputs.map_chunks)
+    stale = (resources.cache_dir / FILE_NAME).exists()
+    loaded = load_or_build(
+        resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
+    )
     if loaded.built and stale:
-        inputs.tell(f"{loaded.reason}, so it was made anew")
+        resources.tell(f"{loaded.reason}, so it was made anew")
     if loaded.warning:
-        inputs.tell(loaded.warning)
+        resources.tell(loaded.warning)
     return loaded.database
 
 
-def _colour(inputs: TrackerInputs) -> Tracker:
+def _colour(calibration: Calibration, resources: Resources, variant: str) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
 
-    return build_colour_tracker(
-        inputs.rig,
-        inputs.stature_m,
-        inputs.model,
-        inputs.white_balance,
-        _database(inputs),
-        inputs.variant,
-        inputs.tracking,
-        inputs.factors,
-    )
+    return build_colour_tracker(calibration, _database(resources), variant, resources.tracking)
 
 
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
@@ -124,18 +108,20 @@ def entry(name: str, variant: str = "full") -> TrackerEntry:
     return found
 
 
-def build(name: str, inputs: TrackerInputs) -> Tracker:
-    """The tracker of this name. Raises ConfigError when there is none, or it lacks an input."""
-    found = entry(name, inputs.variant)
-    if found.sees and inputs.rig is None:
+def build(
+    name: str, calibration: Calibration, resources: Resources, variant: str = "full"
+) -> Tracker:
+    """The tracker of this name. Raises ConfigError when there is none, or it is not told what it needs."""
+    found = entry(name, variant)
+    if found.sees and calibration.rig is None:
         raise ConfigError(
             f"the tracker {name!r} needs to know where the cameras are",
             "rig",
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
-    return found.build(inputs)
+    return found.build(calibration, resources, variant)
 
 
-def make_caches(name: str, inputs: TrackerInputs) -> None:
-    """What this tracker keeps in the cache folder, made if need be; the rig is not asked for."""
-    entry(name, inputs.variant).make_caches(inputs)
+def make_caches(name: str, resources: Resources) -> None:
+    """What this tracker keeps in the cache folder, made if need be."""
+    entry(name).make_caches(resources)

@@ -11,7 +11,6 @@ import numpy as np
 import mocapd
 from mocapd.body.shape import FACTORS
 from mocapd.boundary.numbers import brief
-from mocapd.calibrate.calibrated_inputs import Calibrated, read_calibrated
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
@@ -19,6 +18,8 @@ from mocapd.calibration.calibration_file import (
     read_calibration,
     write_calibration,
 )
+from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,
@@ -27,8 +28,9 @@ from mocapd.calibration.saved_calibration import (
     RoomFit,
     SavedCalibration,
     SavedCamera,
-    Wearer,
+    SavedWearer,
 )
+from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
 from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
@@ -78,7 +80,9 @@ def load_draft(place: Path) -> Draft:
     """The saved calibration of a file or state directory as a draft. Raises InputError or ConfigError."""
     path = calibration_path(place)
     saved = read_calibration(path)
-    known = read_calibrated(saved, path)
+    known = from_saved(saved, path)
+    assert known.rig is not None
+    shirt = known.shirt or ShirtColours()
     room = saved.room
     for one in saved.camera:
         if one.lens is not None and one.lens.views > _MOST_VIEWS:
@@ -107,24 +111,27 @@ def load_draft(place: Path) -> Draft:
             math.nan if room.play_area_cm is None else room.play_area_cm,
         ),
         floor_known=room.floor_known,
-        colours={name: DraftColours(one, known.W[name]) for name, one in known.pictures.items()},
-        personal=known.personal,
-        stature_m=known.stature_m,
-        factors=known.factors,
+        colours={
+            one.id: DraftColours(shirt.white_balance[one.id], np.array(one.colour.W))
+            for one in saved.camera
+            if one.colour is not None
+        },
+        personal=saved.wearer is not None and saved.wearer.personal_colours,
+        stature_m=known.wearer.stature_m,
+        factors=known.wearer.shape_factors,
     )
 
 
-def calibrated_of(draft: Draft) -> Calibrated:
-    """What the draft tells a tracker, as the saved calibration will. Raises InputError without a room."""
+def calibration_of(draft: Draft) -> Calibration:
+    """What the draft knows, as the saved calibration will. Raises InputError without a room."""
     if draft.rig is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
-    return Calibrated(
+    pictures = {name: one.picture for name, one in draft.colours.items()}
+    W = {name: one.W for name, one in draft.colours.items()}
+    return Calibration(
         draft.rig,
-        draft.stature_m,
-        draft.factors,
-        {name: one.picture for name, one in draft.colours.items()},
-        {name: one.W for name, one in draft.colours.items()},
-        draft.personal,
+        Wearer(draft.stature_m, draft.factors),
+        ShirtColours(personal_model(pictures, W) if draft.personal else (), pictures),
     )
 
 
@@ -151,13 +158,13 @@ def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamer
     )
 
 
-def _wearer(draft: Draft) -> Wearer | None:
+def _wearer(draft: Draft) -> SavedWearer | None:
     if draft.stature_m is None:
         return None
     proportions = None
     if draft.factors is not None:
         proportions = dict(zip(FACTORS, draft.factors.round(4).tolist(), strict=True))
-    return Wearer(
+    return SavedWearer(
         stature_m=draft.stature_m, proportions=proportions, personal_colours=draft.personal
     )
 

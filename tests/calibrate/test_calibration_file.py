@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 import tomli_w
 
-from mocapd.calibrate.calibrated_inputs import inputs_of_calibration, read_calibrated
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
@@ -24,6 +23,7 @@ from mocapd.calibration.calibration_file import (
     rewrite_sources,
     write_calibration,
 )
+from mocapd.calibration.from_saved import from_saved
 from mocapd.calibration.saved_calibration import (
     ColourFit,
     LensFit,
@@ -31,7 +31,7 @@ from mocapd.calibration.saved_calibration import (
     RoomFit,
     SavedCalibration,
     SavedCamera,
-    Wearer,
+    SavedWearer,
 )
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.webcam.controls import Controls
@@ -63,7 +63,7 @@ def saved_calibration() -> SavedCalibration:
         schema=1,
         made=Made(when=datetime(2026, 11, 21, 10, 0, tzinfo=UTC), by="ann", mocapd="0.2.0"),
         room=RoomFit(method="board", rms_px=0.4, play_area_cm=0.3),
-        wearer=Wearer(stature_m=1.71, proportions={"arm_girth": 1.2}, personal_colours=True),
+        wearer=SavedWearer(stature_m=1.71, proportions={"arm_girth": 1.2}, personal_colours=True),
         board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
         camera=(camera("left", colour=True), camera("right/2")),
     )
@@ -92,14 +92,16 @@ def test_what_is_read_is_what_was_written(path: Path) -> None:
         wanted.wearer,
         wanted.board,
     )
-    known = read_calibrated(read, path)
-    assert np.array_equal(known.pictures["left"].pixels, pictures()["left"].pixels)
-    assert np.array_equal(known.pictures["left"].labels, pictures()["left"].labels)
-    inputs = inputs_of_calibration(known, stature_m=1.9)
-    assert inputs.stature_m == 1.71
-    assert inputs.factors is not None
-    assert inputs.factors.tolist() == [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.2]
-    assert len(inputs.model) == 1
+    known = from_saved(read, path).assuming(1.9)
+    assert known.rig is not None
+    assert known.shirt is not None
+    left = known.shirt.white_balance["left"]
+    assert np.array_equal(left.pixels, pictures()["left"].pixels)
+    assert np.array_equal(left.labels, pictures()["left"].labels)
+    assert known.wearer.stature_m == 1.71
+    assert known.wearer.shape_factors is not None
+    assert known.wearer.shape_factors.tolist() == [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.2]
+    assert len(known.shirt.model) == 1
     assert known.rig.names == ("left", "right/2")
     assert known.rig.cameras[0].K[0, 0] == 60.123456789
 
@@ -118,8 +120,9 @@ def test_the_one_before_is_kept_with_its_pictures_and_older_ones_go(path: Path) 
     assert names == ["calibration.previous.toml", "calibration.toml", "colours"]
     assert len(list((path.parent / "colours").iterdir())) == 4
     for file, shade in ((path, 2), (path.with_name("calibration.previous.toml"), 1)):
-        known = read_calibrated(read_calibration(file), file)
-        assert known.pictures["left"].pixels[0, 0, 0] == shade
+        shirt = from_saved(read_calibration(file), file).shirt
+        assert shirt is not None
+        assert shirt.white_balance["left"].pixels[0, 0, 0] == shade
 
 
 @pytest.mark.parametrize("blocked", ["colours", "calibration.previous.toml"])
@@ -310,7 +313,7 @@ def test_a_picture_that_is_gone_is_named(path: Path) -> None:
     assert saved.camera[0].colour is not None
     (path.parent / saved.camera[0].colour.strokes).unlink()
     with pytest.raises(InputError, match=r"_strokes\.png"):
-        read_calibrated(saved, path)
+        from_saved(saved, path)
 
 
 @pytest.mark.parametrize(
@@ -333,7 +336,7 @@ def test_a_picture_that_is_no_file_is_not_waited_for(path: Path, place: str) -> 
         saved.camera[0], colour=msgspec.structs.replace(colour, picture=place)
     )
     with pytest.raises(InputError, match="no regular file"):
-        read_calibrated(msgspec.structs.replace(saved, camera=(there,)), path)
+        from_saved(msgspec.structs.replace(saved, camera=(there,)), path)
 
 
 def test_changed_bytes_end_in_a_value_or_a_named_error(path: Path) -> None:
@@ -348,7 +351,7 @@ def test_changed_bytes_end_in_a_value_or_a_named_error(path: Path) -> None:
             data[rng.randrange(len(data))] = rng.randrange(256)
         file.write_bytes(data)
         try:
-            read_calibrated(read_calibration(path), path)
+            from_saved(read_calibration(path), path)
         except (ConfigError, InputError):
             refused += 1
         file.write_bytes(whole[file])

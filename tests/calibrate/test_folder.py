@@ -11,7 +11,7 @@ import pytest
 
 from mocapd.calibrate.board.recordings import find_recordings, numbered
 from mocapd.calibrate.extrinsics.folder_calibration import (
-    Calibration,
+    FolderCalibration,
     FolderParams,
     calibrate_folder,
 )
@@ -38,11 +38,11 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def calibrated(pictures: Path) -> Calibration:
+def calibrated(pictures: Path) -> FolderCalibration:
     return calibrate_folder(pictures, SPEC, quiet, floor_frame=12)
 
 
-def test_twelve_positions_give_the_room(calibrated: Calibration) -> None:
+def test_twelve_positions_give_the_room(calibrated: FolderCalibration) -> None:
     rng = np.random.default_rng(0)
     points_m = rng.uniform([-0.3, 0.05, -0.3], [0.3, 0.5, 0.3], (500, 3))
     pixels = [project(camera, points_m) for camera in RIG]

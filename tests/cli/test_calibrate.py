@@ -112,11 +112,15 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     outcome = calibrate(clean_env, pictures, out, *words)
     assert outcome.code == 0, outcome.err
     saved = load_saved(out)
+    assert saved.known.rig is not None
     assert saved.known.rig.names == ("cam0", "cam1")
     assert saved.tables.room.floor_known
-    assert set(saved.known.pictures) == {"cam0"}
+    assert saved.known.shirt is not None
+    assert set(saved.known.shirt.white_balance) == {"cam0"}
     # the strokes lie on the standard's own colours
-    assert np.abs(saved.known.W["cam0"] - np.eye(3)).max() < 0.1
+    colour = saved.tables.camera[0].colour
+    assert colour is not None
+    assert np.abs(np.array(colour.W) - np.eye(3)).max() < 0.1
     lens = saved.tables.camera[1].lens
     assert lens is not None
     assert lens.views >= 9

@@ -16,7 +16,7 @@ from mocapd.errors import ConfigError
 from mocapd.session.saved_session import (
     calibration_of,
     cameras_of_calibration,
-    inputs_of_saved,
+    known_of_recording,
     load_saved,
 )
 from mocapd.session.session import cameras_of, open_session
@@ -53,11 +53,12 @@ def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:
     saved = calibration_of(config)
     assert saved is not None
     draft = full_draft()
-    assert saved.known.factors is not None
+    assert saved.known.wearer.shape_factors is not None
     assert draft.factors is not None
-    assert np.array_equal(saved.known.factors, draft.factors)
-    assert saved.known.personal
-    assert set(saved.known.pictures) == {"cam0", "cam1"}
+    assert np.array_equal(saved.known.wearer.shape_factors, draft.factors)
+    assert saved.known.shirt is not None
+    assert len(saved.known.shirt.model) == 2  # personal
+    assert set(saved.known.shirt.white_balance) == {"cam0", "cam1"}
 
 
 def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config: Config) -> None:
@@ -136,11 +137,11 @@ def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
 ) -> None:
     folder = load_folder(write_capture(tmp_path / "capture"))
     saved = load_saved(config.state_dir)
-    inputs = inputs_of_saved(saved, folder, TrackerSection())
-    assert inputs.stature_m == 1.72
-    assert inputs.rig is saved.known.rig
+    known = known_of_recording(saved, folder)
+    assert known.wearer.stature_m == 1.72
+    assert known.rig is saved.known.rig
     alone = replace(saved, tables=type(saved.tables)(
         schema=1, made=saved.tables.made, room=saved.tables.room, camera=saved.tables.camera[:1]
     ))  # fmt: skip
     with pytest.raises(ConfigError, match="no camera 'cam1'"):
-        inputs_of_saved(alone, folder, TrackerSection())
+        known_of_recording(alone, folder)

@@ -5,16 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.shirt_pictures import read_model, stroked_folder
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
+from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
-from mocapd.session.tracker_setup import (
-    inputs_of_capture,
-    inputs_of_config,
-    read_model,
-    stroked_folder,
-)
+from mocapd.session.tracker_setup import cached
 from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
@@ -84,15 +82,15 @@ def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
 def test_the_colour_tracker_is_the_usual_one_in_any_of_its_variants() -> None:
     assert TrackerSection().name == "colour"
     for variant in TRACKERS["colour"].variants:
-        assert inputs_of_config(TrackerSection(variant=variant), (), None).variant == variant
+        assert TrackerSection(variant=variant).variant == variant
     with pytest.raises(ConfigError, match=r"tracker\.variant: .*'canned' has no variant 'paper'"):
         TrackerSection(name="canned", variant="paper")
 
 
-def test_what_the_config_says_of_losing_track_reaches_the_tracker() -> None:
-    inputs = inputs_of_config(TrackerSection(coast_s=0.9, confirm_s=0.2), (), None)
-    assert inputs.tracking is not None
-    assert (inputs.tracking.coast_s, inputs.tracking.confirm_s) == (0.9, 0.2)
+def test_what_the_config_says_of_losing_track_reaches_the_tracker(tmp_path: Path) -> None:
+    resources = cached(tmp_path, quiet, TrackerSection(coast_s=0.9, confirm_s=0.2))
+    assert resources.tracking is not None
+    assert (resources.tracking.coast_s, resources.tracking.confirm_s) == (0.9, 0.2)
 
 
 def test_simulated_cameras_mix_with_no_others() -> None:
@@ -103,16 +101,17 @@ def test_simulated_cameras_mix_with_no_others() -> None:
 
 def test_the_inputs_of_a_folder_hold_strokes_of_every_colour(capture: Path) -> None:
     write_stroked(capture / "scribble" / "cam1.png", range(1, 5))
-    inputs = inputs_of_capture(load_folder(capture), 1.9)
-    assert inputs.stature_m == 1.7
-    assert set(inputs.white_balance) == {"cam1"}
-    assert set(inputs.model[0].labels.ravel().tolist()) == set(range(11))
+    known = from_capture(load_folder(capture)).assuming(1.9)
+    assert known.wearer.stature_m == 1.7
+    assert known.shirt is not None
+    assert set(known.shirt.white_balance) == {"cam1"}
+    assert set(known.shirt.model[0].labels.ravel().tolist()) == set(range(11))
 
 
 def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
     camera = CameraSection("left", "/dev/video0", white_balance=tmp_path / "left.png")
     with pytest.raises(InputError, match=r"left\.png: no such file"):
-        inputs_of_config(TrackerSection(), (camera,), None)
+        from_configuration(TrackerSection(), (camera,), None)
 
 
 def test_a_folder_of_pictures_is_read_by_one_rule_wherever_it_is_named(capture: Path) -> None:

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import NAMES, joint_positions
+from mocapd.calibration.record import Calibration
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import TRACKERS, TrackerInputs, build
+from mocapd.trackers.registry import TRACKERS, Resources, build
 from mocapd.types import BodyState, FrameSet, Track, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
 
@@ -178,14 +179,15 @@ def shifted(one: FrameSet, by_ns: int) -> FrameSet:
 
 def test_an_unknown_tracker_is_an_error_that_names_the_known() -> None:
     with pytest.raises(ConfigError, match=", ".join(TRACKERS)):
-        build("psychic", TrackerInputs(None, 1.7))
+        build("psychic", Calibration(), Resources())
 
 
 def test_canned_needs_no_compiler_and_no_camera_library() -> None:
     code = (
         "import sys\n"
-        "from mocapd.trackers.registry import TrackerInputs, build\n"
-        "build('canned', TrackerInputs(None, 1.7))\n"
+        "from mocapd.calibration.record import Calibration, Wearer\n"
+        "from mocapd.trackers.registry import Resources, build\n"
+        "build('canned', Calibration(wearer=Wearer(1.7)), Resources())\n"
         "print(sorted({'numba', 'cv2', 'scipy'} & set(sys.modules)))\n"
     )
     done = subprocess.run(

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.session.simulation import inputs_of_simulation
+from mocapd.calibration.record import Calibration, Wearer
+from mocapd.session.simulation import from_scenario
 from mocapd.shirt.pose_database.database import DatabaseParams, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.registry import TrackerInputs, build
+from mocapd.trackers.registry import Resources, build
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 
@@ -62,7 +63,7 @@ def canned_case() -> TrackerCase:
     sets = frame_sets(
         {"cam0": grey_room(8, 0), "cam1": grey_room(8, 1)}, offset_ns={"cam1": 11_000_000}
     )
-    return TrackerCase(build("canned", TrackerInputs(None, 1.7)), sets, sets)
+    return TrackerCase(build("canned", Calibration(wearer=Wearer(1.7)), Resources()), sets, sets)
 
 
 def colour_case() -> TrackerCase:
@@ -70,15 +71,8 @@ def colour_case() -> TrackerCase:
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
     scenario = small.scenario(cameras=cameras)
     renderers = camera_renderers(World(scenario))
-    known = inputs_of_simulation(setup_of(scenario, renderers))
-    assert known.rig is not None
-    tracker = build_colour_tracker(
-        known.rig,
-        known.stature_m,
-        known.model,
-        known.white_balance,
-        build_database(DatabaseParams(count=1600, cells=32)),
-    )
+    known = from_scenario(setup_of(scenario, renderers))
+    tracker = build_colour_tracker(known, build_database(DatabaseParams(count=1600, cells=32)))
     offset_ns = {"right": 11_000_000}
     person = {r.camera.name: [r.frame(i) for i in range(N_PERSON)] for r in renderers}
     empty = {

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.calibration.record import Calibration, Wearer
 from mocapd.capture.file import FileSource
 from mocapd.config.sections import CameraSection
 from mocapd.errors import EndOfStream
@@ -14,8 +15,7 @@ from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import picture_size
 from mocapd.session.offline import track_all
-from mocapd.session.tracker_setup import build_tracker, with_cache
-from mocapd.trackers.registry import TrackerInputs
+from mocapd.session.tracker_setup import build_tracker, cached
 from mocapd.types import Frame, FrameSet, Rig
 from tests.cli.mocapd_process import start
 from tests.conftest import ABSENT, SHARED
@@ -60,8 +60,9 @@ def frames_of(name: str, video: Path) -> Iterator[Frame]:
 
 def found_in(rig: Rig, sets: Iterator[FrameSet], cache_dir: Path) -> list[float]:
     """The times at which the colour tracker sees somebody [s]; the pictures alone tell it who."""
-    inputs = with_cache(TrackerInputs(rig, 1.75), cache_dir, lambda *_: None)
-    return [float(t) for t in track_all(build_tracker("colour", inputs), sets, _nobody).times_s]
+    resources = cached(cache_dir, lambda *_: None)
+    tracker = build_tracker("colour", Calibration(rig, Wearer(1.75)), resources)
+    return [float(t) for t in track_all(tracker, sets, _nobody).times_s]
 
 
 def _nobody(_: int) -> None: ...

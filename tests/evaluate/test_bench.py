@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import standard_skeleton
+from mocapd.calibration.record import Calibration, Wearer
 from mocapd.evaluate.bench.bench_endurance import endure
 from mocapd.evaluate.bench.bench_input import CHUNK, BenchInput
 from mocapd.evaluate.bench.bench_step import REST, Probed, bench_tracker
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Frame, FrameSet, Track
 from tests.cli.mocapd_process import mocapd
 from tests.cli.small_capture import FRAMES, write_capture
@@ -52,8 +52,8 @@ def recording() -> BenchInput:
         frames = {"a": Frame("a", i, t_ns, pixels), "b": Frame("b", i, t_ns + 5_000_000, pixels)}
         return FrameSet(t_ns + 5_000_000, frames, 5_000_000)
 
-    inputs = TrackerInputs(rig=None, stature_m=1.75)
-    return BenchInput("test", inputs, SETS, lambda: map(one, range(SETS)))
+    known = Calibration(wearer=Wearer(1.75))
+    return BenchInput("test", known, SETS, lambda: map(one, range(SETS)))
 
 
 def test_stages_add_up_to_the_step(recording: BenchInput) -> None:

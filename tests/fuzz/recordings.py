@@ -9,13 +9,13 @@ from random import Random
 import cv2
 import numpy as np
 
+from mocapd.calibration.from_capture import from_capture
 from mocapd.capture.capture_folder import folder_source, frame_sets, load_folder
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace
 from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.v4l2 import decode
 from mocapd.errors import EndOfStream, MocapdError
-from mocapd.session.tracker_setup import inputs_of_capture
 from mocapd.types import Bytes, Frame
 from tests.capture import films
 from tests.cli import small_capture
@@ -40,7 +40,7 @@ def captures(place: Place) -> Attempt:
 
     def read() -> bool:
         capture = load_folder(folder)
-        inputs_of_capture(capture, 1.7)
+        from_capture(capture)
         return len(list(frame_sets(capture))) > 0
 
     assert read()

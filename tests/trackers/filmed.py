@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.session.simulation import from_scenario
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
@@ -73,10 +74,4 @@ def _still(pixels: Bytes) -> Bytes:
 def tracker_of(filmed: Filmed, database: PoseDatabase) -> Tracker:
     """The full colour tracker, calibrated on the film's own room as a user would."""
     setup = setup_of(filmed.scenario, filmed.renderers)
-    return build_colour_tracker(
-        setup.rig,
-        setup.stature_m,
-        setup.model,
-        setup.scribbles,
-        database,
-    )
+    return build_colour_tracker(from_scenario(setup), database)

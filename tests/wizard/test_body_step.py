@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
+from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
@@ -21,10 +21,10 @@ from mocapd.types import Frame, FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
-from mocapd.wizard.saving import calibrated_of
+from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Scene, StepState, Tell
 from tests.wizard.context import FakeContext, do
-from tests.wizard.wearer import FPS_HZ, Wearer, wearer
+from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
 
@@ -35,19 +35,19 @@ def database() -> PoseDatabase:
 
 
 @pytest.fixture(scope="module")
-def person() -> Wearer:
+def person() -> SimulatedWearer:
     return wearer(odd=True)
 
 
 @pytest.fixture(scope="module")
-def bends(person: Wearer) -> list[FrameSet]:
+def bends(person: SimulatedWearer) -> list[FrameSet]:
     """One loop of the arm bends."""
     loop = round(person.truth.scenario.loop_s * FPS_HZ)
     return [person.frame_set(i) for i in range(loop)]
 
 
 @pytest.fixture(scope="module")
-def draft(person: Wearer) -> Draft:
+def draft(person: SimulatedWearer) -> Draft:
     """Room and colours are done."""
     solved = solve({n: Drawn(one) for n, one in person.scribbles.items()}, True, {})
     colours = {
@@ -99,15 +99,17 @@ def playing(context: FakeContext, bends: list[FrameSet]) -> Iterator[None]:
 
 
 def measured(
-    context: FakeContext, person: Wearer, database: PoseDatabase, bends: list[FrameSet], m: float
+    context: FakeContext,
+    person: SimulatedWearer,
+    database: PoseDatabase,
+    bends: list[FrameSet],
+    m: float,
 ) -> BodyStep:
     """The step after this stature was typed and the wearer was measured."""
 
     def make(draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
-        told = inputs_of_calibration(calibrated_of(draft), 1.75)
-        return build_colour_tracker(
-            told.rig, told.stature_m, told.model, told.white_balance, database
-        )
+        known = calibration_of(replace(draft, factors=None)).assuming(1.75)
+        return build_colour_tracker(known, database)
 
     step = BodyStep(context, make)
     step.enter()
@@ -120,7 +122,11 @@ def measured(
 
 
 def test_proportions_of_an_odd_wearer(
-    tmp_path: Path, person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+    tmp_path: Path,
+    person: SimulatedWearer,
+    draft: Draft,
+    database: PoseDatabase,
+    bends: list[FrameSet],
 ) -> None:
     context = FakeContext(tmp_path, draft)
     step = measured(context, person, database, bends, person.stature_m)
@@ -144,7 +150,11 @@ def test_proportions_of_an_odd_wearer(
 
 
 def test_a_stature_that_the_room_contradicts_is_told_with_its_likely_cause(
-    tmp_path: Path, person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+    tmp_path: Path,
+    person: SimulatedWearer,
+    draft: Draft,
+    database: PoseDatabase,
+    bends: list[FrameSet],
 ) -> None:
     context = FakeContext(tmp_path, draft)
     step = measured(context, person, database, bends, 1.12 * person.stature_m)
@@ -157,16 +167,13 @@ def test_a_stature_that_the_room_contradicts_is_told_with_its_likely_cause(
 
 
 def test_a_tracker_starts_nearer_from_measured_proportions(
-    person: Wearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+    person: SimulatedWearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
 ) -> None:
-    known = inputs_of_calibration(
-        calibrated_of(replace(draft, stature_m=person.stature_m, factors=person.factors)), 1.75
-    )
+    known = calibration_of(replace(draft, stature_m=person.stature_m, factors=person.factors))
 
     def tracker(factors: np.ndarray | None) -> ColourTracker:
-        made = build_colour_tracker(
-            known.rig, known.stature_m, known.model, known.white_balance, database, factors=factors
-        )
+        wearer = replace(known.wearer, shape_factors=factors)
+        made = build_colour_tracker(replace(known, wearer=wearer), database)
         assert isinstance(made, ColourTracker)
         return made
 
@@ -183,8 +190,8 @@ def test_a_tracker_starts_nearer_from_measured_proportions(
     def shape_error_m(one: ColourTracker) -> float:
         return float(np.abs(one.skeleton.rest_m - person.truth.skeleton.rest_m)[ARMS].mean())
 
-    assert known.factors is person.factors
-    given, unknown = tracker(known.factors), tracker(None)
+    assert known.wearer.shape_factors is person.factors
+    given, unknown = tracker(person.factors), tracker(None)
     np.testing.assert_allclose(given.skeleton.rest_m, person.truth.skeleton.rest_m, atol=1e-9)
     assert error_m(given) < error_m(unknown)
     assert shape_error_m(given) < 0.5 * shape_error_m(unknown)
@@ -242,11 +249,18 @@ def test_where_nothing_can_be_measured_the_stature_is_enough(
 
 
 def test_leaving_ends_the_measurement(
-    tmp_path: Path, draft: Draft, person: Wearer, database: PoseDatabase
+    tmp_path: Path, draft: Draft, person: SimulatedWearer, database: PoseDatabase
 ) -> None:
     def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
         step.leave()
-        return build_colour_tracker(person.rig, person.stature_m, (), person.scribbles, database)
+        return build_colour_tracker(
+            Calibration(
+                person.rig,
+                Wearer(person.stature_m),
+                ShirtColours(white_balance=person.scribbles),
+            ),
+            database,
+        )
 
     context = FakeContext(tmp_path, draft)
     step = BodyStep(context, make)

@@ -21,7 +21,7 @@ from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import Scene, StepState, StepView, Tell
 from tests.wizard.context import FakeContext, do
-from tests.wizard.wearer import Wearer, wearer
+from tests.wizard.wearer import SimulatedWearer, wearer
 
 NAMES = standard_shirt().colour_names
 
@@ -32,12 +32,12 @@ def database() -> PoseDatabase:
 
 
 @pytest.fixture(scope="module")
-def person() -> Wearer:
+def person() -> SimulatedWearer:
     return wearer()
 
 
 @pytest.fixture
-def context(tmp_path: Path, person: Wearer) -> FakeContext:
+def context(tmp_path: Path, person: SimulatedWearer) -> FakeContext:
     cameras = tuple(DraftCamera(c.name, f"sim:{c.name}", c.size_px) for c in person.rig.cameras)
     return FakeContext(tmp_path, Draft(cameras=cameras, rig=person.rig, stature_m=person.stature_m))
 
@@ -55,7 +55,7 @@ def frozen(step: ColourStep, context: FakeContext, pictures: Mapping[str, Bytes]
     return step.view()
 
 
-def by_hand(context: FakeContext, person: Wearer) -> ColourStep:
+def by_hand(context: FakeContext, person: SimulatedWearer) -> ColourStep:
     """A step that proposes nothing, with pictures taken."""
     step = ColourStep(context, no_database)
     step.enter()
@@ -80,7 +80,7 @@ def png(image: np.ndarray) -> str:
 
 
 def test_proposed_strokes_give_the_light_of_a_users_own(
-    context: FakeContext, person: Wearer, database: PoseDatabase
+    context: FakeContext, person: SimulatedWearer, database: PoseDatabase
 ) -> None:
     step = ColourStep(context, lambda _folder, _tell: database)
     step.enter()
@@ -103,7 +103,7 @@ def test_proposed_strokes_give_the_light_of_a_users_own(
 
 
 def test_before_the_room_is_known_each_camera_is_read_alone(
-    context: FakeContext, person: Wearer, database: PoseDatabase
+    context: FakeContext, person: SimulatedWearer, database: PoseDatabase
 ) -> None:
     context.draft = replace(context.draft, rig=None, stature_m=None)
     step = ColourStep(context, lambda _folder, _tell: database)
@@ -115,7 +115,7 @@ def test_before_the_room_is_known_each_camera_is_read_alone(
 
 
 def test_nobody_in_the_pictures_leaves_an_empty_canvas_to_draw_on(
-    context: FakeContext, person: Wearer, database: PoseDatabase
+    context: FakeContext, person: SimulatedWearer, database: PoseDatabase
 ) -> None:
     empty = {r.camera.name: r.picture(None, np.ones(2), noise_key=7) for r in person.renderers}
     step = ColourStep(context, lambda _folder, _tell: database)
@@ -127,7 +127,9 @@ def test_nobody_in_the_pictures_leaves_an_empty_canvas_to_draw_on(
     assert not context.draft.colours
 
 
-def test_without_a_proposal_it_is_drawn_by_hand(context: FakeContext, person: Wearer) -> None:
+def test_without_a_proposal_it_is_drawn_by_hand(
+    context: FakeContext, person: SimulatedWearer
+) -> None:
     step = by_hand(context, person)
     assert "cannot be written" in step.view().problems[0].what
     view = drawn(step, context, "left", person.scribbles["left"].labels)
@@ -139,7 +141,7 @@ def test_without_a_proposal_it_is_drawn_by_hand(context: FakeContext, person: We
 
 
 def test_three_of_ten_colours_are_refused_with_the_names_of_the_others(
-    context: FakeContext, person: Wearer
+    context: FakeContext, person: SimulatedWearer
 ) -> None:
     strokes = person.scribbles["left"].labels.copy()
     present = [k for k in range(1, 11) if (strokes == k).sum() > 30][:3]
@@ -154,7 +156,7 @@ def test_three_of_ten_colours_are_refused_with_the_names_of_the_others(
 
 
 def test_strokes_on_the_wrong_patch_are_named_and_marked(
-    context: FakeContext, person: Wearer
+    context: FakeContext, person: SimulatedWearer
 ) -> None:
     strokes = person.scribbles["left"].labels.copy()
     red, lime = strokes == 1, strokes == 4
@@ -171,7 +173,7 @@ def test_strokes_on_the_wrong_patch_are_named_and_marked(
 
 
 def test_what_is_no_picture_of_strokes_is_refused_and_nothing_changes(
-    context: FakeContext, person: Wearer
+    context: FakeContext, person: SimulatedWearer
 ) -> None:
     step = by_hand(context, person)
     good = person.scribbles["left"].labels
@@ -195,7 +197,7 @@ def test_what_is_no_picture_of_strokes_is_refused_and_nothing_changes(
 
 
 def test_the_countdown_is_shown_and_a_camera_without_picture_is_named(
-    context: FakeContext, person: Wearer
+    context: FakeContext, person: SimulatedWearer
 ) -> None:
     step = ColourStep(context, no_database)
     step.enter()
@@ -212,7 +214,9 @@ def test_the_countdown_is_shown_and_a_camera_without_picture_is_named(
     assert set(view.details["cameras"]) == {"left"}  # type: ignore[call-overload]
 
 
-def test_pages_know_strokes_that_they_drew_themselves(context: FakeContext, person: Wearer) -> None:
+def test_pages_know_strokes_that_they_drew_themselves(
+    context: FakeContext, person: SimulatedWearer
+) -> None:
     step = by_hand(context, person)
     first = step.view().details["cameras"]["left"]  # type: ignore[index]
     assert first["by"] == "mocapd"
@@ -226,7 +230,7 @@ def test_pages_know_strokes_that_they_drew_themselves(context: FakeContext, pers
 
 
 def test_the_own_shirts_colours_can_be_left_out_and_need_every_colour(
-    context: FakeContext, person: Wearer
+    context: FakeContext, person: SimulatedWearer
 ) -> None:
     step = by_hand(context, person)
     for name, mine in person.scribbles.items():
@@ -244,7 +248,7 @@ def test_the_own_shirts_colours_can_be_left_out_and_need_every_colour(
     assert not is_personal(context)
 
 
-def test_it_shows_what_was_found_before(context: FakeContext, person: Wearer) -> None:
+def test_it_shows_what_was_found_before(context: FakeContext, person: SimulatedWearer) -> None:
     step = by_hand(context, person)
     drawn(step, context, "left", person.scribbles["left"].labels)
     before = context.draft

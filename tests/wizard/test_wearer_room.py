@@ -24,7 +24,7 @@ from mocapd.wizard.extrinsics.room_with_wearer import WearerRoom
 from mocapd.wizard.extrinsics.wearer_walking import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
-from tests.wizard.wearer import FPS_HZ, Wearer, wearer
+from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 SHORT = WalkParams(
     good_s=3.0, facings=1, places=1, patience_s=25.0,
@@ -97,7 +97,7 @@ def kept(context: FakeContext) -> Draft:
     return context.draft
 
 
-def bends(person: Wearer) -> Callable[[int], FrameSet]:
+def bends(person: SimulatedWearer) -> Callable[[int], FrameSet]:
     """The loop of arm bends."""
     loop = round(person.truth.scenario.loop_s * FPS_HZ)
     made = [person.frame_set(i) for i in range(loop)]

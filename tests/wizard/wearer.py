@@ -32,7 +32,7 @@ BENDS = [
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wearer:
+class SimulatedWearer:
     """What the cameras see: the T-pose with a user's own strokes, and arm bends as frame sets."""
 
     rig: Rig
@@ -59,7 +59,7 @@ class Wearer:
 
 
 @cache
-def wearer(odd: bool = False) -> Wearer:
+def wearer(odd: bool = False) -> SimulatedWearer:
     """Two cameras of 480x360 in an even light; `odd`: not of the mean body's proportions."""
     table: dict[str, Any] = small.table(
         loop_s=2.4,
@@ -75,7 +75,7 @@ def wearer(odd: bool = False) -> Wearer:
     world = World(scenario)
     renderers = tuple(camera_renderers(world))
     pose = world.at(scenario.scribble_s).pose
-    return Wearer(
+    return SimulatedWearer(
         rig_of(scenario),
         scenario.body.stature_m,
         np.array([getattr(scenario.body, name) for name in FACTORS]),

@@ -63,7 +63,7 @@ class CameraReport:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Calibration:
+class FolderCalibration:
     """The rig, how well it fits, and the board as it was found to be."""
 
     rig: Rig
@@ -81,7 +81,7 @@ def calibrate_folder(
     progress: Progress,
     floor_frame: int | None = None,
     params: FolderParams | None = None,
-) -> Calibration:
+) -> FolderCalibration:
     """The rig of the cameras that recorded `folder`. `floor_frame`: index at which the board lies on the floor.
 
     Raises InputError (recordings missing or damaged) or ConfigError: what of the board, a camera or
@@ -176,7 +176,7 @@ def _room(
     params: FolderParams,
     notes: list[str],
     progress: Progress,
-) -> Calibration:
+) -> FolderCalibration:
     names = [one.recording.name for one in sightings]
     views = {one.recording.name: one.views for one in sightings}
     known = sorted({i for name in names for i in views[name] if i not in lenses[name].thrown_out})
@@ -198,7 +198,7 @@ def _room(
         )
         for one in sightings
     }
-    return Calibration(
+    return FolderCalibration(
         made.rig, made.rms_px, reports, made.positions, made.play_area, spec, tuple(notes)
     )
 

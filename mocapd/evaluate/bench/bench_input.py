@@ -1,19 +1,20 @@
 """What a benchmark runs on: the frame sets of a capture folder or of a simulated scenario, decoded."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.clock import nanoseconds
 from mocapd.session import simulation
-from mocapd.session.tracker_setup import Progress, inputs_of_capture
+from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import Film
-from mocapd.trackers.registry import TrackerInputs
 from mocapd.types import Frame, FrameSet
 
 CHUNK = 30  # frame sets decoded at a time; of two 640x480 cameras they take 55 MB
@@ -21,12 +22,14 @@ CHUNK = 30  # frame sets decoded at a time; of two 640x480 cameras they take 55 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BenchInput:
-    """`sets` begins the recording of `count` sets anew each time, and decodes as it is read."""
+    """`sets` begins the recording of `count` sets anew each time, and decodes as it is read; variant: of
+    the tracker."""
 
     name: str
-    inputs: TrackerInputs
+    known: Calibration
     count: int
     sets: Callable[[], Iterable[FrameSet]]
+    variant: str = "full"
 
     def chunks(self) -> Iterator[list[FrameSet]]:
         """All frame sets, so many at a time that decoding is over before they are used."""
@@ -45,12 +48,12 @@ def open_input(
     """
     if source.startswith(simulation.SIM):
         film = simulation.open_film(source, cache_dir, progress)
-        known = replace(simulation.inputs_of_simulation(film.setup), variant=variant)
-        return BenchInput(source, known, _film_length(film), lambda: _film_sets(film))
+        known = simulation.from_scenario(film.setup)
+        return BenchInput(source, known, _film_length(film), lambda: _film_sets(film), variant)
     folder = load_folder(Path(source))
-    known = inputs_of_capture(folder, stature_m, variant)
+    known = from_capture(folder).assuming(stature_m)
     count = max(camera.frames for camera in folder.cameras)
-    return BenchInput(folder.path.name, known, count, lambda: frame_sets(folder))
+    return BenchInput(folder.path.name, known, count, lambda: frame_sets(folder), variant)
 
 
 def _film_sets(film: Film) -> Iterator[FrameSet]:

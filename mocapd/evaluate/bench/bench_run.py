@@ -1,7 +1,7 @@
 """Benchmarks of one recording: which trackers, built how, and what was found."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
 from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
-from mocapd.session.tracker_setup import Progress, build_tracker, with_cache
+from mocapd.session.tracker_setup import Progress, build_tracker, cached
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TRACKERS
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -63,7 +63,7 @@ class Bench:
         Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
         """
         found = BenchResults(self.recording.name)
-        rig = self.recording.inputs.rig
+        rig = self.recording.known.rig
         for name, tracker in self._trackers(found):
             for one in next(self.recording.chunks()):
                 tracker.step(one)
@@ -79,9 +79,11 @@ class Bench:
     def _trackers(self, found: BenchResults) -> Iterator[tuple[str, Tracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
-            known = replace(self.recording.inputs, tracking=self.tracking)
+            resources = cached(self.cache_dir, self.progress, self.tracking)
             try:
-                tracker = build_tracker(name, with_cache(known, self.cache_dir, self.progress))
+                tracker = build_tracker(
+                    name, self.recording.known, resources, self.recording.variant
+                )
             except ConfigError as error:
                 if self.tracker:
                     raise

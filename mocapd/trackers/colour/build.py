@@ -1,23 +1,22 @@
-"""Make a colour tracker from what the user has: rig, stature, painted pictures, pose database."""
-
-from collections.abc import Mapping
+"""Make a colour tracker from what is known of rig, wearer and shirt, and the pose database."""
 
 import numpy as np
 
 from mocapd.body.shirt import standard_shirt
+from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.errors import ConfigError
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
 from mocapd.shirt.colour.strokes import stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Tracker, stature_m
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.trackers.colour_paper.params import Params as PaperParams
 from mocapd.trackers.colour_paper.params import tolerant
 from mocapd.trackers.colour_paper.tracker import PaperTracker
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.types import Floats, LabelledPicture, Rig
+from mocapd.types import Floats, LabelledPicture
 
 VARIANTS = ("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant")
 # Spread of a printed or dyed standard colour, where no pictures of the shirt are given
@@ -25,44 +24,39 @@ _DYE_SD = 0.05
 
 
 def build_colour_tracker(
-    rig: Rig | None,
-    stature_m: float,
-    model: tuple[LabelledPicture, ...],
-    white_balance: Mapping[str, LabelledPicture],
-    database: PoseDatabase | None,
+    calibration: Calibration,
+    database: PoseDatabase,
     variant: str = "full",
     tracking: TrackingStateParams | None = None,
-    factors: Floats | None = None,
 ) -> Tracker:
     """The tracker of this variant. Raises ConfigError naming what is missing.
 
-    factors (N_FACTORS,): the wearer's proportions as measured; the paper's variants know none.
+    The paper's variants know nothing of the wearer's proportions.
     """
+    rig, tall_m = calibration.rig, stature_m(calibration)
     if rig is None:
         raise ConfigError(
             "the colour tracker needs calibrated cameras", "rig", "give a rig file (rig = ...)"
-        )
-    if database is None:
-        raise ConfigError(
-            "no pose database was given", "tracker.name", "this is a defect of mocapd"
         )
     if variant not in VARIANTS:
         raise ConfigError(
             f"there is no variant {variant!r}", "tracker.variant", f"one of: {', '.join(VARIANTS)}"
         )
-    colours = colour_model(model)
+    shirt = calibration.shirt or ShirtColours()
+    colours = colour_model(shirt.model)
     W = {
         camera: white_balance_of(picture, colours, plain=variant != "full")
-        for camera, picture in white_balance.items()
+        for camera, picture in shirt.white_balance.items()
     }
     if variant == "full":
-        return ColourTracker(rig, stature_m, colours, W, database, Params(), tracking, factors)
+        factors = calibration.wearer.shape_factors
+        return ColourTracker(rig, tall_m, colours, W, database, Params(), tracking, factors)
     published = PaperParams()
     if variant.startswith("baseline"):
         published = PaperParams(pose_prior=False, adaptive_white_balance=False)
     if variant.endswith("tolerant"):
         published = tolerant(published)
-    return PaperTracker(rig, stature_m, colours, W, database, published)
+    return PaperTracker(rig, tall_m, colours, W, database, published)
 
 
 def colour_model(pictures: tuple[LabelledPicture, ...]) -> ColourModel:

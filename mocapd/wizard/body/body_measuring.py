@@ -9,21 +9,20 @@ from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
-from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.rehearsal import rehearse
-from mocapd.session.tracker_setup import build_tracker, with_cache
+from mocapd.session.tracker_setup import build_tracker, cached
 from mocapd.trackers.base import Tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
-from mocapd.wizard.saving import calibrated_of
+from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 
 READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, everything is seen
@@ -91,14 +90,11 @@ def measure(
 def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
     """The draft's own, warm, and without what was measured before; takes seconds."""
     tell("loading the tracker", 0.0)
-    known = calibrated_of(draft)
-    told = inputs_of_calibration(known, TrackerSection().stature_m)
-    inputs = with_cache(
-        replace(told, factors=None),
-        cache_dir,
-        lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total),
+    known = calibration_of(replace(draft, factors=None)).assuming(TrackerSection().stature_m)
+    resources = cached(
+        cache_dir, lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total)
     )
-    tracker = build_tracker("colour", inputs)
+    tracker = build_tracker("colour", known, resources)
     pictures = {name: one.picture.pixels for name, one in draft.colours.items()}
     rehearse(
         tracker,

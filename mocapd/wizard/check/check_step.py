@@ -29,7 +29,7 @@ from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_lenses
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.saving import calibrated_of, save_draft
+from mocapd.wizard.saving import calibration_of, save_draft
 from mocapd.wizard.step import (
     Context,
     Problem,
@@ -91,7 +91,7 @@ class CheckStep:
         if self._problems:
             self._phase = Phase.MISSING
             return
-        known, settings, cache_dir = calibrated_of(draft), self._settings, self._context.cache_dir
+        known, settings, cache_dir = calibration_of(draft), self._settings, self._context.cache_dir
         self._context.start_job(lambda tell: prepare(known, settings, cache_dir, tell), self._run)
 
     def tick(self, now_ns: int) -> None:

@@ -1,10 +1,10 @@
 """The tracker of the step Check: as the daemon will have it, on the setup's own pictures."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from mocapd.calibrate.calibrated_inputs import Calibrated, inputs_of_calibration
+from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.config.sections import TrackerSection
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import FrameCollector
@@ -13,7 +13,8 @@ from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.session.tracker_setup import build_tracker, with_cache
+from mocapd.session.tracker_setup import build_tracker, cached
+from mocapd.trackers.base import stature_m
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
@@ -40,21 +41,25 @@ class Prepared:
 
 
 def prepare(
-    known: Calibrated, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
+    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
 ) -> Prepared:
     """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
     section = settings.tracker
-    told = inputs_of_calibration(known, section.stature_m)
-    inputs = replace(told, variant=section.variant, tracking=section)
+    known = known.assuming(section.stature_m)
+    assert known.rig is not None
+    shirt = known.shirt or ShirtColours()
 
     def progress(what: str, done: int, total: int) -> None:
         tell(what, _BUILDING * done / max(total, 1))
 
     progress("loading the pose database", 0, 1)
-    tracker = build_tracker("colour", with_cache(inputs, cache_dir, progress))
+    resources = cached(cache_dir, progress, section)
+    tracker = build_tracker("colour", known, resources, section.variant)
     measures = TrackingMeasures()
-    measured = MeasuredTracker(tracker, known.rig, inputs.stature_m, known.factors, measures)
-    pictures = {camera: one.pixels for camera, one in inputs.white_balance.items()}
+    measured = MeasuredTracker(
+        tracker, known.rig, stature_m(known), known.wearer.shape_factors, measures
+    )
+    pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
     rehearse(
         measured,
         known.rig,

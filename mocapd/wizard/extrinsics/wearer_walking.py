@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.calibrate.calibrated_inputs import inputs_of_calibration
 from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchTracks, unplaced
 from mocapd.calibrate.self_calibration.self_calibration import (
     RoomReport,
     SelfCalibrationParams,
     room_from_body,
 )
+from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
@@ -24,7 +24,7 @@ from mocapd.types import Camera, Floats, Rig
 from mocapd.wizard.colour.proposing import LoadDatabase
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
-from mocapd.wizard.saving import calibrated_of
+from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 
 READY, SEEN = 0.1, 0.85  # shares of the job: the trackers are ready, enough is seen
@@ -138,11 +138,11 @@ def walk_and_solve(
     assert draft.stature_m is not None
     lenses = lenses_of(draft)
     placed = replace(draft, rig=Rig(unplaced(lenses)), factors=None)
-    inputs = inputs_of_calibration(calibrated_of(placed), draft.stature_m)
-    colours = colour_model(inputs.model)
+    shirt = calibration_of(placed).shirt or ShirtColours()
+    colours = colour_model(shirt.model)
     W = {
         name: white_balance_of(picture, colours, plain=False)
-        for name, picture in inputs.white_balance.items()
+        for name, picture in shirt.white_balance.items()
     }
     database = load(cache_dir, lambda what, share: tell(what, READY * share))
     tracks = PatchTracks(lenses, draft.stature_m, colours, W, database)
