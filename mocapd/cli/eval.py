@@ -90,14 +90,14 @@ def evaluate_captures(
     from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.page import write_page
-    from mocapd.session.tracker_setup import build_tracker, cached
+    from mocapd.session.tracker_setup import cached, ready_tracker
     from mocapd.trackers.base import Tracker
 
     cases = [open_case(capture) for capture in captures]
     with ProgressBars() as progress:
 
         def build(known: Calibration, variant: str) -> Tracker:
-            return build_tracker(name, known, cached(effective.cache_dir, progress), variant)
+            return ready_tracker(name, known, cached(effective.cache_dir, progress), variant)
 
         setting = runs.EvaluationSettings(
             build, effective.tracker.stature_m, joints.value, progress

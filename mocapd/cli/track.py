@@ -54,7 +54,7 @@ def track(
     from mocapd.capture.capture_folder import frame_sets, load_folder
     from mocapd.session.offline import check_writable, track_all, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved
-    from mocapd.session.tracker_setup import build_tracker, cached
+    from mocapd.session.tracker_setup import cached, ready_tracker
 
     check_writable(out)
     folder = load_folder(capture)
@@ -66,7 +66,7 @@ def track(
         known = known_of_recording(load_saved(calibration), folder)
     with ProgressBars() as progress:
         result = track_all(
-            build_tracker(
+            ready_tracker(
                 own.name,
                 known.assuming(own.stature_m),
                 cached(effective.cache_dir, progress, own),

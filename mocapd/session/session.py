@@ -10,18 +10,17 @@ from functools import partial
 from pathlib import Path
 
 from mocapd.calibration.from_capture import from_capture
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.url import is_url
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
-from mocapd.pipeline.rehearsal import rehearse
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
-from mocapd.session.tracker_setup import Progress, build_tracker, cached
+from mocapd.session.tracker_setup import Progress, cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry
 from mocapd.types import Rig
@@ -123,12 +122,13 @@ def _simulated(config: Config, source: str, saved: Saved | None, progress: Progr
 def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Tracker:
     """Built, and its kernels warm."""
     own = config.tracker
-    resources = cached(config.cache_dir, progress, own)
-    tracker = build_tracker(own.name, known.assuming(own.stature_m), resources, own.variant)
-    shirt = known.shirt or ShirtColours()
-    pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
-    rehearse(tracker, known.rig, pictures, partial(progress, "preparing the tracker"))
-    return tracker
+    return ready_tracker(
+        own.name,
+        known.assuming(own.stature_m),
+        cached(config.cache_dir, progress, own),
+        own.variant,
+        partial(progress, "preparing the tracker"),
+    )
 
 
 def _common_origin(cameras: tuple[CameraSection, ...]) -> str:

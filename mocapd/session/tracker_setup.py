@@ -1,4 +1,4 @@
-"""The one place where a tracker is built, and what it keeps in the cache is made."""
+"""The one place where a tracker is built and rehearsed, and what it keeps in the cache is made."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -7,7 +7,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.pipeline.rehearsal import rehearse
 from mocapd.trackers import registry
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import Resources, build
@@ -19,12 +20,31 @@ _log = logging.getLogger(__name__)
 _THREADS = 2  # that make what is kept in the cache
 
 
-def build_tracker(
-    name: str, calibration: Calibration, resources: Resources, variant: str = "full"
+def _itself(tracker: Tracker) -> Tracker:
+    return tracker
+
+
+def ready_tracker(
+    name: str,
+    calibration: Calibration,
+    resources: Resources,
+    variant: str = "full",
+    rehearsal: Callable[[int, int], None] | None = None,
+    watched: Callable[[Tracker], Tracker] = _itself,
 ) -> Tracker:
-    """The tracker of this name, ready to step. Raises ConfigError naming what it lacks."""
+    """The tracker of this name, ready to step. Raises ConfigError naming what it lacks.
+
+    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own
+    pictures, so that live frames need not wait; None for recordings, which can. watched: puts another
+    around it that is rehearsed with it.
+    """
     with _pooled(resources) as pooled:
-        return build(name, calibration, pooled, variant)
+        tracker = watched(build(name, calibration, pooled, variant))
+    if rehearsal is not None:
+        shirt = calibration.shirt or ShirtColours()
+        pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
+        rehearse(tracker, calibration.rig, pictures, rehearsal)
+    return tracker
 
 
 def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:

@@ -10,7 +10,7 @@ from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
 from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
-from mocapd.session.tracker_setup import Progress, build_tracker, cached
+from mocapd.session.tracker_setup import Progress, cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import TRACKERS
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -81,7 +81,7 @@ class Bench:
         for name in (self.tracker,) if self.tracker else TRACKERS:
             resources = cached(self.cache_dir, self.progress, self.tracking)
             try:
-                tracker = build_tracker(
+                tracker = ready_tracker(
                     name, self.recording.known, resources, self.recording.variant
                 )
             except ConfigError as error:

@@ -14,8 +14,7 @@ from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.pipeline.rehearsal import rehearse
-from mocapd.session.tracker_setup import build_tracker, cached
+from mocapd.session.tracker_setup import cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
@@ -94,15 +93,14 @@ def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
     resources = cached(
         cache_dir, lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total)
     )
-    tracker = build_tracker("colour", known, resources)
-    pictures = {name: one.picture.pixels for name, one in draft.colours.items()}
-    rehearse(
-        tracker,
-        known.rig,
-        pictures,
-        lambda done, total: tell("preparing the tracker", READY * (0.5 + 0.5 * done / total)),
+    return ready_tracker(
+        "colour",
+        known,
+        resources,
+        rehearsal=lambda done, total: tell(
+            "preparing the tracker", READY * (0.5 + 0.5 * done / total)
+        ),
     )
-    return tracker
 
 
 def _watch(

@@ -4,17 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.record import Calibration
 from mocapd.config.sections import TrackerSection
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
-from mocapd.pipeline.rehearsal import rehearse
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.session.tracker_setup import build_tracker, cached
-from mocapd.trackers.base import stature_m
+from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.trackers.base import Tracker, stature_m
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
@@ -35,7 +34,7 @@ class CheckSettings:
 class Prepared:
     """A tracker that is warm, its cameras, and where it leaves what it measures."""
 
-    tracker: MeasuredTracker
+    tracker: Tracker
     rig: Rig
     measures: TrackingMeasures
 
@@ -46,30 +45,28 @@ def prepare(
     """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
     section = settings.tracker
     known = known.assuming(section.stature_m)
-    assert known.rig is not None
-    shirt = known.shirt or ShirtColours()
+    rig = known.rig
+    assert rig is not None
 
     def progress(what: str, done: int, total: int) -> None:
         tell(what, _BUILDING * done / max(total, 1))
 
     progress("loading the pose database", 0, 1)
-    resources = cached(cache_dir, progress, section)
-    tracker = build_tracker("colour", known, resources, section.variant)
     measures = TrackingMeasures()
-    measured = MeasuredTracker(
-        tracker, known.rig, stature_m(known), known.wearer.shape_factors, measures
-    )
-    pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
-    rehearse(
-        measured,
-        known.rig,
-        pictures,
-        lambda done, total: tell(
+    tracker = ready_tracker(
+        "colour",
+        known,
+        cached(cache_dir, progress, section),
+        section.variant,
+        rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
+        ),
+        watched=lambda one: MeasuredTracker(
+            one, rig, stature_m(known), known.wearer.shape_factors, measures
         ),
     )
     measures.taken()
-    return Prepared(measured, known.rig, measures)
+    return Prepared(tracker, rig, measures)
 
 
 class CheckTracking:
