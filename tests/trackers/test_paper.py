@@ -234,21 +234,21 @@ def test_solver_moves_the_pose_to_where_the_patches_are_seen() -> None:
     assert arm_error_m(between.joints_m, true) < arm_error_m(start.joints_m, true)
 
 
-# --- eye -------------------------------------------------------------------------------------
+# --- segmenter -------------------------------------------------------------------------------------
 
 
 def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
     c, body = RIG.cameras[0], standing()
     light = np.array([0.45, 0.6, 0.9])  # BGR
     W = np.diag(1.0 / light[::-1])
-    eye = PaperSegmenter(c, colours(), np.eye(3), Params())
-    eye.look(picture(None, c))
-    before = eye.look(picture(body, c, light))
-    eye.references = (np.eye(3), W)
-    after = eye.look(picture(body, c, light))
+    segmenter = PaperSegmenter(c, colours(), np.eye(3), Params())
+    segmenter.look(picture(None, c))
+    before = segmenter.look(picture(body, c, light))
+    segmenter.references = (np.eye(3), W)
+    after = segmenter.look(picture(body, c, light))
     assert after is not None
     assert before is None or before.coloured < 0.5 * after.coloured
-    np.testing.assert_array_equal(eye.W, W)
+    np.testing.assert_array_equal(segmenter.W, W)
     fixed = PaperSegmenter(c, colours(), np.eye(3), Params(adaptive_white_balance=False))
     fixed.references = (np.eye(3), W)
     fixed.look(picture(body, c, light))
@@ -258,14 +258,14 @@ def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
 def test_white_balance_follows_the_light_and_a_new_light_is_remembered() -> None:
     c, body = RIG.cameras[0], standing()
     light = np.array([0.5, 0.8, 0.9])  # BGR, a lamp
-    eye = PaperSegmenter(c, colours(), np.eye(3), Params())
+    segmenter = PaperSegmenter(c, colours(), np.eye(3), Params())
     grid = Grid(0, 0, 320, 240, 2)
     seen = draw(MODEL, body, c, grid)
     refined = np.where(seen.triangle_at >= 0, MODEL.colour[seen.triangle_at], 0).astype(np.uint8)
-    eye.learn(picture(body, c, light), grid, seen, MODEL.colour, refined)
-    white = eye.W @ light[::-1]
+    segmenter.learn(picture(body, c, light), grid, seen, MODEL.colour, refined)
+    white = segmenter.W @ light[::-1]
     assert white.max() / white.min() < 1.2  # 1.8 before; the hue is right, brightness may lag
-    assert len(eye.references) == 2
+    assert len(segmenter.references) == 2
 
 
 # --- tracker ---------------------------------------------------------------------------------

@@ -99,7 +99,7 @@ class LightReader:
         factors = work_factors(cameras, p.fit.work_width_px)
         self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p.fit)
         self._arms = ArmSearch(self._fitter, p.limbs)
-        self._eyes = [
+        self._segmenters = [
             CameraSegmenter(c, f, model, np.eye(3), p.segmentation)
             for c, f in zip(cameras, factors, strict=True)
         ]
@@ -116,12 +116,12 @@ class LightReader:
 
         Different cameras may be read by different threads at once. progress: of this camera, 0..1.
         """
-        eye, camera = self._eyes[index], self._cameras[index]
+        segmenter, camera = self._segmenters[index], self._cameras[index]
         _check_size(pixels, camera)
-        eye.reset()
-        eye.look(pixels)
+        segmenter.reset()
+        segmenter.look(pixels)
         readings = []
-        for i, (name, found) in enumerate(self._candidates(eye)):
+        for i, (name, found) in enumerate(self._candidates(segmenter)):
             progress(i / (_FOLLOWED + _FINALISTS))
             fit = self._detected(index, found)
             if fit is None:
@@ -182,12 +182,12 @@ class LightReader:
 
     # --- stages ---
 
-    def _candidates(self, eye: CameraSegmenter) -> list[tuple[str, Found]]:
+    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, Found]]:
         """The most even places over all lights, no two alike, best first."""
         found: list[tuple[str, Found]] = []
-        for light in light_hypotheses(eye.picture):
-            eye.memory.references = (light.W,)
-            seen = eye.find(detection.WINDOWS)
+        for light in light_hypotheses(segmenter.picture):
+            segmenter.memory.references = (light.W,)
+            seen = segmenter.find(detection.WINDOWS)
             if seen is not None:
                 found.append((light.name, seen))
         found.sort(key=lambda f: -f[1].evenness)
@@ -199,9 +199,9 @@ class LightReader:
 
     def _detected(self, index: int, found: Found) -> Fit | None:
         """The body as the pose database has it, fitted to the ids of the search."""
-        p, eye = self._params, self._eyes[index]
-        eye.memory.references = (found.W,)
-        sighting = detection.sight(index, eye, self._database, p.neighbours)
+        p, segmenter = self._params, self._segmenters[index]
+        segmenter.memory.references = (found.W,)
+        sighting = detection.sight(index, segmenter, self._database, p.neighbours)
         if sighting is None:
             return None
         model = self._fitter.model
@@ -223,7 +223,7 @@ class LightReader:
         self, index: int, light: str, fit: Fit, start: Appearance, turns: range
     ) -> Reading | None:
         """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
-        self._eyes[index].memory.appearance = start
+        self._segmenters[index].memory.appearance = start
         best: Reading | None = None
         idle = 0
         for turn in turns:
@@ -232,7 +232,7 @@ class LightReader:
                 break
             idle += 1
             fit = self._fitted(fit.state, [view], turn)
-            appearance = self._eyes[index].memory.appearance
+            appearance = self._segmenters[index].memory.appearance
             agreement, colours = fit.explained, fit.confirmed_colours()
             reading = Reading(light, fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
@@ -246,14 +246,14 @@ class LightReader:
         lights = {
             i: tuple(
                 light.W * gain
-                for light in light_hypotheses(self._eyes[i].picture)
+                for light in light_hypotheses(self._segmenters[i].picture)
                 for gain in _GAINS
             )
             for i in own
         }
         for start in own.values():
             for index, reading in own.items():
-                memory = self._eyes[index].memory
+                memory = self._segmenters[index].memory
                 memory.appearance = reading.appearance
                 # a camera that misread its light tries them all on the other's body
                 memory.references = lights[index]
@@ -264,11 +264,11 @@ class LightReader:
                 if len(views) < len(own) or idle == _IDLE_TURNS:
                     break
                 for index in own:
-                    self._eyes[index].memory.references = ()
+                    self._segmenters[index].memory.references = ()
                 fit = self._fitted(fit.state, views, turn)
                 seen = (fit.explained, fit.confirmed_colours())
                 readings = [
-                    Reading(light, fit, v, self._eyes[v.index].memory.appearance, *seen)
+                    Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *seen)
                     for v in views
                 ]
                 idle = 0 if readings[0].score > most else idle + 1
@@ -314,22 +314,24 @@ class LightReader:
         predicted = drawing.render(fit.state, 0.0, roi)
         # no arm is called doubtful: looked for far away, its colours are found in the room, whose
         # background is not known yet
-        ids, pixel_weight = self._eyes[index].classify(
+        ids, pixel_weight = self._segmenters[index].classify(
             predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
         )
         return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
 
     def _relight(self, index: int, state: MotionState, view: View) -> None:
         """Read on in the light that the fitted body's patches ask for."""
-        eye = self._eyes[index]
+        segmenter = self._segmenters[index]
         rendered = self.drawing(index).render(state, 0.0, view.roi)
         sums = np.zeros((10, 4))
-        colour_statistics(eye.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums)
+        colour_statistics(
+            segmenter.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums
+        )
         n = sums[:, 0]
         means = sums[:, 3:0:-1] / np.maximum(n, 1.0)[:, None]
-        before = eye.memory.appearance.W
+        before = segmenter.memory.appearance.W
         W = solve_white_balance(means, self._model.mean, n, before, precision=self._precision)
-        eye.memory.appearance = Appearance(W, sums)
+        segmenter.memory.appearance = Appearance(W, sums)
 
 
 def _arms_out(state: MotionState) -> MotionState:

@@ -1,4 +1,4 @@
-"""One camera's eye: work pictures, colour ids under the present light, and what is learned of light and background."""
+"""One camera's segmentation: work pictures, colour ids in the present light, what is learned of light and background."""
 
 from dataclasses import dataclass, field
 
@@ -123,7 +123,7 @@ class CameraSegmenter:
         self, predicted: Ids, outline: Outline, roi: Roi, doubted: Ints, may_relight: bool
     ) -> tuple[Ids, Ids]:
         """ids and pixel_weight (h,w) over the region, given the predicted id map and where its vertices
-        are (buffers of this eye).
+        are (buffers of this segmenter).
 
         doubted: colours (0..9) whose place is in doubt. When the shirt is badly classified, or much
         worse than usual, other lights are tried and the best is kept: the light that carries the

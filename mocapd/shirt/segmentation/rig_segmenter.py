@@ -1,4 +1,4 @@
-"""The eyes of all cameras together: what they see of the predicted body, and what they learn from it."""
+"""The segmenters of all cameras: the predicted body classified in each, and what they learn from it."""
 
 from collections.abc import Mapping
 
@@ -37,12 +37,12 @@ class RigSegmenter:
             )
             for d in fitter.drawings
         ]  # fmt: skip
-        self._index = {eye.camera.name: i for i, eye in enumerate(self.each)}
+        self._index = {segmenter.camera.name: i for i, segmenter in enumerate(self.each)}
 
     def reset(self) -> None:
         """Forget light and background."""
-        for eye in self.each:
-            eye.reset()
+        for segmenter in self.each:
+            segmenter.reset()
 
     def look(self, frames: FrameSet) -> dict[int, float]:
         """Take the pictures; those `present`. Raises ConfigError when one is not of its calibration's size."""
@@ -79,21 +79,21 @@ class RigSegmenter:
         """
         sure = fit.match > self._params.sure_match
         for view in views:
-            eye, drawing = self.each[view.index], self._fitter.drawings[view.index]
+            segmenter, drawing = self.each[view.index], self._fitter.drawings[view.index]
             if redraw:
                 final = drawing.render(state, view.dt_s, view.roi)
             else:
                 final = drawing.last(view.roi)[0]
-            eye.mark_body(final, view.roi)
-            eye.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure)
+            segmenter.mark_body(final, view.roi)
+            segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
         """Follow the background, in all of the picture when nobody is known."""
         for i in present:
-            eye = self.each[i]
+            segmenter = self.each[i]
             if nobody:
-                eye.mark_body(None, (0, 0, 0, 0))
-            eye.learn_background()
+                segmenter.mark_body(None, (0, 0, 0, 0))
+            segmenter.learn_background()
 
     def roi_px(self, view: View) -> Roi:
         """A view's region in pixels of the frame itself."""

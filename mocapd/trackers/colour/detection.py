@@ -33,10 +33,10 @@ class ShirtSighting:
 
 
 def sight(
-    index: int, eye: CameraSegmenter, database: PoseDatabase, neighbours: int
+    index: int, segmenter: CameraSegmenter, database: PoseDatabase, neighbours: int
 ) -> ShirtSighting | None:
     """Look for the shirt in one camera's present picture; neighbours: poses asked for."""
-    found = eye.find(WINDOWS)
+    found = segmenter.find(WINDOWS)
     if found is None:
         return None
     id_map, scale, (cx, cy) = crop_id_map(found.ids)
@@ -45,7 +45,12 @@ def sight(
         return None
     work = np.array([cx + found.roi[0], cy + found.roi[1]])
     return ShirtSighting(
-        index, found, (work + 0.5) * eye.factor - 0.5, scale * SIZE * eye.factor, poses, distances
+        index,
+        found,
+        (work + 0.5) * segmenter.factor - 0.5,
+        scale * SIZE * segmenter.factor,
+        poses,
+        distances,
     )
 
 

@@ -79,7 +79,7 @@ class ColourTracker:
         model = build_model(stature_m)
         smaller = work_factors(rig.cameras, p.fit.work_width_px)
         self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
-        self._eyes = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
+        self._segmenters = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
         self._arm_columns = {side: model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._tracking = TrackingState(tracking)
@@ -90,7 +90,7 @@ class ColourTracker:
 
     def _rehearse(self) -> None:
         """Compile or load the kernels that only rare frames reach."""
-        w, h = self._eyes.each[0].size
+        w, h = self._segmenters.each[0].size
         nothing = np.zeros((h, w), np.uint8)
         model = self._fitter.model
         state = MotionState(
@@ -110,7 +110,7 @@ class ColourTracker:
 
     def reset(self) -> None:
         """Forget pose, proportions, light and background."""
-        self._eyes.reset()
+        self._segmenters.reset()
         self._tracking.reset()
         self._known: _Known | None = None
         measured, model = self._measured, self._fitter.model
@@ -128,7 +128,7 @@ class ColourTracker:
     def step(self, frames: FrameSet) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         self._turn += 1
-        present = self._eyes.look(frames)
+        present = self._segmenters.look(frames)
         self.probe("picture")
         known = self._known
         if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
@@ -148,8 +148,8 @@ class ColourTracker:
             self._factors, self._information = known.state.factors, known.state.information
             self._taught_s = known.taught_s
         if known is not None and evidence:
-            self._eyes.learn_with(known.state, known.fit, views, self._redraw)
-        self._eyes.learn_background(present, nobody=known is None)
+            self._segmenters.learn_with(known.state, known.fit, views, self._redraw)
+        self._segmenters.learn_background(present, nobody=known is None)
         self.probe("learn")
         return self._track(tracking, frames, views)
 
@@ -165,7 +165,7 @@ class ColourTracker:
         root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
         doubted = tuple(s for s in SIDES if doubtful(s, known.fit, p.limbs))
-        views = self._eyes.views(predicted, present, doubted)
+        views = self._segmenters.views(predicted, present, doubted)
         self.probe("classify")
         if not views:
             return known, views
@@ -220,7 +220,7 @@ class ColourTracker:
         p = self.params
         pause_s = p.search_pause_s if known is None else p.doubt_pause_s
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
-        before = [eye.memory.appearance for eye in self._eyes.each]
+        before = [segmenter.memory.appearance for segmenter in self._segmenters.each]
         views = [replace(v, ids=v.ids.copy(), pixel_weight=v.pixel_weight.copy()) for v in views]
         found = self._found(present)
         if found is not None:
@@ -230,8 +230,8 @@ class ColourTracker:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
                 return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen
-        for eye, appearance in zip(self._eyes.each, before, strict=True):
-            eye.memory.appearance = appearance
+        for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
+            segmenter.memory.appearance = appearance
         return known, views
 
     def _found(self, present: dict[int, float]) -> tuple[Fit, list[View]] | None:
@@ -240,7 +240,7 @@ class ColourTracker:
         sightings = [
             s
             for i in present
-            if (s := detection.sight(i, self._eyes.each[i], self._database, p.neighbours))
+            if (s := detection.sight(i, self._segmenters.each[i], self._database, p.neighbours))
             is not None
         ]
         states = detection.hypotheses(
@@ -263,9 +263,9 @@ class ColourTracker:
         if fit is None:
             return None
         for s in sightings:
-            self._eyes.each[s.index].relight(s.found.W)
+            self._segmenters.each[s.index].relight(s.found.W)
         # read the pictures again, now with the pose as prior, and fit once more
-        views = self._eyes.views(fit.state, present)
+        views = self._segmenters.views(fit.state, present)
         if not views:
             return None
         fit = self._fitter.fit(fit.state, views, 0.1, p.fit.iterations, learn_shape=False)
@@ -311,7 +311,7 @@ class ColourTracker:
         return Track(
             body,
             evidence={self.rig.cameras[v.index].name: v.ids.copy() for v in views},
-            roi_px={self.rig.cameras[v.index].name: self._eyes.roi_px(v) for v in views},
+            roi_px={self.rig.cameras[v.index].name: self._segmenters.roi_px(v) for v in views},
         )
 
 

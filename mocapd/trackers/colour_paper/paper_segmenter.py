@@ -1,4 +1,4 @@
-"""One camera's eye: background hint, histogram search, classification, white balance. [sections 4, 5.2]"""
+"""One camera's segmentation: background hint, histogram search, classification, white balance. [sections 4, 5.2]"""
 
 from dataclasses import dataclass
 

@@ -53,7 +53,7 @@ class PaperTracker:
         self._model = build_model(stature_m)
         self._skeleton = standard_skeleton(stature_m)
         self._solver = CentroidSolver(self._model, load_covariances(), self.params.iterations)
-        self._eyes = {
+        self._segmenters = {
             camera.name: PaperSegmenter(
                 camera, colour_model, white_balance.get(camera.name, np.eye(3)), self.params
             )
@@ -68,8 +68,8 @@ class PaperTracker:
 
     def reset(self) -> None:
         """Forget everything learned since construction."""
-        for eye in self._eyes.values():
-            eye.reset()
+        for segmenter in self._segmenters.values():
+            segmenter.reset()
         self._last: Posture | None = None
         self._last_t_ns = 0
         self._last_state: BodyState | None = None
@@ -77,16 +77,16 @@ class PaperTracker:
     def step(self, frames: FrameSet) -> Track:
         """Track one frame set."""
         sights: dict[str, Sight] = {}
-        for name, eye in self._eyes.items():
+        for name, segmenter in self._segmenters.items():
             if name in frames.frames:
-                sight = eye.look(frames.frames[name].pixels)
+                sight = segmenter.look(frames.frames[name].pixels)
                 if sight is not None:
                     sights[name] = sight
         body, agreement, seen, refined = self._pose(frames, sights)
         if body is None or agreement < self.params.min_agreement:
             return Track(self._without(frames.t_ns), *self._evidence(sights))
         for name, drawing in seen.items():
-            self._eyes[name].learn(
+            self._segmenters[name].learn(
                 frames.frames[name].pixels,
                 sights[name].grid,
                 drawing,
@@ -113,7 +113,7 @@ class PaperTracker:
         params, model = self.params, self._model
         guesses = {}
         for name, sight in sights.items():
-            found = guess(self._database, self._eyes[name].camera, sight, params.neighbours)
+            found = guess(self._database, self._segmenters[name].camera, sight, params.neighbours)
             if len(found.indices) and found.distances[0] <= params.max_distance_px2:
                 guesses[name] = found
         if not guesses:
@@ -126,38 +126,39 @@ class PaperTracker:
         targets, refined = [], {}
         for name in guesses:
             target, refined[name] = self._target(
-                self._eyes[name], frames.frames[name].pixels, sights[name], blended
+                self._segmenters[name], frames.frames[name].pixels, sights[name], blended
             )
             targets.append(target)
         elapsed_s = (frames.t_ns - self._last_t_ns) * 1e-9
         body = self._solver.solve(targets, blended, self._last, elapsed_s, params.min_patch_samples)
         seen = {
-            name: draw(model, body, self._eyes[name].camera, sights[name].grid) for name in guesses
+            name: draw(model, body, self._segmenters[name].camera, sights[name].grid)
+            for name in guesses
         }
         alike = [_agreement(seen[name], model.colour, refined[name]) for name in guesses]
         rendered = sum(n for _, n in alike)
         return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
 
     def _target(
-        self, eye: PaperSegmenter, pixels: Bytes, sight: Sight, blended: Posture
+        self, segmenter: PaperSegmenter, pixels: Bytes, sight: Sight, blended: Posture
     ) -> tuple[Target, Bytes]:
         """Step 3, and the centroids of what it saw."""
         grid, params = sight.grid, self.params
-        drawing = draw(self._model, blended, eye.camera, grid)
+        drawing = draw(self._model, blended, segmenter.camera, grid)
         rendered = np.empty((grid.height, grid.width), np.uint8)
         label_triangles(drawing.triangle_at, self._model.colour, rendered)
         maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
         # farther away than this the prior alone exceeds the threshold
         reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
         distance = maps.fill(rendered, reach)
-        ids = eye.refine(pixels, sight, distance) if params.pose_prior else sight.ids
+        ids = segmenter.refine(pixels, sight, distance) if params.pose_prior else sight.ids
         count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
         classified_patches(
             ids, maps.nearest_yx, drawing.triangle_at, self._model.patch, count, centroid
         )
         wanted = count >= params.min_patch_samples
         wanted[0] = False
-        return Target(eye.camera, grid, grid.to_pixels(centroid), wanted), ids
+        return Target(segmenter.camera, grid, grid.to_pixels(centroid), wanted), ids
 
     def _without(self, t_ns: int) -> BodyState:
         """No pose in this frame: the last one for a moment, then lost."""
@@ -170,8 +171,8 @@ class PaperTracker:
                     t_ns, Tracking.COASTING, self.name, last.pose, last.joints_m, fading
                 )
         self._last = self._last_state = None
-        for eye in self._eyes.values():
-            eye.forget_body()
+        for segmenter in self._segmenters.values():
+            segmenter.forget_body()
         return BodyState(t_ns, Tracking.LOST, self.name, None, None, np.zeros(N_JOINTS))
 
     @staticmethod
