@@ -40,7 +40,7 @@ class FitParams:
 class LimbSearchParams:
     """When other poses of an arm are tried, and how many."""
 
-    doubtful_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
+    uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
     arm_cloud: int = 64  # tries about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
     arm_fits: int = 1  # of which so many are fitted

@@ -172,7 +172,7 @@ class ArmSearch:
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
         """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
-        doubtful arm must not wait for them to be compiled or loaded."""
+        uncertain arm must not wait for them to be compiled or loaded."""
         for side, arm in self.arms.items():
             tries = candidates(
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
@@ -182,14 +182,14 @@ class ArmSearch:
     def improve(
         self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
     ) -> tuple[Fit, tuple[str, ...]]:
-        """A better fit, if another pose of a doubtful arm gives one, and the sides that changed.
+        """A better fit, if another pose of an uncertain arm gives one, and the sides that changed.
 
         turn: a running number; each turn tries another part of the low-discrepancy sets.
         """
         p = self.params
         changed = []
         for side, arm in self.arms.items():
-            if not doubtful(side, fit, p):
+            if not is_uncertain(side, fit, p):
                 continue
             tries = candidates(
                 self.fitter, fit.state, arm, views,
@@ -213,9 +213,9 @@ def confirmed(side: str, fit: Fit) -> float:
     return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
 
 
-def doubtful(side: str, fit: Fit, params: LimbSearchParams) -> bool:
+def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
     """Whether too little of an arm is confirmed by the pictures."""
-    return confirmed(side, fit) < params.doubtful_arm
+    return confirmed(side, fit) < params.uncertain_arm
 
 
 def _part(rows: Floats, turn: int, size: int) -> Floats:

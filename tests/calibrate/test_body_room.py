@@ -116,18 +116,18 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
     seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = SelfCalibrationParams(
-        rounds=14, averaged=4, surface_doubt=1e-3
+        rounds=14, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
     free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
     stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, stiff)
     ringed_rig, report = room_from_body(
-        seen, lenses(), STATURE_M, replace(stiff, surface_doubt=2.0)
+        seen, lenses(), STATURE_M, replace(stiff, surface_uncertainty=2.0)
     )
     assert rotation_deg(free_rig) < 2.0
     assert rotation_deg(free_rig) < 0.7 * rotation_deg(stiff_rig)
     assert rotation_deg(ringed_rig) < 1.0
-    assert rotation_deg(ringed_rig) < 3.0 * report.doubts["right"].rotation_deg
+    assert rotation_deg(ringed_rig) < 3.0 * report.uncertainties["right"].rotation_deg
 
 
 def test_the_surface_is_off_alike_on_both_sides() -> None:

@@ -1,4 +1,4 @@
-"""Other poses of a doubtful arm: candidates, their scores, and the arm that is found again."""
+"""Other poses of an uncertain arm: candidates, their scores, and the arm that is found again."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from mocapd.fit.limb_search import (
     best_arm_poses,
     candidates,
     confirmed,
-    doubtful,
+    is_uncertain,
 )
 from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
 from mocapd.fit.motion_state import MotionState
@@ -239,15 +239,15 @@ def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     # one iteration, so that the fit itself does not find back
     fit = by.fit(wrong, views, 1 / 30, 1, learn_shape=False)
-    assert doubtful("left", fit, params)
-    assert not doubtful("right", fit, params)
+    assert is_uncertain("left", fit, params)
+    assert not is_uncertain("right", fit, params)
     changed: set[str] = set()
     for turn in range(4):
         fit, sides = search.improve(fit, views, 1 / 30, turn, learn_shape=False)
         changed |= set(sides)
     fit = by.fit(fit.state, views, 1 / 30, 8, learn_shape=False)
     assert changed == {"left"}
-    assert not doubtful("left", fit, params)
+    assert not is_uncertain("left", fit, params)
     for side in SIDES:
         off = arm_joints(by, fit.state, side) - arm_joints(by, truth, side)
         assert np.linalg.norm(off, axis=1).max() < 0.04

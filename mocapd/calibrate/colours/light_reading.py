@@ -308,11 +308,11 @@ class LightReader:
         drawing = self.drawing(index)
         if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
             return None
-        roi = drawing.region(fit.state, 0.0, self._params.segmentation.doubt_margin_px)
+        roi = drawing.region(fit.state, 0.0, self._params.segmentation.uncertain_margin_px)
         if roi is None:
             return None
         predicted = drawing.render(fit.state, 0.0, roi)
-        # no arm is called doubtful: looked for far away, its colours are found in the room, whose
+        # no arm is called uncertain: looked for far away, its colours are found in the room, whose
         # background is not known yet
         ids, pixel_weight = self._segmenters[index].classify(
             predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True

@@ -9,7 +9,7 @@ from mocapd.types import Camera, Floats
 
 
 @dataclass(frozen=True, slots=True)
-class Doubt:
+class CameraUncertainty:
     """Standard deviations of the camera's rotation [degrees] and of its distance from the first [%].
 
     They tell of chance and of what people differ by; with real bodies in real cloth the errors were up
@@ -20,7 +20,7 @@ class Doubt:
     distance_percent: float
 
 
-def doubt(camera: Camera, first_m: Floats, covariance: Floats) -> Doubt:
+def uncertainty_of(camera: Camera, first_m: Floats, covariance: Floats) -> CameraUncertainty:
     """From the covariance (6,6) of the motion (v, omega) of the world before the camera.
 
     first_m (3,): centre of the camera that stays. By the motion the camera goes by -v - omega x c.
@@ -29,7 +29,7 @@ def doubt(camera: Camera, first_m: Floats, covariance: Floats) -> Doubt:
     away = at_m - first_m
     length_m = float(np.linalg.norm(away))
     by_motion = np.concatenate([-away, -np.cross(at_m, away)]) / length_m
-    return Doubt(
+    return CameraUncertainty(
         float(np.degrees(np.sqrt(np.trace(covariance[3:, 3:])))),
         100.0 * float(np.sqrt(by_motion @ covariance @ by_motion)) / length_m,
     )

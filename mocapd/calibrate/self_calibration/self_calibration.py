@@ -14,7 +14,7 @@ from mocapd.calibrate.self_calibration.body_rows import (
     mean_camera,
     moved_camera,
 )
-from mocapd.calibrate.self_calibration.camera_uncertainty import Doubt, doubt
+from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
 from mocapd.calibrate.self_calibration.gravity_alignment import upright
 from mocapd.calibrate.self_calibration.initial_extrinsics import first_placing
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, choose, starts, views
@@ -54,7 +54,7 @@ class SelfCalibrationParams:
     # how far a surface may be off from what the shape's factors make of it
     off_sd_m: float = 0.02
     # how much less is believed of body and cameras than their covariance says, beside sleeve rings
-    surface_doubt: float = 2.0
+    surface_uncertainty: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +64,7 @@ class RoomReport:
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
     colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
     the first; match: share of the drawn shirt that the pictures confirm; factors (n_shape,): the
-    wearer's proportions; doubts: by camera but the first.
+    wearer's proportions; uncertainties: by camera but the first.
     """
 
     residual_px: Mapping[str, float]
@@ -72,7 +72,7 @@ class RoomReport:
     distance_m: Mapping[str, float]
     match: float
     factors: Floats
-    doubts: Mapping[str, Doubt]
+    uncertainties: Mapping[str, CameraUncertainty]
 
 
 @dataclass(slots=True, eq=False)
@@ -105,7 +105,7 @@ def room_from_body(
         before = [replace(c, R=old[c.name].R, t_m=old[c.name].t_m) for c in lenses]
         solvers.append(RoomSolver(model, before, keyframes, p))
     rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
-    rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_doubt)
+    rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_uncertainty)
     return upright(rig, moments, stature_m, report.factors), report
 
 
@@ -115,22 +115,22 @@ def _with_rings(
     covariances: Mapping[str, Floats],
     moments: Sequence[Moment],
     stature_m: float,
-    surface_doubt: float,
+    surface_uncertainty: float,
 ) -> tuple[Rig, "RoomReport"]:
     """The same once every camera but the first has been weighed against the rings of the sleeves."""
     first = rig.cameras[0]
     work = work_factors(rig.cameras, FitParams().work_width_px)
-    cameras, doubts = [first], {}
+    cameras, uncertainties = [first], {}
     for other, factor in zip(rig.cameras[1:], work[1:], strict=True):
         pairs = ring_pairs(moments, (first, other), (work[0], factor))
-        known = surface_doubt**2 * covariances[other.name]
+        known = surface_uncertainty**2 * covariances[other.name]
         camera, covariance = other, known
         if len(pairs.seen):
             camera, covariance = placed_by_rings(pairs, first, other, known, stature_m)
         cameras.append(camera)
-        doubts[camera.name] = doubt(camera, centre(first), covariance)
+        uncertainties[camera.name] = uncertainty_of(camera, centre(first), covariance)
     distance_m = {c.name: float(np.linalg.norm(centre(c) - centre(first))) for c in cameras[1:]}
-    return Rig(tuple(cameras)), replace(report, doubts=doubts, distance_m=distance_m)
+    return Rig(tuple(cameras)), replace(report, uncertainties=uncertainties, distance_m=distance_m)
 
 
 @dataclass(slots=True, eq=False)
@@ -317,8 +317,8 @@ class RoomSolver:
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
         first = centre(scene.cameras[0])
-        doubts = {
-            camera.name: doubt(camera, first, covariances[camera.name])
+        uncertainties = {
+            camera.name: uncertainty_of(camera, first, covariances[camera.name])
             for camera in scene.cameras[1:]
         }
         return RoomReport(
@@ -329,7 +329,7 @@ class RoomSolver:
             },
             match=matched / max(visible, 1.0),
             factors=scene.factors[: self._body.model.space.n_shape],
-            doubts=doubts,
+            uncertainties=uncertainties,
         )
 
 

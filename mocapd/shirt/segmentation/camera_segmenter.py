@@ -35,7 +35,7 @@ from mocapd.vision.background_light import relight_background
 
 Ids = NDArray[np.uint8]
 _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
-_NO_DOUBT = np.ones(10, np.int64)
+_ALL_CERTAIN = np.ones(10, np.int64)
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
 _NEW_LOOKS = 90
@@ -120,20 +120,20 @@ class CameraSegmenter:
     # --- with a pose ---
 
     def classify(
-        self, predicted: Ids, outline: Outline, roi: Roi, doubted: Ints, may_relight: bool
+        self, predicted: Ids, outline: Outline, roi: Roi, uncertain: Ints, may_relight: bool
     ) -> tuple[Ids, Ids]:
         """ids and pixel_weight (h,w) over the region, given the predicted id map and where its vertices
         are (buffers of this segmenter).
 
-        doubted: colours (0..9) whose place is in doubt. When the shirt is badly classified, or much
+        uncertain: colours (0..9) whose place is uncertain. When the shirt is badly classified, or much
         worse than usual, other lights are tried and the best is kept: the light that carries the
         known colours to what is seen where they are expected, and each reference illumination.
         """
         p, memory = self.params, self.memory
         rendered = int(np.count_nonzero(predicted))
         prior = p.prior_weight / (1.6 * np.sqrt(rendered) + 1.0)
-        divisor = _NO_DOUBT.copy()
-        divisor[doubted] = 3
+        divisor = _ALL_CERTAIN.copy()
+        divisor[uncertain] = 3
         distance = self._distances(
             predicted, outline, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )

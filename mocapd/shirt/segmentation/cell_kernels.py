@@ -61,7 +61,7 @@ def colour_distances(
     A cell holds a colour when one of its pixels of `ids` (h,w) at even places does, or when the
     middle of one of the triangles `sleeves` (S,) is there, seen or hidden: an arm may come out from
     behind the body. xy (V,2) px of the vertices; colour (T,) of the triangles. Each colour's
-    distance is divided by its `divisor` (10,): a colour whose place is in doubt is looked for
+    distance is divided by its `divisor` (10,): a colour whose place is uncertain is looked for
     farther away. limit [cells].
     """
     h, w = ids.shape

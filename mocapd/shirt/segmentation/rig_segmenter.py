@@ -53,12 +53,12 @@ class RigSegmenter:
         return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
     def views(
-        self, state: MotionState, present: dict[int, float], doubted: tuple[str, ...] = ()
+        self, state: MotionState, present: dict[int, float], uncertain: tuple[str, ...] = ()
     ) -> list[View]:
-        """Classify every picture with the state as prior; `doubted`: arms that are looked for farther away."""
+        """Classify every picture with the state as prior; `uncertain`: arms that are looked for farther away."""
         p = self._params
-        margin = p.doubt_margin_px if doubted else p.margin_px
-        colours = _colours_of(doubted)
+        margin = p.uncertain_margin_px if uncertain else p.margin_px
+        colours = _colours_of(uncertain)
         views = []
         for i, dt_s in present.items():
             drawing = self._fitter.drawings[i]
@@ -103,7 +103,7 @@ class RigSegmenter:
 
 
 def _colours_of(sides: tuple[str, ...]) -> Ints:
-    """The colours (0..9) of the sleeves in doubt."""
+    """The colours (0..9) of the sleeves that are uncertain."""
     if not sides:
         return np.empty(0, np.int64)
     colours = [standard_shirt().colour_of_patch[SLEEVE_PATCHES[side]] for side in sides]

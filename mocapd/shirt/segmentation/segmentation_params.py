@@ -8,7 +8,7 @@ class SegmentationParams:
     """Parameters of a camera's segmentation; work pixels are those of frames averaged down."""
 
     margin_px: int = 22  # looked at around the predicted body [work px]
-    doubt_margin_px: int = 50  # the same while an arm is in doubt
+    uncertain_margin_px: int = 50  # the same while an arm is uncertain
 
     # classification, paper section 5.2; thresholds are lower than the paper's 3 and 5 because the
     # spread admits shade and noise

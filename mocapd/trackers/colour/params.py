@@ -37,8 +37,10 @@ class Params:
     accept_match: float = 0.58  # the same, to accept a new pose
     accept_colours: int = 5  # colours that must be confirmed to accept a new pose
     min_shirt_px: int = 120  # confirmed work px, all cameras together
-    doubt_match: float = 0.6  # under this agreement the shirt is looked for anew beside tracking
-    doubt_pause_s: float = 0.4  # between such looks
-    doubt_gain: float = 0.05  # by how much the agreement must be better to change over
+    uncertain_match: float = (
+        0.6  # under this agreement the shirt is looked for anew beside tracking
+    )
+    uncertain_pause_s: float = 0.4  # between such looks
+    uncertain_gain: float = 0.05  # by how much the agreement must be better to change over
     search_pause_s: float = 0.1  # between attempts that failed
     neighbours: int = 6  # of the pose database, per camera

@@ -12,7 +12,7 @@ from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import work_factors
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.limb_search import ArmSearch, confirmed, doubtful
+from mocapd.fit.limb_search import ArmSearch, confirmed, is_uncertain
 from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
@@ -136,7 +136,11 @@ class ColourTracker:
         views: list[View] = []
         if known is not None and present:
             known, views = self._follow(known, present, frames)
-        if present and frames.t_ns >= self._next_search_ns and self._doubtful(known, frames.t_ns):
+        if (
+            present
+            and frames.t_ns >= self._next_search_ns
+            and self._is_uncertain(known, frames.t_ns)
+        ):
             known, views = self._search(known, views, present, frames)
             self.probe("detect")
         evidence = known is not None and known.t_ns == frames.t_ns
@@ -164,8 +168,8 @@ class ColourTracker:
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
         root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
-        doubted = tuple(s for s in SIDES if doubtful(s, known.fit, p.limbs))
-        views = self._segmenters.views(predicted, present, doubted)
+        uncertain = tuple(s for s in SIDES if is_uncertain(s, known.fit, p.limbs))
+        views = self._segmenters.views(predicted, present, uncertain)
         self.probe("classify")
         if not views:
             return known, views
@@ -178,7 +182,7 @@ class ColourTracker:
         self.probe("fit")
         before = fit
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
-        self._redraw = fit is not before or any(doubtful(s, before, p.limbs) for s in SIDES)
+        self._redraw = fit is not before or any(is_uncertain(s, before, p.limbs) for s in SIDES)
         self.probe("arms")
         match = fit.match
         # every second pixel was counted
@@ -203,11 +207,11 @@ class ColourTracker:
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
-    def _doubtful(self, known: _Known | None, t_ns: int) -> bool:
+    def _is_uncertain(self, known: _Known | None, t_ns: int) -> bool:
         """Whether to look for the wearer anew: nobody is known, or what is known agrees badly."""
         if known is None or known.t_ns != t_ns:
             return True
-        return known.fit.match < self.params.doubt_match
+        return known.fit.match < self.params.uncertain_match
 
     def _search(
         self,
@@ -218,7 +222,7 @@ class ColourTracker:
     ) -> tuple[_Known | None, list[View]]:
         """Look for the wearer from nothing; what is already known stands unless something better is found."""
         p = self.params
-        pause_s = p.search_pause_s if known is None else p.doubt_pause_s
+        pause_s = p.search_pause_s if known is None else p.uncertain_pause_s
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
         before = [segmenter.memory.appearance for segmenter in self._segmenters.each]
         views = [replace(v, ids=v.ids.copy(), pixel_weight=v.pixel_weight.copy()) for v in views]
@@ -226,7 +230,7 @@ class ColourTracker:
         if found is not None:
             fit, seen = found
             held = known.fit if known is not None and known.t_ns == frames.t_ns else None
-            if held is None or fit.match > held.match + p.doubt_gain:
+            if held is None or fit.match > held.match + p.uncertain_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
                 return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen

@@ -170,19 +170,19 @@ class WearerRoom:
         if self._refusal is not None:
             return StepState.FAILED, "Press “Start” to try again, or use the board.", 0.0
         if self._found is not None:
-            return StepState.DONE, f"The room is known{self._doubt()}. Go on.", 1.0
+            return StepState.DONE, f"The room is known{self._uncertainty()}. Go on.", 1.0
         return (
             StepState.WAITING,
             "Press “Start”, then walk about in the shirt for half a minute: turn, and move the arms.",
             0.0,
         )
 
-    def _doubt(self) -> str:
+    def _uncertainty(self) -> str:
         """How well, twice the standard deviations of the camera that is known worst."""
         assert self._found is not None
-        doubts = self._found.report.doubts.values()
-        turn_deg = 2.0 * max(one.rotation_deg for one in doubts)
-        percent = 2.0 * max(one.distance_percent for one in doubts)
+        uncertainties = self._found.report.uncertainties.values()
+        turn_deg = 2.0 * max(one.rotation_deg for one in uncertainties)
+        percent = 2.0 * max(one.distance_percent for one in uncertainties)
         return f" to about {turn_deg:.0f}° and {percent:.0f} %"
 
     def _problems(self) -> tuple[Problem, ...]:
@@ -213,10 +213,11 @@ class WearerRoom:
                     name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()
                 },
                 "rotation_deg": {
-                    name: round(one.rotation_deg, 2) for name, one in report.doubts.items()
+                    name: round(one.rotation_deg, 2) for name, one in report.uncertainties.items()
                 },
                 "distance_percent": {
-                    name: round(one.distance_percent, 2) for name, one in report.doubts.items()
+                    name: round(one.distance_percent, 2)
+                    for name, one in report.uncertainties.items()
                 },
                 "match": round(report.match, 3),
             }
