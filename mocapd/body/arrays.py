@@ -88,7 +88,7 @@ def camera_arrays(camera: Camera) -> CameraArrays:
     )  # fmt: skip
 
 
-def pinhole_arrays(camera: CameraArrays, factor: float) -> PinholeArrays:
-    """The same without the lens' distortion, for pictures averaged down by `factor`."""
-    fx, fy = float(camera.K[0, 0]) / factor, float(camera.K[1, 1]) / factor
+def pinhole_arrays(camera: CameraArrays, image_scale: float) -> PinholeArrays:
+    """The same without the lens' distortion, for pictures averaged down by `image_scale`."""
+    fx, fy = float(camera.K[0, 0]) / image_scale, float(camera.K[1, 1]) / image_scale
     return PinholeArrays(camera.R, camera.t, fx, fy)

@@ -28,7 +28,7 @@ from mocapd.evaluate.roc import (
     sweep_assisted,
 )
 from mocapd.evaluate.truth import labelled_frames, read_label
-from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.colour.colour_model import ColourModel
@@ -82,7 +82,7 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     folder = result.case.folder
     shirt = from_capture(folder).shirt or ShirtColours()
     params, colours = Params(), colour_model(shirt.model)
-    factors = work_factors(folder.rig.cameras, params.fit.work_width_px)
+    factors = image_scales(folder.rig.cameras, params.fit.work_width_px)
     eyes: dict[str, _Eye] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
         strokes = shirt.white_balance.get(camera.name)

@@ -20,7 +20,7 @@ _MAX_SIDE_PX = 480  # of a work picture
 _MAX_WORK_PX = _MAX_SIDE_PX**2
 
 
-def work_factors(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
+def image_scales(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
     """By how much each camera's frames are averaged down to work pictures about `work_width_px` wide.
 
     Pictures that are upright or of odd sizes come out smaller, so that they fit into the buffers.
@@ -54,12 +54,12 @@ class Outline:
 class IdMapRenderer:
     """Draws one body into one camera. Results are in its own buffers, until the next drawing."""
 
-    def __init__(self, shaper: Shaper, camera: Camera, factor: int) -> None:
-        """factor: by how much the camera's frames are averaged down to work pictures."""
+    def __init__(self, shaper: Shaper, camera: Camera, image_scale: int) -> None:
+        """image_scale: by how much the camera's frames are averaged down to work pictures."""
         self.model: BodyModel = shaper.model
-        self.camera, self.factor, self._shaper = camera, factor, shaper
+        self.camera, self.image_scale, self._shaper = camera, image_scale, shaper
         self.projection = camera_arrays(camera)
-        self.pinhole = pinhole_arrays(self.projection, factor)
+        self.pinhole = pinhole_arrays(self.projection, image_scale)
         self.posed = PosedJoints(
             self.model.rest_m,
             np.zeros((N_JOINTS, 3, 3)),
@@ -77,7 +77,10 @@ class IdMapRenderer:
 
     def region(self, state: MotionState, dt_s: float, margin: int) -> Roi | None:
         """The work-picture region around the body as this camera sees it; None when it is not in view."""
-        w, h = self.camera.size_px[0] // self.factor, self.camera.size_px[1] // self.factor
+        w, h = (
+            self.camera.size_px[0] // self.image_scale,
+            self.camera.size_px[1] // self.image_scale,
+        )
         body = self._shaper(state.factors)
         self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
         seen = self._depth > 0.2
@@ -162,11 +165,11 @@ class IdMapRenderer:
         return zbuffer
 
     def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
-        factor, m = self.factor, self.model
+        image_scale, m = self.image_scale, self.model
         if self.posed.rest is not body.rest:
             self.posed = self.posed._replace(rest=body.rest)
         pose_and_project(
             m.parents, root_m, local_xyzw, plain(self.posed), body.vertices, plain(m.skin), plain(self.projection),
-            np.array([float(roi[0] * factor), float(roi[1] * factor)]), 1.0 / factor,
+            np.array([float(roi[0] * image_scale), float(roi[1] * image_scale)]), 1.0 / image_scale,
             self.xy, self._depth,
         )  # fmt: skip

@@ -123,10 +123,10 @@ def best_arm_poses(
     for view in views:
         drawing = fitter.drawings[view.index]
         base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
-        factor = drawing.factor
+        image_scale = drawing.image_scale
         score_arms(
             hypotheses, samples, model.parents, base.posed, drawing.projection,
-            np.array([float(view.roi[0] * factor), float(view.roi[1] * factor)]), 1.0 / factor,
+            np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
             base.zbuffer, view.ids, view.pixel_weight, scores,
         )  # fmt: skip
     out: list[MotionState] = []

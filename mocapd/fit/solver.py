@@ -97,13 +97,17 @@ class Fitter:
     """Buffers and constants for fitting one body in one rig; holds no state between calls."""
 
     def __init__(
-        self, model: BodyModel, cameras: Sequence[Camera], factors: Sequence[int], params: FitParams
+        self,
+        model: BodyModel,
+        cameras: Sequence[Camera],
+        image_scales: Sequence[int],
+        params: FitParams,
     ) -> None:
-        """`factors`: by how much each camera's frames are averaged down to work pictures."""
+        """`image_scales`: by how much each camera's frames are averaged down to work pictures."""
         self.model, self.params = model, params
         self.shaper = Shaper(model)
         self.drawings = [
-            IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, factors, strict=True)
+            IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, image_scales, strict=True)
         ]
         self._rows = [CameraRows(model) for _ in cameras]
         self._offsets = offsets_by_distance(params.first_radius_px)

@@ -30,7 +30,7 @@ def behind_a_board(n_cameras: int) -> Fit:
     views: list[View] = []
     for view in views_of(by, state):
         drawing = by.drawings[view.index]
-        shoulder, wrist = project(drawing.camera, arm)[:, 0] / drawing.factor
+        shoulder, wrist = project(drawing.camera, arm)[:, 0] / drawing.image_scale
         x = np.arange(view.roi[0], view.roi[2])
         beyond = x < shoulder if wrist < shoulder else x > shoulder
         ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()

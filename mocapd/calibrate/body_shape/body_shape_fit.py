@@ -16,7 +16,7 @@ from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import BodyRows, RowGatherer
 from mocapd.clock import seconds
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import (
     MotionState,
@@ -83,7 +83,7 @@ def moment_of(
     if body.pose is None or not track.evidence:
         return None
     index = {camera.name: i for i, camera in enumerate(cameras)}
-    work = work_factors(cameras, FitParams().work_width_px)
+    work = image_scales(cameras, FitParams().work_width_px)
     views = []
     for name, ids in track.evidence.items():
         i = index[name]
@@ -116,7 +116,7 @@ def fit_shape(
     """The proportions that agree best with all moments. Raises InputError when too few agree."""
     p = params if params is not None else ShapeParams()
     tracker = FitParams()
-    fitter = Fitter(model, cameras, work_factors(cameras, tracker.work_width_px), tracker)
+    fitter = Fitter(model, cameras, image_scales(cameras, tracker.work_width_px), tracker)
     gatherer = RowGatherer(fitter, p.radius_px)
     if len(moments) < p.fewest_moments:
         raise _too_few(len(moments), p)

@@ -16,7 +16,7 @@ from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import IdMapRenderer, work_factors
+from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
@@ -96,12 +96,12 @@ class LightReader:
     ) -> None:
         self._params = p = params if params is not None else Params()
         self._cameras, self._model, self._database = tuple(cameras), model, database
-        factors = work_factors(cameras, p.fit.work_width_px)
-        self._fitter = Fitter(build_model(stature_m), self._cameras, factors, p.fit)
+        scales = image_scales(cameras, p.fit.work_width_px)
+        self._fitter = Fitter(build_model(stature_m), self._cameras, scales, p.fit)
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._segmenters = [
             CameraSegmenter(c, f, model, np.eye(3), p.segmentation)
-            for c, f in zip(cameras, factors, strict=True)
+            for c, f in zip(cameras, scales, strict=True)
         ]
         self._precision = shade_precision(model)
 

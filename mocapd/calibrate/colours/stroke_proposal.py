@@ -100,20 +100,20 @@ def _proposal(
 ) -> Proposal:
     drawing, view = reader.drawing(index), reading.view
     rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
-    at = (view.roi[0] * drawing.factor, view.roi[1] * drawing.factor)
-    strokes = _enlarged(interiors(rendered, view.ids), drawing.factor, at, pixels)
+    at = (view.roi[0] * drawing.image_scale, view.roi[1] * drawing.image_scale)
+    strokes = _enlarged(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
     means, counts = stroke_means(pixels, strokes)
     W = solve_white_balance(means, model.mean, counts, precision=shade_precision(model))
     return Proposal(
         strokes, W, reading.agreement, reading.light,
-        _enlarged(rendered, drawing.factor, at, pixels),
+        _enlarged(rendered, drawing.image_scale, at, pixels),
         tuple(int(k) + 1 for k in np.flatnonzero(counts)),
     )  # fmt: skip
 
 
-def _enlarged(ids: Bytes, factor: int, at: tuple[int, int], pixels: Bytes) -> Bytes:
+def _enlarged(ids: Bytes, image_scale: int, at: tuple[int, int], pixels: Bytes) -> Bytes:
     """Ids of a region of the work picture (h,w) in the picture's own pixels (H,W)."""
     out = np.zeros(pixels.shape[:2], np.uint8)
-    large = np.repeat(np.repeat(ids, factor, axis=0), factor, axis=1)
+    large = np.repeat(np.repeat(ids, image_scale, axis=0), image_scale, axis=1)
     out[at[1] : at[1] + large.shape[0], at[0] : at[0] + large.shape[1]] = large
     return out

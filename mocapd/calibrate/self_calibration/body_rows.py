@@ -96,13 +96,13 @@ def mean_camera(cameras: Sequence[Camera]) -> Camera:
     return replace(cameras[0], R=R, t_m=t_m)
 
 
-def shift_px(rows: BodyRows, camera: Camera, factor: int) -> Floats:
+def shift_px(rows: BodyRows, camera: Camera, image_scale: int) -> Floats:
     """The way (2,) in work px that this camera alone would move the whole body.
 
     It tells of a camera that was turned across the plane of both views, and of no other turn.
     """
     way_m = np.linalg.solve(rows.H[:3, :3] + 1e-3 * np.eye(3), rows.b[:3])
     depth_m = float(camera.R[2] @ rows.at_m + camera.t_m[2])
-    focal_px = np.array([camera.K[0, 0], camera.K[1, 1]]) / factor
+    focal_px = np.array([camera.K[0, 0], camera.K[1, 1]]) / image_scale
     out: Floats = focal_px * (camera.R @ way_m)[:2] / max(depth_m, 0.2)
     return out

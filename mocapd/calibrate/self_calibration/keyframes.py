@@ -58,11 +58,11 @@ def choose(
     return [rated[max(part, key=lambda i: rated[i][0])][1] for part in parts]
 
 
-def views(keyframe: Keyframe, factors: Sequence[int]) -> list[View]:
+def views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     """What each camera saw, at its own instant."""
     out = []
     for i, s in keyframe.sightings.items():
-        x0, y0, x1, y1 = (edge // factors[i] for edge in s.roi_px)
+        x0, y0, x1, y1 = (edge // image_scales[i] for edge in s.roi_px)
         pixel_weight = np.full(s.ids.shape, _PIXEL_WEIGHT, np.uint8)
         out.append(View(i, (x0, y0, x1, y1), s.ids, pixel_weight, seconds(s.t_ns - keyframe.t_ns)))
     return out

@@ -30,7 +30,7 @@ class RingPairs:
 
 
 def ring_pairs(
-    moments: Sequence[Moment], pair: tuple[Camera, Camera], factors: tuple[int, int]
+    moments: Sequence[Moment], pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> RingPairs:
     """Of the moments in which both cameras saw the wearer; the second camera's rings are moved to
     the first's instants. The cameras stand about where `pair` says."""
@@ -39,8 +39,8 @@ def ring_pairs(
     n = len(picked)
     xy, half_m = np.full((2, n, 2 * N_ALONG, 2), np.nan), np.full((2, n, 2 * N_ALONG), np.nan)
     for row, k in enumerate(picked):
-        xy[0, row], half_m[0, row] = _rings(shared[k], 0, pair, factors)
-        second = _rings(shared[k], 1, pair, factors)
+        xy[0, row], half_m[0, row] = _rings(shared[k], 0, pair, scales)
+        second = _rings(shared[k], 1, pair, scales)
         ahead_ns = shared[k][pair[0].name].t_ns - shared[k][pair[1].name].t_ns
         if abs(ahead_ns) > _SAME_NS:
             other = int(k) + (1 if ahead_ns > 0 else -1)
@@ -50,7 +50,7 @@ def ring_pairs(
             share = ahead_ns / way_ns if way_ns else np.inf
             if not 0.0 <= share <= 1.0:
                 continue
-            beside = _rings(shared[other], 1, pair, factors)
+            beside = _rings(shared[other], 1, pair, scales)
             second = (
                 (1.0 - share) * second[0] + share * beside[0],
                 (1.0 - share) * second[1] + share * beside[1],
@@ -69,12 +69,12 @@ def ring_pairs(
 
 
 def _rings(
-    moment: Moment, i: int, pair: tuple[Camera, Camera], factors: tuple[int, int]
+    moment: Moment, i: int, pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> tuple[Floats, Floats]:
     """Of one of both cameras, as `sleeve_rings`."""
     sightings = [moment[camera.name] for camera in pair]
     joints_m = _arms_in_depth(sightings, pair)[i]
-    return sleeve_rings(sightings[i], joints_m, pair[i], factors[i])
+    return sleeve_rings(sightings[i], joints_m, pair[i], scales[i])
 
 
 def _arms_in_depth(sightings: Sequence[PatchSighting], pair: Sequence[Camera]) -> list[Floats]:

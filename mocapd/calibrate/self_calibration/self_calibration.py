@@ -23,7 +23,7 @@ from mocapd.calibrate.self_calibration.ring_bundle import placed_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import ring_pairs
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
-from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, stepped
 from mocapd.fit.solver import Fitter, View
@@ -119,10 +119,10 @@ def _with_rings(
 ) -> tuple[Rig, "RoomReport"]:
     """The same once every camera but the first has been weighed against the rings of the sleeves."""
     first = rig.cameras[0]
-    work = work_factors(rig.cameras, FitParams().work_width_px)
+    work = image_scales(rig.cameras, FitParams().work_width_px)
     cameras, uncertainties = [first], {}
-    for other, factor in zip(rig.cameras[1:], work[1:], strict=True):
-        pairs = ring_pairs(moments, (first, other), (work[0], factor))
+    for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
+        pairs = ring_pairs(moments, (first, other), (work[0], image_scale))
         known = surface_uncertainty**2 * covariances[other.name]
         camera, covariance = other, known
         if len(pairs.seen):
@@ -155,7 +155,7 @@ class RoomSolver:
     ) -> None:
         self._p, self._tracker = params, FitParams()
         self._body: FreeBody = free_body(model, params.off_sd_m)
-        self._work = work_factors(cameras, self._tracker.work_width_px)
+        self._work = image_scales(cameras, self._tracker.work_width_px)
         self._n_shape = len(self._body.sd)
         self._n = self._n_shape + N_CAMERA * (len(cameras) - 1)
         self._views: list[list[View]] = []

@@ -63,17 +63,17 @@ class _Window:
 
 
 def sleeve_rings(
-    sighting: PatchSighting, joints_m: Floats, lens: Camera, factor: int
+    sighting: PatchSighting, joints_m: Floats, lens: Camera, image_scale: int
 ) -> tuple[Floats, Floats]:
     """Middles (2 N_ALONG, 2) in undistorted normalised coordinates and half widths (2 N_ALONG,) [m],
     left arm first; NaN where a ring is not seen whole.
 
     joints_m (J,3): where the body is about, in the camera's frame; its arms' directions tell how a
-    ring bends. factor: frame px by work px.
+    ring bends. image_scale: frame px by work px.
     """
     xy, half_m = np.full((len(_RINGS), 2), np.nan), np.full(len(_RINGS), np.nan)
     alone = replace(lens, R=np.eye(3), t_m=np.zeros(3))
-    corner = np.array(sighting.roi_px[:2], dtype=np.float64) + (factor - 1) / 2
+    corner = np.array(sighting.roi_px[:2], dtype=np.float64) + (image_scale - 1) / 2
     for i, ring in enumerate(_RINGS):
         at_m, along = _place(ring, joints_m)
         tilt = float(along @ at_m) / max(float(np.linalg.norm(at_m)), 1e-9)
@@ -82,13 +82,13 @@ def sleeve_rings(
         px: Floats = project(alone, np.stack([at_m - 0.01 * along, at_m, at_m + 0.01 * along]))
         direction = px[2] - px[0]
         found = _find(
-            ring, sighting.ids, (px[1] - corner) / factor,
+            ring, sighting.ids, (px[1] - corner) / image_scale,
             direction / float(np.linalg.norm(direction)), tilt,
-            float(at_m[2]) / float(lens.K[0, 0]) * factor,
+            float(at_m[2]) / float(lens.K[0, 0]) * image_scale,
         )  # fmt: skip
         if found is not None:
             middle, half_m[i] = found
-            xy[i] = normalised(lens, (middle * factor + corner)[None])[0]
+            xy[i] = normalised(lens, (middle * image_scale + corner)[None])[0]
     return xy, half_m
 
 

@@ -73,7 +73,7 @@ class CameraSegmenter:
     """One camera. Buffers are its own; `memory` is all that it remembers."""
 
     camera: Camera
-    factor: int  # frames are averaged down by
+    image_scale: int  # frames are averaged down by
     model: ColourModel
     W: Floats  # of the strokes
     params: SegmentationParams
@@ -94,7 +94,9 @@ class CameraSegmenter:
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the work picture."""
-        return self.camera.size_px[0] // self.factor, self.camera.size_px[1] // self.factor
+        return self.camera.size_px[0] // self.image_scale, self.camera.size_px[
+            1
+        ] // self.image_scale
 
     def reset(self) -> None:
         """Forget everything but the strokes."""
@@ -113,7 +115,7 @@ class CameraSegmenter:
     def look(self, pixels: Bytes) -> None:
         """Take a frame (height,width,3): the work picture is its average over blocks."""
         w, h = self.size
-        crop = pixels[: h * self.factor, : w * self.factor]
+        crop = pixels[: h * self.image_scale, : w * self.image_scale]
         cv2.resize(crop, (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
         self.memory.looks += 1
 

@@ -32,7 +32,7 @@ class RigSegmenter:
         self._fitter, self._params = fitter, params
         self.each = [
             CameraSegmenter(
-                d.camera, d.factor, model,
+                d.camera, d.image_scale, model,
                 np.asarray(white_balance.get(d.camera.name, np.eye(3))), params,
             )
             for d in fitter.drawings
@@ -97,8 +97,8 @@ class RigSegmenter:
 
     def roi_px(self, view: View) -> Roi:
         """A view's region in pixels of the frame itself."""
-        factor = self.each[view.index].factor
-        x0, y0, x1, y1 = (factor * edge for edge in view.roi)
+        image_scale = self.each[view.index].image_scale
+        x0, y0, x1, y1 = (image_scale * edge for edge in view.roi)
         return x0, y0, x1, y1
 
 

@@ -47,8 +47,8 @@ def sight(
     return ShirtSighting(
         index,
         found,
-        (work + 0.5) * segmenter.factor - 0.5,
-        scale * SIZE * segmenter.factor,
+        (work + 0.5) * segmenter.image_scale - 0.5,
+        scale * SIZE * segmenter.image_scale,
         poses,
         distances,
     )

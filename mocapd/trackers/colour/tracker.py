@@ -10,7 +10,7 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
-from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.limb_search import ArmSearch, confirmed, is_uncertain
 from mocapd.fit.motion_state import (
@@ -77,7 +77,7 @@ class ColourTracker:
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
         model = build_model(stature_m)
-        smaller = work_factors(rig.cameras, p.fit.work_width_px)
+        smaller = image_scales(rig.cameras, p.fit.work_width_px)
         self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
         self._segmenters = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
         self._arm_columns = {side: model.space.columns(f"{side}_arm") for side in SIDES}

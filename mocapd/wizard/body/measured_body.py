@@ -8,7 +8,7 @@ from mocapd.body.shape import skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment
-from mocapd.fit.body_drawing import IdMapRenderer, work_factors
+from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.geometry.cameras import project
@@ -31,15 +31,17 @@ def body_picture(
     view = next((view for view in moment.views if view.index == index), None)
     if view is None:
         return out
-    factor = work_factors([camera], FitParams().work_width_px)[0]
-    drawing = IdMapRenderer(Shaper(model), camera, factor)
+    image_scale = image_scales([camera], FitParams().work_width_px)[0]
+    drawing = IdMapRenderer(Shaper(model), camera, image_scale)
     ids = drawing.render(state, view.dt_s, view.roi)
     at = np.array([view.roi[0], view.roi[1]])
     for colour in range(1, int(ids.max(initial=0)) + 1):
         lines, _ = cv2.findContours(
             (ids == colour).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE
         )
-        corners = [((line + at) * factor + factor // 2).astype(np.int32) for line in lines]
+        corners = [
+            ((line + at) * image_scale + image_scale // 2).astype(np.int32) for line in lines
+        ]
         cv2.polylines(out, corners, True, _OUTLINE_BGR, 1, cv2.LINE_AA)
     skeleton = skeleton_of(shape_of(model, state.factors))
     root, local = moved(model, state, view.dt_s)

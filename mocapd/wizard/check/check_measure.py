@@ -11,7 +11,7 @@ from mocapd.body.shape import FACTORS, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
 from mocapd.clock import nanoseconds, seconds
-from mocapd.fit.body_drawing import work_factors
+from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import Fitter, View
@@ -85,7 +85,7 @@ class MeasuredTracker:
         self._known = np.ones(len(FACTORS)) if factors is None else factors
         self._mean = skeleton_of(mean_shape(stature_m))
         params = FitParams()
-        self._work = work_factors(rig.cameras, params.work_width_px)
+        self._work = image_scales(rig.cameras, params.work_width_px)
         self._fitter = Fitter(build_model(stature_m), rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)
         self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
@@ -141,8 +141,8 @@ class MeasuredTracker:
         self, name: str, state: MotionState, track: Track, frames: FrameSet
     ) -> CameraMeasure:
         index = self._index[name]
-        factor, camera = self._work[index], self._rig.cameras[index]
-        x0, y0, x1, y1 = (edge // factor for edge in track.roi_px[name])
+        image_scale, camera = self._work[index], self._rig.cameras[index]
+        x0, y0, x1, y1 = (edge // image_scale for edge in track.roi_px[name])
         ids = np.ascontiguousarray(track.evidence[name])
         late_s = seconds(frames.frames[name].t_ns - frames.t_ns)
         view = View(index, (x0, y0, x1, y1), ids, np.zeros_like(ids), late_s)
