@@ -201,26 +201,6 @@ def skin_and_project(
 
 
 @njit(cache=True, nogil=True)
-def pose_and_project(
-    parents: Ints,
-    root: Array,
-    local: Array,
-    posed: PosedJoints,
-    vertices: Array,
-    skin: SkinArrays,
-    camera: CameraArrays,
-    offset: Array,
-    scale: float,
-    out_xy: Array,
-    out_depth: Array,
-) -> None:
-    """`forward_kinematics` of a body into `posed`, then `skin_and_project`."""
-    rest, R, joints, quats = posed
-    forward_kinematics(parents, rest, root, local, R, joints, quats)
-    skin_and_project(vertices, skin, posed, camera, offset, scale, out_xy, out_depth)
-
-
-@njit(cache=True, nogil=True)
 def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) -> None:
     """d posed joints / d factor: out (N,J,3) from d_rest (N,J,3); the root does not move."""
     for n in range(d_rest.shape[0]):
@@ -237,27 +217,30 @@ def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) 
 
 
 @njit(cache=True, nogil=True, fastmath=True)
-def surface_row(
+def surface_row_of_arrays(
     point: Array,
     point_bones: NDArray[np.int32],
     point_weights: Array,
     d_point: Array,
     g: Array,
-    articulation: Articulation,
-    posed: PosedJoints,
+    rest: Array,
+    parents: Ints,
+    joint_of_group: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    d_rest: Array,
     d_joints: Array,
+    n_shape: int,
     out: Array,
 ) -> None:
-    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + N), N being 0
-    where the shape does not matter.
+    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + n_shape).
 
     p is the surface point whose T-pose position is `point`; g (3,) in the world. The columns of
     rotation group g turn about the axes of the parent bone (geometric Jacobian).
     """
-    parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
-    rest, R, joints, _ = posed
     G = joint_of_group.shape[0]
-    n_shape = out.shape[0] - 3 - 3 * G
     for i in range(3):
         out[i] = g[0] if i == 0 else (g[1] if i == 1 else g[2])
     for k in range(3, 3 + 3 * G + n_shape):
@@ -304,3 +287,30 @@ def surface_row(
                 + g[1] * d_joints[n, bone, 1]
                 + g[2] * d_joints[n, bone, 2]
             )
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def surface_row(
+    point: Array,
+    point_bones: NDArray[np.int32],
+    point_weights: Array,
+    d_point: Array,
+    g: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
+    d_joints: Array,
+    out: Array,
+) -> None:
+    """Derivative of g . p by the pose step and the shape factors: out (3 + 3 G + N), N being 0
+    where the shape does not matter.
+
+    p is the surface point whose T-pose position is `point`; g (3,) in the world. The columns of
+    rotation group g turn about the axes of the parent bone (geometric Jacobian).
+    """
+    parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
+    rest, R, joints, _ = posed
+    surface_row_of_arrays(
+        point, point_bones, point_weights, d_point, g, rest, parents, joint_of_group, group_of_joint,
+        share_of_joint, R, joints, d_rest, d_joints, out.shape[0] - 3 - 3 * joint_of_group.shape[0],
+        out,
+    )  # fmt: skip

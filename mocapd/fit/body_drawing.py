@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
-from mocapd.body.posing_kernels import forward_kinematics, pose_and_project
+from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, moved
@@ -59,6 +59,7 @@ class IdMapRenderer:
         self.model: BodyModel = shaper.model
         self.camera, self.image_scale, self._shaper = camera, image_scale, shaper
         self.projection = camera_arrays(camera)
+        self._skin, self._projection = plain(self.model.skin), plain(self.projection)
         self.pinhole = pinhole_arrays(self.projection, image_scale)
         self.posed = PosedJoints(
             self.model.rest_m,
@@ -165,11 +166,12 @@ class IdMapRenderer:
         return zbuffer
 
     def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
-        image_scale, m = self.image_scale, self.model
-        if self.posed.rest is not body.rest:
-            self.posed = self.posed._replace(rest=body.rest)
-        pose_and_project(
-            m.parents, root_m, local_xyzw, plain(self.posed), body.vertices, plain(m.skin), plain(self.projection),
+        image_scale = self.image_scale
+        # in two calls: within one compiled function the second would be rounded otherwise, depending on
+        # what the cache of compiled code holds
+        self.pose(root_m, local_xyzw, body.rest)
+        skin_and_project(
+            body.vertices, self._skin, plain(self.posed), self._projection,
             np.array([float(roi[0] * image_scale), float(roi[1] * image_scale)]), 1.0 / image_scale,
             self.xy, self._depth,
         )  # fmt: skip

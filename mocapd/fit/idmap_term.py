@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import plain
+from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.body.model import BodyModel
+from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
 from mocapd.body.shirt import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
@@ -32,6 +33,42 @@ def search_within(
     return Search(offsets, radius_px, _ROBUST * radius_px, grid_px, every, phase, edge_weight)
 
 
+def sum_rows(
+    pictures: ComparedPictures,
+    search: Search,
+    xy: Floats,
+    surface: TriangleArrays,
+    centres: Floats,
+    articulation: Articulation,
+    posed: PosedJoints,
+    d_joints: Floats,
+    camera: PinholeArrays,
+    weight: float,
+    sums: AlignmentSums,
+) -> float:
+    """Fill the sums with a camera's rows; the summed robust cost.
+
+    xy (V,2): the vertices as drawn [px of the pictures]; centres (T,3) of the triangles in the T-pose;
+    weight: of a pixel's row. d_joints (N,J,3) is scratch. H has columns for the pose alone, or for pose
+    and shape.
+    """
+    for array in sums:
+        array[:] = 0.0
+    triangles, _, patch, bones, weights, d_centres, sleeves, sleeve_start = surface
+    parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
+    rest, R, joints, _ = posed
+    joint_shape_derivatives(parents, d_rest, R, d_joints)
+    n_shape = len(sums.b) - 3 - 3 * len(joint_of_group)
+    cost: float = accumulate(
+        *pictures, search.offsets, len(search.offsets), search.grid_px, search.radius_px,
+        search.robust_px, search.phase, search.every, search.edge_weight, xy,
+        triangles, sleeves, sleeve_start, patch, centres, d_centres, bones, weights,
+        rest, d_rest, parents, joint_of_group, group_of_joint, share_of_joint,
+        R, joints, d_joints, n_shape, *camera, weight, *sums,
+    )  # fmt: skip
+    return cost
+
+
 class CameraRows:
     """One camera's share of the normal equations: H (P,P), b (P,), counts (21,) per patch, cost."""
 
@@ -40,7 +77,6 @@ class CameraRows:
         H, b = np.zeros(P * P), np.zeros(P)
         self.visible, self.matched, self.unexplained = (np.zeros(N_LABELS) for _ in range(3))
         self._systems = {n: (H[: n * n].reshape(n, n), b[:n]) for n in (model.n_pose, P)}
-        self._tables = plain(model.surface), plain(model.articulation)
         self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))
         self.cost = 0.0
 
@@ -58,18 +94,14 @@ class CameraRows:
         n_shape: how many shape factors are columns after those of the pose, none or all. weight: of a
         pixel's row.
         """
-        surface, articulation = self._tables
+        m = drawing.model
         sums = AlignmentSums(
-            *self._systems[drawing.model.n_pose + n_shape],
-            self.visible,
-            self.matched,
-            self.unexplained,
+            *self._systems[m.n_pose + n_shape], self.visible, self.matched, self.unexplained
         )
-        self.cost = accumulate(
-            plain(pictures), plain(search),
-            drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy,
-            surface, body.centres, articulation, plain(drawing.posed), self._d_joints,
-            plain(drawing.pinhole), weight, plain(sums),
+        xy = drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy
+        self.cost = sum_rows(
+            pictures, search, xy, m.surface, body.centres, m.articulation, drawing.posed,
+            self._d_joints, drawing.pinhole, weight, sums,
         )  # fmt: skip
 
     def system(self, P: int) -> tuple[Floats, Floats]:

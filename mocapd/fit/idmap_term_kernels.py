@@ -12,8 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
-from mocapd.body.posing_kernels import joint_shape_derivatives, surface_row
+from mocapd.body.posing_kernels import surface_row_of_arrays
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
 
@@ -142,41 +141,60 @@ def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]
 
 @njit(cache=True, nogil=True, fastmath=True)
 def accumulate(
-    pictures: ComparedPictures,
-    search: Search,
+    model_ids: NDArray[np.uint8],
+    triangle_at: NDArray[np.int32],
+    image_ids: NDArray[np.uint8],
+    pixel_weight: NDArray[np.uint8],
+    offsets: NDArray[np.int32],
+    n_offsets: int,
+    grid_px: float,
+    radius_px: float,
+    robust_px: float,
+    phase: int,
+    every: int,
+    edge_weight: float,
     xy: Array,
-    surface: TriangleArrays,
+    triangles: NDArray[np.int32],
+    sleeves: Ints,
+    sleeve_start: Ints,
+    patch: NDArray[np.uint8],
     centres: Array,
-    articulation: Articulation,
-    posed: PosedJoints,
+    d_centres: Array,
+    triangle_bones: NDArray[np.int32],
+    triangle_weights: Array,
+    rest: Array,
+    d_rest: Array,
+    parents: Ints,
+    joint_of_group: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
     d_joints: Array,
-    camera: PinholeArrays,
+    n_shape: int,
+    cam_R: Array,
+    cam_t: Array,
+    fx: float,
+    fy: float,
     weight: float,
-    sums: AlignmentSums,
+    H: Array,
+    b: Array,
+    visible: Array,
+    matched: Array,
+    unexplained: Array,
 ) -> float:
-    """Fill the sums with this camera's rows; return the summed robust cost.
+    """Add this camera's rows to H (P,P) and b (P,); return the summed robust cost.
 
-    xy (V,2): the vertices as drawn [px of the pictures]; centres (T,3) of the triangles in the T-pose;
-    weight: of a pixel's row. d_joints (N,J,3) is scratch. H has columns for the pose alone, or for pose
-    and shape.
+    So many plain arguments on purpose: taken as named tuples, the compiler sums in another order, and
+    what differs in the last digit is centimetres a second later, where an arm is hidden.
+    The four pictures (h,w) are grids of `grid_px` work px; lengths, fx and fy are in work px.
+    pixel_weight: weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for sure
+    background, less where something may hide the shirt). visible, matched (21,): rendered pixels
+    and those whose colour the picture has there, per patch; unexplained (21,): per patch, picture
+    pixels drawn to it; all in units of two work px. `every` 1: all pixels of the grid are looked
+    at; 2: one colour of its checkerboard, given by `phase`. offsets[:n_offsets] are those within
+    radius_px.
     """
-    model_ids, triangle_at, image_ids, pixel_weight = pictures
-    offsets, radius_px, robust_px, grid_px, every, phase, edge_weight = search
-    triangles, _, patch, triangle_bones, triangle_weights, d_centres, sleeves, sleeve_start = (
-        surface
-    )
-    rest, R, joints, _ = posed
-    cam_R, cam_t, fx, fy = camera
-    H, b, visible, matched, unexplained = sums
-    H[:] = 0.0
-    b[:] = 0.0
-    visible[:] = 0.0
-    matched[:] = 0.0
-    unexplained[:] = 0.0
-    parents, _, _, joint_of_group, d_rest = articulation
-    if b.shape[0] > 3 + 3 * joint_of_group.shape[0]:
-        joint_shape_derivatives(parents, d_rest, R, d_joints)
-    n_offsets = offsets.shape[0]
     h, w = model_ids.shape
     P = H.shape[0]
     row = np.empty(P)
@@ -281,15 +299,22 @@ def accumulate(
                 uz = -(ux * cx + uy * cy) / cz
                 for c in range(3):
                     g[c] = cam_R[0, c] * ux + cam_R[1, c] * uy + cam_R[2, c] * uz
-                surface_row(
+                surface_row_of_arrays(
                     point,
                     triangle_bones[t],
                     triangle_weights[t],
                     d_centres[:, t],
                     g,
-                    articulation,
-                    posed,
+                    rest,
+                    parents,
+                    joint_of_group,
+                    group_of_joint,
+                    share_of_joint,
+                    R,
+                    joints,
+                    d_rest,
                     d_joints,
+                    n_shape,
                     row,
                 )
                 scale = np.sqrt(row_weight)

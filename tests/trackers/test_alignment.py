@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.arrays import PinholeArrays, plain
+from mocapd.body.arrays import PinholeArrays
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.idmap_term import sum_rows
 from mocapd.fit.idmap_term_kernels import (
     AlignmentSums,
     ComparedPictures,
     Search,
-    accumulate,
     colours_in_reach,
     offsets_by_distance,
 )
@@ -63,12 +63,12 @@ def accumulated(
     camera, offsets = CAMERAS[0], offsets_by_distance(20)
     within = int(((offsets.astype(int) ** 2).sum(axis=1) <= (RADIUS_PX / grid_px) ** 2).sum())
     fx, fy = (float(grid_px * camera.K[i, i] / COARSE) for i in (0, 1))
-    out.cost = accumulate(
-        plain(ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, pixel_weight)),
-        plain(Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, edge_weight)),
-        drawn.xy, plain(MODEL.surface), Shaper(MODEL)(state.factors).centres, plain(MODEL.articulation),
-        plain(drawn.joints), d_joints, plain(PinholeArrays(camera.R, camera.t_m, fx, fy)), WEIGHT,
-        plain(AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained)),
+    out.cost = sum_rows(
+        ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, pixel_weight),
+        Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, edge_weight),
+        drawn.xy, MODEL.surface, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
+        drawn.joints, d_joints, PinholeArrays(camera.R, camera.t_m, fx, fy), WEIGHT,
+        AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained),
     )  # fmt: skip
     return out
 
