@@ -118,6 +118,8 @@ def _alone(
             if host.saved and until_s == float("inf"):
                 until_s = time.monotonic() + STAY_S
                 print(_what_next(config.state_dir, options), flush=True)
+        if host.saved and until_s == float("inf"):  # ended in the moment it was saved
+            print(_what_next(config.state_dir, options), flush=True)
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR
