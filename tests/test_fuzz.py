@@ -1,4 +1,4 @@
-"""A short run of the fuzzers: a fiftieth of every row's inputs ends in values and named errors only."""
+"""A short run of the fuzzers: a hundredth of every row's inputs ends in values and named errors only."""
 
 import os
 import subprocess
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.conftest import ROOT
 
-_SCALE = "0.02"
+_SCALE = "0.01"
 
 
 def test_no_input_ends_in_an_unnamed_error(clean_env: dict[str, str], cache_home: Path) -> None:
