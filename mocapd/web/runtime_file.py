@@ -48,7 +48,7 @@ class Place:
 
 class _Said(msgspec.Struct, frozen=True):
     port: Annotated[int, Meta(ge=1, le=65535)]
-    token: Annotated[str, Meta(pattern=r"^[\w-]{1,200}$")]
+    token: Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,200}$")]
     pid: Annotated[int, Meta(ge=1, le=2**31)]
     state_dir: str
     instance: str
