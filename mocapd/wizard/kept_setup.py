@@ -6,7 +6,6 @@ PNG. Only its user may read it, as pictures show the wearer; passwords of camera
 
 import hashlib
 import math
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -149,10 +148,8 @@ def write_kept(path: Path, kept: KeptSetup) -> None:
         )
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with whole_file(path) as partial:
-            made = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-            with os.fdopen(made, "wb") as file:
-                file.write(data)
+        with whole_file(path, private=True) as partial:
+            partial.write_bytes(data)
     except OSError as error:
         raise CannotCreateError(
             f"cannot be written ({error.strerror})", str(path), "make room or the folder writable"
