@@ -1,6 +1,5 @@
 """The composition root: cameras, pipeline and outputs put together, started, and stopped in two passes."""
 
-import itertools
 import threading
 import time
 from collections.abc import Mapping
@@ -10,11 +9,9 @@ from types import TracebackType
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
-from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError
 from mocapd.outputs.base import Sink, SinkStatus
-from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.osc.osc_sink import OscSink
 from mocapd.outputs.zenoh import keys
@@ -28,6 +25,7 @@ from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.service.health import camera_message, health_message
 from mocapd.service.mountings import Mountings
+from mocapd.service.publisher import Publisher
 from mocapd.session.session import Session
 from mocapd.types import BodyState, FrameSet, Skeleton
 
@@ -85,7 +83,7 @@ class Daemon:
             self.died,
             _absence(config, session),
         )
-        self._seq = itertools.count()
+        self._publisher = Publisher(self._sinks, self.instance)
         self._ended = threading.Event()
         self._death: BaseException | None = None
         self._opened = ExitStack()
@@ -101,10 +99,11 @@ class Daemon:
             self._opened = opened.pop_all()
         self._started_unix_ns = time.time_ns()
         rig = self._session.rig
-        if self._zenoh and rig:
-            self._zenoh.set_state(
+        if rig:
+            self._publisher.tell(
                 calibration_info(rig, instance=self.instance, source=self._session.rig_source)
             )
+        self._publisher.begin(self._session.tracker.skeleton, self._session.stature_m)
         self._loop.start()
         for capture in self._captures:
             capture.start()
@@ -162,11 +161,9 @@ class Daemon:
         )
 
     def tell(self, snapshot: Snapshot) -> None:
-        """Look after the cameras, then health and camera status to Zenoh; call it about once a second."""
+        """Look after the cameras, then health and camera status to the outputs; call it about once a second."""
         self._mountings.look()
-        if self._zenoh is None:
-            return
-        self._zenoh.set_state(
+        self._publisher.tell(
             health_message(
                 self.instance,
                 self._started_unix_ns,
@@ -176,7 +173,7 @@ class Daemon:
             )
         )
         for name, status in snapshot.cameras.items():
-            self._zenoh.set_state(
+            self._publisher.tell(
                 camera_message(
                     self.instance,
                     self._inputs[name],
@@ -186,18 +183,9 @@ class Daemon:
                 )
             )
 
-    def _publish(self, body: BodyState, skeleton: Skeleton, _frames: FrameSet) -> None:
+    def _publish(self, body: BodyState, skeleton: Skeleton, frames: FrameSet) -> None:
         self.newest = body, skeleton
-        frame = skeleton_frame(
-            body,
-            skeleton,
-            instance=self.instance,
-            seq=next(self._seq),
-            publish_monotonic_ns=monotonic_ns(),
-            unix_from_monotonic_ns=unix_from_monotonic_ns(),
-        )
-        for sink in self._sinks:
-            sink.send(frame)
+        self._publisher.publish(body, skeleton, frames)
 
 
 def _absence(config: Config, session: Session) -> Absence | None:

@@ -21,7 +21,7 @@ from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_siz
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
 from mocapd.session.tracker_setup import Progress, cached, ready_tracker
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Tracker, stature_m
 from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
@@ -32,12 +32,13 @@ SIM = "sim:"  # the renderer is imported for such cameras only: it takes a secon
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Session:
-    """`rig_source`: the file or scenario that the rig is from, for people."""
+    """`rig_source`: the file or scenario that the rig is from, for people; `stature_m`: the wearer's [m]."""
 
     cameras: tuple[CameraInput, ...]
     rig: Rig | None
     rig_source: str
     tracker: Tracker
+    stature_m: float
 
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
@@ -75,9 +76,10 @@ def open_session(config: Config, progress: Progress) -> Session:
         folder = load_folder(Path(origin))
         known = from_capture(folder).overlaid(known)
         rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
-    return Session(
-        camera_inputs(cameras, rig), rig, rig_source, _ready_tracker(config, known, progress)
-    )
+    inputs = camera_inputs(cameras, rig)
+    known = known.assuming(config.tracker.stature_m)
+    tracker = _ready_tracker(config, known, progress)
+    return Session(inputs, rig, rig_source, tracker, stature_m(known))
 
 
 def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
@@ -113,10 +115,11 @@ def _simulated(config: Config, source: str, saved: Saved | None, progress: Progr
         known = simulation.from_scenario(film.setup).overlaid(known)
     else:
         rig_source = str(saved.path)
+    known = known.assuming(config.tracker.stature_m)
     tracker = _ready_tracker(config, known, progress)
     # last, as they begin to play now
     cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, known.rig, rig_source, tracker)
+    return Session(cameras, known.rig, rig_source, tracker, stature_m(known))
 
 
 def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Tracker:
@@ -124,7 +127,7 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Tr
     own = config.tracker
     return ready_tracker(
         own.name,
-        known.assuming(own.stature_m),
+        known,
         cached(config.cache_dir, progress, own),
         own.variant,
         partial(progress, "preparing the tracker"),

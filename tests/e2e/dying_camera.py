@@ -30,7 +30,7 @@ def main() -> int:
     """The daemon's exit code."""
     config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
     tracker = CannedTracker(standard_skeleton(1.75))
-    session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker)
+    session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker, 1.75)
     return run_daemon(Daemon(config, session), Signals()) or 0
 
 

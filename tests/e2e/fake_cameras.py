@@ -62,7 +62,7 @@ def daemon_on(*cameras: FakeCamera, osc_port: int) -> Daemon:
         state_dir=Path("/nonexistent"),
     )
     inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)
-    return Daemon(config, Session(inputs, None, "", StrictTracker(standard_skeleton(1.75))))
+    return Daemon(config, Session(inputs, None, "", StrictTracker(standard_skeleton(1.75)), 1.75))
 
 
 class StrictTracker(CannedTracker):

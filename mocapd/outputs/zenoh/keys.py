@@ -40,6 +40,11 @@ def calibration(instance: str) -> str:
     return f"{ROOT}/{instance}/calibration"
 
 
+def rest_skeleton(instance: str, person: int | str) -> str:
+    """State: `messages.RestSkeleton`. Not below the frames' key: who takes `skeleton/**` wants frames."""
+    return f"{ROOT}/{instance}/rest_skeleton/{person}"
+
+
 def schema(instance: str, name: str) -> str:
     """The JSON schema of one message."""
     return f"{ROOT}/{instance}/schema/{name}"
