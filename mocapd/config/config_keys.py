@@ -25,6 +25,19 @@ _LONGEST_SHOWN = 200  # characters of a value in an error
 
 
 @dataclass(frozen=True, slots=True)
+class SectionTable:
+    """Marks a field that holds sections by name, `Mapping[str, Any]`: what there is may be configured without
+    a line here. In a file they stand beside the field's section's own keys, not under the field's name."""
+
+    sections: Callable[[], Mapping[str, Any]]
+
+    def built(self, values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+        """Every section of the table, from the values of keys by path."""
+        table = self.sections()
+        return {name: build(one, values, f"{prefix}{name}.") for name, one in table.items()}
+
+
+@dataclass(frozen=True, slots=True)
 class Key:
     """One key. `default_text` replaces a default that differs from machine to machine."""
 
@@ -47,6 +60,11 @@ def keys_of(section: Any, prefix: str = "") -> Iterator[Key]:
     words = _docstring_words(section)
     for field in fields(section):
         annotation, path = hints[field.name], prefix + field.name
+        table = _table(annotation)
+        if table is not None:
+            for name, one in table.sections().items():
+                yield from keys_of(one, f"{prefix}{name}.")
+            continue
         if is_dataclass(annotation):
             yield from keys_of(annotation, f"{path}.")
             continue
@@ -74,7 +92,10 @@ def build(section: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
     chosen = {}
     for field in fields(section):
         path = prefix + field.name
-        if is_dataclass(hints[field.name]):
+        table = _table(hints[field.name])
+        if table is not None:
+            chosen[field.name] = table.built(values, prefix)
+        elif is_dataclass(hints[field.name]):
             chosen[field.name] = build(hints[field.name], values, f"{path}.")
         elif path in values:
             chosen[field.name] = values[path]
@@ -213,6 +234,11 @@ def _item_section(annotation: Any) -> Any:
     bare = _bare(annotation)
     args = get_args(bare)
     return args[0] if get_origin(bare) is tuple and args and is_dataclass(args[0]) else None
+
+
+def _table(annotation: Any) -> SectionTable | None:
+    extras = annotation.__metadata__ if get_origin(annotation) is Annotated else ()
+    return next((extra for extra in extras if isinstance(extra, SectionTable)), None)
 
 
 def _meta(annotation: Any) -> Meta:

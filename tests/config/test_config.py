@@ -2,10 +2,15 @@
 
 import subprocess
 import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated, Any
 
 import pytest
+from msgspec import Meta
 
+from mocapd.config.config_keys import SectionTable, build, keys_of
 from mocapd.config.effective import Effective, load_config
 from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
@@ -216,3 +221,36 @@ def test_reading_the_configuration_loads_no_numba() -> None:
     """Numba reads where its cache is while it is imported, and the configuration says where."""
     code = "import sys, mocapd.config.effective; sys.exit('numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@dataclass(frozen=True)
+class _Colour:
+    """learn: whether it learns"""
+
+    learn: bool = True
+
+
+@dataclass(frozen=True)
+class _Waves:
+    count: Annotated[int, Meta(ge=1)] = 6
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    name: str = "colour"
+    own: Annotated[
+        Mapping[str, Any], SectionTable(lambda: {"colour": _Colour, "canned": _Waves})
+    ] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Whole:
+    tracker: _Chosen = field(default_factory=_Chosen)
+
+
+def test_sections_of_a_table_stand_beside_the_keys_of_the_section_that_holds_them() -> None:
+    keys = {key.path: key for key in keys_of(_Whole)}
+    assert list(keys) == ["tracker.name", "tracker.colour.learn", "tracker.canned.count"]
+    assert keys["tracker.colour.learn"].help == "whether it learns"
+    whole = build(_Whole, {"tracker.name": "canned", "tracker.canned.count": 3})
+    assert whole.tracker.own == {"colour": _Colour(), "canned": _Waves(3)}
