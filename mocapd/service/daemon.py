@@ -17,6 +17,7 @@ from mocapd.outputs.osc.osc_sink import OscSink
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from mocapd.pipeline.absence import Absence
+from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import PipelineLoop
@@ -27,7 +28,6 @@ from mocapd.service.health import camera_message, health_message
 from mocapd.service.mountings import Mountings
 from mocapd.service.publisher import Publisher
 from mocapd.session.session import Session
-from mocapd.types import BodyState, FrameSet, Skeleton
 
 STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
 
@@ -64,6 +64,8 @@ class Daemon:
         self.instance = (
             self._zenoh.instance if self._zenoh else config.instance or keys.default_instance()
         )
+        self._publisher = Publisher(self._sinks, self.instance)
+        self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
         self._session = session
         self._inputs = {camera.source.name: camera for camera in session.cameras}
         self._collector = FrameCollector(self._inputs)
@@ -79,16 +81,14 @@ class Daemon:
             self._collector,
             session.tracker,
             smoother,
-            self._publish,
+            self.bodies,
             self.died,
             _absence(config, session),
         )
-        self._publisher = Publisher(self._sinks, self.instance)
         self._ended = threading.Event()
         self._death: BaseException | None = None
         self._opened = ExitStack()
         self._started_unix_ns = 0
-        self.newest: tuple[BodyState, Skeleton] | None = None  # published; replaced whole
 
     def __enter__(self) -> "Daemon":
         """Open the outputs, then start the threads. Raises what opening an output raises."""
@@ -182,10 +182,6 @@ class Daemon:
                     snapshot.mountings[name],
                 )
             )
-
-    def _publish(self, body: BodyState, skeleton: Skeleton, frames: FrameSet) -> None:
-        self.newest = body, skeleton
-        self._publisher.publish(body, skeleton, frames)
 
 
 def _absence(config: Config, session: Session) -> Absence | None:

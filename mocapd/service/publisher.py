@@ -8,13 +8,14 @@ from mocapd.outputs.base import Sink
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_skeleton import is_noticeable, rest_skeleton
 from mocapd.outputs.messages import StateMessage
-from mocapd.types import BodyState, FrameSet, Skeleton
+from mocapd.pipeline.body_hub import BodySample
+from mocapd.types import Skeleton
 
 REST_EVERY_NS = NS_PER_S  # at the soonest, while the body's proportions are learned
 
 
 class Publisher:
-    """`publish` is called by one thread at a time, `begin` while none does; `tell` by any."""
+    """Takes what is put in a BodyHub. `put` is called by one thread at a time, `begin` while none does; `tell` by any."""
 
     def __init__(
         self, sinks: Sequence[Sink], instance: str, clock: Callable[[], int] = monotonic_ns
@@ -30,12 +31,12 @@ class Publisher:
         self._stature_m = stature_m
         self._tell_rest(skeleton, self._clock())
 
-    def publish(self, body: BodyState, skeleton: Skeleton, _frames: FrameSet) -> None:
+    def put(self, sample: BodySample) -> None:
         """Send the body, and the rest skeleton where the one that was told no longer does."""
         now_ns = self._clock()
         frame = skeleton_frame(
-            body,
-            skeleton,
+            sample.body,
+            sample.skeleton,
             instance=self._instance,
             seq=next(self._seq),
             publish_monotonic_ns=now_ns,
@@ -44,9 +45,9 @@ class Publisher:
         for sink in self._sinks:
             sink.send(frame)
         if now_ns - self._told_ns >= REST_EVERY_NS and (
-            self._told is None or is_noticeable(self._told, skeleton)
+            self._told is None or is_noticeable(self._told, sample.skeleton)
         ):
-            self._tell_rest(skeleton, now_ns)
+            self._tell_rest(sample.skeleton, now_ns)
 
     def tell(self, message: StateMessage) -> None:
         """Tell every output."""

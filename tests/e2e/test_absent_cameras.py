@@ -163,5 +163,6 @@ def test_of_recordings_that_stop_nothing_is_told(game: Game) -> None:
         game.hear_until(lambda one: one.seq >= 10)
         camera.frozen.set()
         assert wait_until(lambda: status_of(daemon, "a").is_silent)
-        assert daemon.newest is not None
-        assert daemon.newest[0].tracking is Tracking.LIVE
+        newest = daemon.bodies.newest()
+        assert newest is not None
+        assert newest.body.tracking is Tracking.LIVE

@@ -10,12 +10,13 @@ from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.daemon import Snapshot
 from mocapd.trackers.canned.tracker import CannedParams, canned_pose
-from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
+from mocapd.types import BodyState, Frame, FrameSet, Rig, Track, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.step import Context, Problem, Shape, StepName, StepState, StepView
 from mocapd.wizard.wizard import Wizard
@@ -110,7 +111,7 @@ class TinyHost:
             self.wizard = wizard
         return self.wizard
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
+    def body(self) -> BodySample | None:
         if not self.tracks:
             return None
         now_ns = monotonic_ns()
@@ -119,7 +120,7 @@ class TinyHost:
         confidence = np.ones(len(joints_m))
         confidence[-4:] = 0.1
         state = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)
-        return state, self.skeleton
+        return BodySample(Track(state), self.skeleton, FrameSet(now_ns, {}))
 
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:

@@ -85,7 +85,7 @@ class CheckTracking:
         self._collector = FrameCollector(prepared.rig.names)
         tracker = prepared.tracker
         smoother = Smoother(smoothing, tracker.skeleton)
-        self._loop = PipelineLoop(self._collector, tracker, smoother, shown.publish, died)
+        self._loop = PipelineLoop(self._collector, tracker, smoother, shown.bodies, died)
         self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
         self._loop.start()
         shown.loop = self._loop

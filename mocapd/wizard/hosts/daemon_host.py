@@ -11,10 +11,11 @@ from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.daemon import Daemon, Snapshot
 from mocapd.session.session import SIM, Session
-from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import Moved, moved_cameras, same_camera
 from mocapd.wizard.check.check_tracking import CheckSettings
@@ -101,12 +102,12 @@ class DaemonHost:
                 self._wizard = self._begun(*self._run)
             return self._wizard
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
+    def body(self) -> BodySample | None:
         """See Host."""
         run = self._run
         if self._checked.loop is not None:
-            return self._checked.body
-        return run[0].newest if run is not None else None
+            return self._checked.bodies.newest()
+        return run[0].bodies.newest() if run is not None else None
 
     def snapshot(self) -> Snapshot | None:
         """See Host."""
