@@ -68,7 +68,7 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
 
 def _the_one(pages: "Sequence[Running]", config: "Config") -> "Running":
     """The page to attach to: the only one, else the one of this configuration. Raises ConfigError."""
-    from mocapd.outputs.zenoh.keys import chunk
+    from mocapd.outputs.instance import chunk
     from mocapd.web.runtime_file import SETUP
 
     if len(pages) > 1 and config.instance:

@@ -52,6 +52,7 @@ def bench_command(
     Example: mocapd bench --tracker colour --json
     """
     from mocapd.app.libraries import prepare_libraries
+    from mocapd.outputs.registry import zenoh_section
 
     effective = effective_config(
         config, settings, tracker__name=tracker, tracker__variant=variant
@@ -60,7 +61,7 @@ def bench_command(
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
     if watched and not live:
         raise ConfigError("--watched without --live", "command line", "add --live")
-    if live and not effective.zenoh.enabled:
+    if live and not zenoh_section(effective.outputs).enabled:
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
 

@@ -37,10 +37,13 @@ def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
 
 def watch_command(config: "Config") -> str:
     """The command line that shows the stream of this configuration, to be pasted anywhere."""
+    from mocapd.outputs.registry import ZenohSection, zenoh_section
+
     beside = Path(sys.executable).parent / "mocapd"
     on_path = shutil.which("mocapd")
     name = "mocapd" if on_path and Path(on_path) == beside else str(beside)
     words = [name, "watch"]
-    if config.zenoh.port != type(config.zenoh)().port:
-        words += ["--set", f"zenoh.port={config.zenoh.port}"]
+    port = zenoh_section(config.outputs).port
+    if port != ZenohSection().port:
+        words += ["--set", f"zenoh.port={port}"]
     return shlex.join(words)

@@ -14,7 +14,7 @@ import platformdirs
 
 from mocapd.boundary.files import exists, is_file, is_folder, user_path
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
-from mocapd.config.sections import HIDDEN, TEXT_PATHS, CameraSection, Config
+from mocapd.config.sections import CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
 
@@ -48,7 +48,7 @@ class Effective:
 
 def known_keys() -> dict[str, Key]:
     """Every key by its path, in the order in which they are documented."""
-    return {key.path: key for key in keys_of(Config) if key.path not in HIDDEN}
+    return {key.path: key for key in keys_of(Config)}
 
 
 def config_candidates() -> tuple[Path, ...]:
@@ -107,7 +107,7 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
         if path not in known:
             raise unknown_key(path, path, known, file.where(path))
         value = converted(known[path].type, raw, path, file.where)
-        found[path] = (_beside(folder, path, value, file.where(path)), file.where(path))
+        found[path] = (_beside(folder, known[path], value, file.where(path)), file.where(path))
     return found
 
 
@@ -138,20 +138,20 @@ def _from_text(key: Key, text: str, origin: str) -> tuple[Any, str]:
     except UnicodeEncodeError:  # bytes of a command line or a variable; no output could say it
         raise ConfigError(f"{key.path} is no UTF-8 text", origin, "give it another name") from None
     value = converted(key.type, parsed(text, key.wants_text), key.path, lambda _: origin)
-    return _beside(Path.cwd(), key.path, value, origin), origin
+    return _beside(Path.cwd(), key, value, origin), origin
 
 
-def _beside(folder: Path, path: str, value: Any, where: str) -> Any:
+def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
     """Paths made absolute: a relative one is meant from the file that holds it."""
     try:
         if isinstance(value, Path):
             return folder / user_path(value)
-        if path in TEXT_PATHS and value:
+        if key.is_path and value:
             return str(folder / user_path(value))
-        if path == "camera":
+        if key.path == "camera":
             return tuple(_camera_beside(folder, camera) for camera in value)
     except ConfigError as error:
-        raise ConfigError(f"{path} = {error.what}", where, error.fix) from None
+        raise ConfigError(f"{key.path} = {error.what}", where, error.fix) from None
     return value
 
 

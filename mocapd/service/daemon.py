@@ -4,18 +4,17 @@ import threading
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from types import TracebackType
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError
-from mocapd.outputs.base import Sink, SinkStatus
+from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.from_rig import calibration_info
-from mocapd.outputs.osc.osc_sink import OscSink
-from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
+from mocapd.outputs.instance import instance_name
+from mocapd.outputs.registry import build_sinks
 from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.collector import FrameCollector
@@ -53,17 +52,8 @@ class Daemon:
     """
 
     def __init__(self, config: Config, session: Session) -> None:
-        self._zenoh = (
-            ZenohSink(replace(config.zenoh, instance=config.instance))
-            if config.zenoh.enabled
-            else None
-        )
-        self._sinks: list[Sink] = [self._zenoh] if self._zenoh else []
-        if config.osc.enabled:
-            self._sinks.append(OscSink(config.osc))
-        self.instance = (
-            self._zenoh.instance if self._zenoh else config.instance or keys.default_instance()
-        )
+        self.instance = instance_name(config.instance)
+        self._sinks = build_sinks(config.outputs, self.instance)
         self._publisher = Publisher(self._sinks, self.instance)
         self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
         self._session = session

@@ -11,7 +11,7 @@ from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.from_config import open_source
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
-from mocapd.config.sections import CameraSection, Config, OscSection, TrackerSection, ZenohSection
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.metrics import CameraMetrics
@@ -28,8 +28,7 @@ def config_of(address: str, folder: Path) -> Config:
     return Config(
         camera=(CameraSection("net", address),),
         tracker=TrackerSection(name="canned"),
-        zenoh=ZenohSection(enabled=False),
-        osc=OscSection(enabled=False),
+        outputs={},
         state_dir=folder / "state",
         cache_dir=folder / "cache",
     )

@@ -4,7 +4,7 @@ import sys
 
 from mocapd.app.running import Signals, run_daemon
 from mocapd.body.skeleton import standard_skeleton
-from mocapd.config.sections import Config, OscSection, ZenohSection
+from mocapd.config.sections import Config
 from mocapd.service.daemon import Daemon
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
@@ -28,7 +28,7 @@ class DyingCamera:
 
 def main() -> int:
     """The daemon's exit code."""
-    config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
+    config = Config(outputs={})
     tracker = CannedTracker(standard_skeleton(1.75))
     session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker, 1.75)
     return run_daemon(Daemon(config, session), Signals()) or 0

@@ -7,8 +7,9 @@ from pathlib import Path
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
-from mocapd.config.sections import Config, OscSection, ZenohSection
+from mocapd.config.sections import Config
 from mocapd.errors import CameraLost, ConfigError
+from mocapd.outputs.registry import OscSection
 from mocapd.service.daemon import Daemon
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
@@ -57,8 +58,7 @@ class FakeCamera:
 def daemon_on(*cameras: FakeCamera, osc_port: int) -> Daemon:
     """With a tracker of its own pose, sending OSC to this port of 127.0.0.1; the caller enters it."""
     config = Config(
-        zenoh=ZenohSection(enabled=False),
-        osc=OscSection(destinations=(f"127.0.0.1:{osc_port}",)),
+        outputs={"osc": OscSection(destinations=(f"127.0.0.1:{osc_port}",))},
         state_dir=Path("/nonexistent"),
     )
     inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)

@@ -22,7 +22,7 @@ from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import whole_frame
 from tests.outputs.test_zenoh_sink import HEALTH
-sink = ZenohSink(Params(instance="pc", port=int(sys.argv[1])))
+sink = ZenohSink(Params(port=int(sys.argv[1])), "pc")
 sink.open()
 sink.tell(HEALTH)
 print("open", flush=True)

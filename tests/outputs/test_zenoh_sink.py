@@ -236,7 +236,7 @@ def test_it_joins_a_router_and_opens_no_socket_of_its_own() -> None:
     router.insert_json5("scouting/multicast/enabled", "false")
     with zenoh.open(router):
         before = own_sockets()
-        sink = ZenohSink(Params(instance="pc", connect=(f"tcp/127.0.0.1:{port}",)))
+        sink = ZenohSink(Params(connect=(f"tcp/127.0.0.1:{port}",)), "pc")
         sink.open()
         assert own_sockets() == before
         with other_program(f"tcp/127.0.0.1:{port}") as game:

@@ -8,6 +8,7 @@ import zenoh
 
 from mocapd.outputs import wire
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.instance import instance_name
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
@@ -30,9 +31,10 @@ class ZenohSink:
 
     name = "zenoh"
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: Params, instance: str = "") -> None:
+        """instance: the daemon's name in the keys; empty: the machine's."""
         self._params = params
-        self.instance = keys.chunk(params.instance) if params.instance else keys.default_instance()
+        self.instance = instance_name(instance)
         self._json = params.format == "json"
         self._state = ZenohState(self.instance, params.format)
         self._listener_names = ListenerNames()
