@@ -99,7 +99,7 @@ def _alone(
 ) -> int:
     from mocapd.app.running import INTERNAL_ERROR
     from mocapd.app.setup_hosts import demo_host, webcam_host
-    from mocapd.service.daemon import ThreadDiedError
+    from mocapd.service.service import ThreadDiedError
     from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 

@@ -12,6 +12,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.cli.run import run_with
 
 if TYPE_CHECKING:
+    from mocapd.config.effective import Effective
     from mocapd.config.sections import Config
 
 SCENARIO = "sim:living_room"
@@ -30,9 +31,12 @@ def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd demo
     """
-    effective = effective_config(config, settings, capture=SCENARIO)
-    watch = watch_command(effective.config)
-    raise typer.Exit(run_with(effective, f"in a second terminal: {watch}"))
+
+    def read() -> "Effective":
+        return effective_config(config, settings, capture=SCENARIO)
+
+    watch = watch_command(read().config)
+    raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))
 
 
 def watch_command(config: "Config") -> str:

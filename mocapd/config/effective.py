@@ -1,7 +1,7 @@
 """The configuration in force, and where each of its values came from.
 
 Precedence: flag > environment MOCAPD_* > config file > built-in. No part ever sees the whole of it;
-`daemon.py` hands each its own section.
+`service.py` hands each its own section.
 """
 
 import os

@@ -4,7 +4,7 @@ from typing import Protocol
 
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
 from mocapd.types import Rig
 from mocapd.wizard.wizard import Wizard
 

@@ -15,8 +15,8 @@ from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.metrics import CameraMetrics
-from mocapd.service.daemon import Daemon
 from mocapd.service.health import camera_message
+from mocapd.service.service import Service
 from mocapd.session.session import open_session
 from mocapd.wizard.hosts.daemon_host import DaemonHost
 
@@ -51,9 +51,7 @@ def test_a_hash_in_a_url_makes_no_folder_of_it(tmp_path: Path) -> None:
 @pytest.fixture
 def host(tmp_path: Path) -> Iterator[DaemonHost]:
     config = config_of(ADDRESS, tmp_path)
-    session = open_session(config, lambda *_: None)
-    host = DaemonHost(config)
-    host.serve(Daemon(config, session), session)
+    host = DaemonHost(Service(config, open_session(config, lambda *_: None)))
     yield host
     host.rest()
 

@@ -10,7 +10,7 @@ from mocapd.config.sections import Config
 from mocapd.errors import ConfigError
 from mocapd.outputs.instance import instance_name
 from mocapd.outputs.registry import OscSection, OutputSection, ZenohSection
-from mocapd.service.daemon import Daemon
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -51,4 +51,4 @@ def test_without_a_name_it_is_the_machines_also_when_only_osc_is_sent(on_zenoh: 
     config = Config(outputs=outputs)
     camera = CameraInput(DyingCamera(), "never opened")
     session = Session((camera,), None, "", CannedTracker(standard_skeleton(1.75)), 1.75)
-    assert Daemon(config, session).instance == instance_name()
+    assert Service(config, session).instance == instance_name()

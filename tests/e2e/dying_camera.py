@@ -5,7 +5,7 @@ import sys
 from mocapd.app.running import Signals, run_daemon
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.config.sections import Config
-from mocapd.service.daemon import Daemon
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -31,7 +31,7 @@ def main() -> int:
     config = Config(outputs={})
     tracker = CannedTracker(standard_skeleton(1.75))
     session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker, 1.75)
-    return run_daemon(Daemon(config, session), Signals()) or 0
+    return run_daemon(Service(config, session), Signals())
 
 
 if __name__ == "__main__":

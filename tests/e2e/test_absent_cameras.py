@@ -12,8 +12,8 @@ from pythonosc.osc_bundle import OscBundle
 
 from mocapd.app.status_line import status_text
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.service.daemon import Daemon
 from mocapd.service.health import camera_message
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Tracking
 from tests.capture.films import SIZE_PX
@@ -71,7 +71,7 @@ def wait_until(condition: Callable[[], bool]) -> bool:
     return any(condition() or pause.wait(0.01) for _ in range(1000))
 
 
-def status_of(daemon: Daemon, name: str) -> CaptureStatus:
+def status_of(daemon: Service, name: str) -> CaptureStatus:
     return daemon.statuses()[name]
 
 

@@ -14,7 +14,7 @@ from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.tracker import CannedParams, canned_pose
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Track, Tracking
 from mocapd.wizard.commands import Command, Verbs

@@ -9,7 +9,7 @@ from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import MocapdError
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.daemon import Snapshot, ThreadDiedError
+from mocapd.service.service import Snapshot, ThreadDiedError
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import Moved
