@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mocapd.body.shape import mean_shape
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.calibrate.self_calibration.self_calibration import RoomReport, room_from_body
@@ -23,9 +24,9 @@ from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.geometry import rotations
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.trackers.colour.build import colour_model, white_balance_of
 from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.types import Camera, Floats, Rig
 
@@ -100,7 +101,9 @@ def rms_cm(known: _Known, rig: Rig, database: PoseDatabase) -> tuple[float, floa
     """Of the upper body's joints, tracked with this rig: as it is, and once the whole track is moved
     rigidly onto the truth, because a room without a board has a world of its own."""
     tracker = ColourTracker(rig, known.stature_m, known.colours, known.W, database)
-    track = track_all(tracker, frame_sets(known.folder), lambda _: None)
+    track = track_all(
+        tracker, mean_shape(known.stature_m), frame_sets(known.folder), lambda _: None
+    )
     truth = load_truth(known.folder.path)
     return score(truth, track).rms_cm, score(truth, _onto(truth, track)).rms_cm
 

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable
 
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.collector import FrameCollector
@@ -19,7 +20,7 @@ LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should 
 
 
 class PipelineLoop:
-    """Runs one tracker on whatever the collector holds, until stopped.
+    """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape.
 
     `publish` is called in the pipeline's thread for each body, also while `lost`, and must not
     block; with an empty frame set for what `absence` tells while no frames come, which it says when given.
@@ -31,6 +32,7 @@ class PipelineLoop:
         self,
         collector: FrameCollector,
         tracker: Tracker,
+        shape: BodyShape,
         smoother: Smoother,
         publish: Publish,
         on_death: OnDeath,
@@ -38,6 +40,8 @@ class PipelineLoop:
     ) -> None:
         self._collector = collector
         self._tracker = tracker
+        self._shape = shape  # the wearer's: outlives what one tracker knows
+        self._skeleton = skeleton_of(shape)
         self._smoother = smoother
         self._publish = publish
         self._on_death = on_death
@@ -89,20 +93,22 @@ class PipelineLoop:
 
     def _one(self, frames: FrameSet) -> None:
         start_ns = monotonic_ns()
-        track = self._tracker.step(frames)
+        track = self._tracker.step(frames, self._shape)
         step_ns = monotonic_ns() - start_ns
-        self._smoother.skeleton = self._tracker.skeleton
+        if track.shape is not self._shape:
+            self._shape = track.shape
+            self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)
         body = self._smoother.step(track.body)
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
-        self._publish(body, self._tracker.skeleton, frames)
+        self._publish(body, self._skeleton, frames)
         self._recorder.published(frames, body, step_ns, monotonic_ns())
 
     def _none(self, absence: Absence) -> None:
         """No frames came for a while."""
         body = absence.tell(monotonic_ns())
         if body is not None:
-            self._publish(body, self._tracker.skeleton, FrameSet(body.t_ns, {}))
+            self._publish(body, self._skeleton, FrameSet(body.t_ns, {}))
             self._recorder.absent(body)
 
     def _wait_s(self) -> float:

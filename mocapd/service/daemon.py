@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 
+from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
 from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
@@ -76,10 +77,11 @@ class Daemon:
         self._captures = [
             CaptureThread(c.source, self.hub, self.died, c.expected_hz) for c in session.cameras
         ]
-        smoother = Smoother(config.smoothing.preset, session.tracker.skeleton)
+        smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
         self._loop = PipelineLoop(
             self._collector,
             session.tracker,
+            session.shape,
             smoother,
             self._publish,
             self.died,
@@ -205,4 +207,4 @@ def _absence(config: Config, session: Session) -> Absence | None:
     if all(camera.source.recorded for camera in session.cameras):
         return None
     tracker = session.tracker
-    return Absence(tracker.name, len(tracker.skeleton.names), config.tracker.coast_s)
+    return Absence(tracker.name, len(skeleton_of(session.shape).names), config.tracker.coast_s)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import mean_shape
 from mocapd.config.effective import load_config
 from mocapd.config.sections import Config, OscSection, ZenohSection
 from mocapd.errors import ConfigError
@@ -45,5 +45,5 @@ def test_64_characters_are_a_name() -> None:
 def test_without_a_name_it_is_the_machines_also_when_only_osc_is_sent(on_zenoh: bool) -> None:
     config = Config(zenoh=ZenohSection(enabled=on_zenoh), osc=OscSection(enabled=not on_zenoh))
     camera = CameraInput(DyingCamera(), "never opened")
-    session = Session((camera,), None, "", CannedTracker(standard_skeleton(1.75)))
+    session = Session((camera,), None, "", CannedTracker(), mean_shape(1.75))
     assert Daemon(config, session).instance == keys.default_instance()

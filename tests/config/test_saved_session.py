@@ -7,7 +7,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import standard_skeleton
 from mocapd.calibration.calibration_file import read_calibration, write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
@@ -46,7 +45,11 @@ def test_the_saved_calibration_gives_cameras_rig_and_wearer(config: Config) -> N
     assert session.rig.names == ("cam0", "cam1")
     assert session.rig_source == str(config.state_dir / "calibration.toml")
     assert session.cameras[0].size_px == (64, 48)
-    assert np.array_equal(session.tracker.skeleton.rest_m, standard_skeleton(1.72).rest_m)
+    measured = full_draft().factors
+    assert measured is not None
+    assert session.shape.stature_m == 1.72
+    assert np.array_equal(session.shape.factors, measured)
+    assert session.shape.information is not None
 
 
 def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:

@@ -5,14 +5,18 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.body.shape import skeleton_of
 from mocapd.calibration.from_capture import from_capture
 from mocapd.calibration.shirt_pictures import read_model, stroked_folder
 from mocapd.capture.capture_folder import load_folder
-from mocapd.config.sections import CameraSection, Config, TrackerSection
+from mocapd.config.effective import load_config
+from mocapd.config.sections import CameraSection, Config, ShirtSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cached
+from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
@@ -39,7 +43,7 @@ def test_the_cameras_of_a_folder_bring_their_rig_and_the_wearer(capture: Path) -
     assert session.rig.names == ("cam0", "cam1")
     assert [camera.source.name for camera in session.cameras] == ["cam0", "cam1"]
     assert session.rig_source == str(capture / "rig.json")
-    assert session.tracker.skeleton.rest_m[:, 1].max() < 1.7
+    assert skeleton_of(session.shape).rest_m[:, 1].max() < 1.7
 
 
 def test_the_configs_own_rig_goes_before_the_folders(capture: Path, tmp_path: Path) -> None:
@@ -79,12 +83,34 @@ def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
     assert not list(capture.glob("pose_database*"))
 
 
-def test_the_colour_tracker_is_the_usual_one_in_any_of_its_variants() -> None:
+def test_the_colour_tracker_is_the_usual_one_and_each_has_its_own_section() -> None:
     assert TrackerSection().name == "colour"
-    for variant in TRACKERS["colour"].variants:
-        assert TrackerSection(variant=variant).variant == variant
-    with pytest.raises(ConfigError, match=r"tracker\.variant: .*'canned' has no variant 'paper'"):
-        TrackerSection(name="canned", variant="paper")
+    assert list(TrackerSection().sections) == list(TRACKERS)
+    text = {"tracker.colour_paper.baseline": "true", "tracker.canned.loop_s": "2"}
+    sections = load_config(text, env={}, candidates=()).config.tracker.sections
+    assert sections["colour_paper"] == ColourPaperSection(baseline=True)
+    assert sections["canned"] == CannedSection(loop_s=2.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "now"),
+    [
+        ("tracker.variant", "colour_paper"),
+        ("tracker.colour_model", "shirt.colour_model"),
+    ],
+)
+def test_keys_that_are_gone_name_what_to_write_now(tmp_path: Path, key: str, now: str) -> None:
+    file = tmp_path / "config.toml"
+    file.write_text(f"{key} = 'paper'\n")
+    variable = f"MOCAPD_{key.replace('.', '_').upper()}"
+    for flags, path, env in (
+        ({key: "paper"}, None, {}),
+        ({}, file, {}),
+        ({}, None, {variable: "paper"}),
+    ):
+        with pytest.raises(ConfigError, match=now) as caught:
+            load_config(flags, path, env, candidates=())
+        assert key in caught.value.what
 
 
 def test_what_the_config_says_of_losing_track_reaches_the_tracker(tmp_path: Path) -> None:
@@ -111,11 +137,11 @@ def test_the_inputs_of_a_folder_hold_strokes_of_every_colour(capture: Path) -> N
 def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
     camera = CameraSection("left", "/dev/video0", white_balance=tmp_path / "left.png")
     with pytest.raises(InputError, match=r"left\.png: no such file"):
-        from_configuration(TrackerSection(), (camera,), None)
+        from_configuration(ShirtSection(), (camera,), None)
 
 
 def test_a_folder_of_pictures_is_read_by_one_rule_wherever_it_is_named(capture: Path) -> None:
-    """Ground truth beside the pictures stopped `tracker.colour_model`, but not a capture's model/."""
+    """Ground truth beside the pictures stopped `shirt.colour_model`, but not a capture's model/."""
     folder = capture / "model"
     (folder / "0_labels.png").write_bytes((folder / "0.png").read_bytes())
     write_stroked(folder / "by_the_window.png", range(1, 5))

@@ -3,7 +3,7 @@
 import sys
 
 from mocapd.app.running import Signals, run_daemon
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import mean_shape
 from mocapd.config.sections import Config, OscSection, ZenohSection
 from mocapd.service.daemon import Daemon
 from mocapd.session.camera_inputs import CameraInput
@@ -29,8 +29,9 @@ class DyingCamera:
 def main() -> int:
     """The daemon's exit code."""
     config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
-    tracker = CannedTracker(standard_skeleton(1.75))
-    session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker)
+    session = Session(
+        (CameraInput(DyingCamera(), "test"),), None, "", CannedTracker(), mean_shape(1.75)
+    )
     return run_daemon(Daemon(config, session), Signals()) or 0
 
 

@@ -14,7 +14,8 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.daemon import Snapshot
-from mocapd.trackers.canned.tracker import CannedParams, canned_pose
+from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.step import Context, Problem, Shape, StepName, StepState, StepView
@@ -114,7 +115,7 @@ class TinyHost:
         if not self.tracks:
             return None
         now_ns = monotonic_ns()
-        pose = canned_pose(self.skeleton, CannedParams(), now_ns)
+        pose = canned_pose(self.skeleton, CannedSection(), now_ns)
         joints_m = joint_positions(self.skeleton, pose)
         confidence = np.ones(len(joints_m))
         confidence[-4:] = 0.1

@@ -18,8 +18,8 @@ import numpy as np
 
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import CannotCreateError, InputError, MocapdError
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.base import Tracker
 from mocapd.types import Bytes
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.body.body_step import BodyStep
@@ -116,7 +116,7 @@ def no_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
     raise CannotCreateError("the cache cannot be written", str(cache_dir), "make room")
 
 
-def no_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
+def no_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> ReadyTracker:
     """Nobody is seen."""
     raise InputError("the wearer was not seen", "body", "stand there")
 

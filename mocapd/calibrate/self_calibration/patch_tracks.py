@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
@@ -89,17 +90,19 @@ class PatchTracks:
         self._trackers = [
             ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
         ]
+        self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.moments: list[Moment] = []
 
     def add(self, frames: FrameSet) -> Moment:
         """Follow one frame set: who saw the wearer, and how."""
         seen: dict[str, PatchSighting] = {}
-        for tracker in self._trackers:
+        for i, tracker in enumerate(self._trackers):
             mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
             if not mine:
                 continue
             t_ns = frames.t_ns if len(tracker.rig.cameras) > 1 else next(iter(mine.values())).t_ns
-            track = tracker.step(FrameSet(t_ns, mine))
+            track = tracker.step(FrameSet(t_ns, mine), self._shapes[i])
+            self._shapes[i] = track.shape
             body = track.body
             if body.tracking is not Tracking.LIVE or body.pose is None or body.joints_m is None:
                 continue

@@ -12,9 +12,9 @@ from mocapd.calibrate.colours.stroke_proposal import (
 )
 from mocapd.errors import InputError
 from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.trackers.colour.build import colour_model
 from mocapd.types import Bytes, Camera
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Tell

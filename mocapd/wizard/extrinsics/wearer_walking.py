@@ -19,7 +19,7 @@ from mocapd.errors import InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.trackers.colour.build import colour_model, white_balance_of
+from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.types import Camera, Floats, Rig
 from mocapd.wizard.colour.proposing import LoadDatabase
 from mocapd.wizard.draft import Draft
