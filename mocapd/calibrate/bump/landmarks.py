@@ -37,7 +37,7 @@ class RoomMarks:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Turned:
+class CameraTurn:
     """How the camera turned since the marks were made: rotation vector (3,) [rad], from rays before to
     rays now; `agree` of the marks were moved so."""
 
@@ -55,14 +55,14 @@ def room_marks(pixels: Bytes, camera: Camera) -> RoomMarks:
     return RoomMarks(picture, places, _rays(places, camera))
 
 
-def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> Turned:
+def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     """How far the camera is turned in a later picture. None is a turn as likely as another one that
     twice as many marks say."""
     before, now = _followed(marks, _small(pixels), camera)
     focal_px = float(camera.K[0, 0]) * _WIDTH_PX / camera.size_px[0]
     limit = _AGREE_PX / focal_px
     if len(before) < 2:
-        return Turned(np.zeros(3), 0)
+        return CameraTurn(np.zeros(3), 0)
     still = _agreeing(np.eye(3), before, now, limit)
     R, agree = _best_rotation(before, now, limit)
     if 2 * still.sum() >= agree.sum():
@@ -73,7 +73,7 @@ def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> Turned:
         R = _rotation(before[agree], now[agree])
         agree = _agreeing(R, before, now, limit)
     turn: Floats = rotations.log(rotations.from_matrix(R))
-    return Turned(turn, int(agree.sum()))
+    return CameraTurn(turn, int(agree.sum()))
 
 
 def _spread(places: Singles) -> Singles:

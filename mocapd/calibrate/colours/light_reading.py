@@ -27,7 +27,7 @@ from mocapd.shirt.colour.strokes import COLOURS
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.appearance import Appearance, fresh
-from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.params import Params
@@ -182,22 +182,22 @@ class LightReader:
 
     # --- stages ---
 
-    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, Found]]:
+    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, ShirtCandidate]]:
         """The most even places over all lights, no two alike, best first."""
-        found: list[tuple[str, Found]] = []
+        found: list[tuple[str, ShirtCandidate]] = []
         for light in light_hypotheses(segmenter.picture):
             segmenter.memory.references = (light.W,)
             seen = segmenter.find(detection.WINDOWS)
             if seen is not None:
                 found.append((light.name, seen))
         found.sort(key=lambda f: -f[1].evenness)
-        kept: list[tuple[str, Found]] = []
+        kept: list[tuple[str, ShirtCandidate]] = []
         for name, seen in found:
             if len(kept) < _FOLLOWED and not any(_alike(seen, other) for _, other in kept):
                 kept.append((name, seen))
         return kept
 
-    def _detected(self, index: int, found: Found) -> Fit | None:
+    def _detected(self, index: int, found: ShirtCandidate) -> Fit | None:
         """The body as the pose database has it, fitted to the ids of the search."""
         p, segmenter = self._params, self._segmenters[index]
         segmenter.memory.references = (found.W,)
@@ -341,7 +341,7 @@ def _arms_out(state: MotionState) -> MotionState:
     return replace(state, local_xyzw=local)
 
 
-def _alike(a: Found, b: Found) -> bool:
+def _alike(a: ShirtCandidate, b: ShirtCandidate) -> bool:
     near = max(abs(p - q) for p, q in zip(a.roi, b.roi, strict=True)) <= _ALIKE_PX
     return near and float(np.linalg.norm(a.W - b.W)) < _ALIKE
 

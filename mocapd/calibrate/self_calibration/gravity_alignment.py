@@ -18,7 +18,9 @@ _NAMES = ("hips", "neck", "leftUpperArm", "rightUpperArm")
 _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 
 
-def upright(rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats) -> Rig:
+def align_with_gravity(
+    rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats
+) -> Rig:
     """The rig in the world of someone who stood and walked in it.
 
     Up is the middle direction of the spine, once moments of bending are left out; the floor is where

@@ -11,7 +11,7 @@ from mocapd.errors import ConfigError
 from mocapd.types import Camera
 
 
-def first_placing(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
+def initial_extrinsics(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
     """The first camera where a lone webcam would stand, the others by the bodies seen in common.
 
     Cameras that share nothing with the first are chained through others. Raises ConfigError naming

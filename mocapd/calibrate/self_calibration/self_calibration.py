@@ -15,8 +15,8 @@ from mocapd.calibrate.self_calibration.body_rows import (
     moved_camera,
 )
 from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
-from mocapd.calibrate.self_calibration.gravity_alignment import upright
-from mocapd.calibrate.self_calibration.initial_extrinsics import first_placing
+from mocapd.calibrate.self_calibration.gravity_alignment import align_with_gravity
+from mocapd.calibrate.self_calibration.initial_extrinsics import initial_extrinsics
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, choose, starts, views
 from mocapd.calibrate.self_calibration.patch_tracks import Moment
 from mocapd.calibrate.self_calibration.ring_bundle import placed_by_rings
@@ -99,14 +99,14 @@ def room_from_body(
     p = params if params is not None else SelfCalibrationParams()
     keyframes = choose(moments, [camera.name for camera in lenses], p.keyframes)
     model = build_model(stature_m)
-    solvers = [RoomSolver(model, first_placing(moments, lenses), keyframes, p)]
+    solvers = [RoomSolver(model, initial_extrinsics(moments, lenses), keyframes, p)]
     if near is not None:
         old = {camera.name: camera for camera in near.cameras}
         before = [replace(c, R=old[c.name].R, t_m=old[c.name].t_m) for c in lenses]
         solvers.append(RoomSolver(model, before, keyframes, p))
     rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
     rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_uncertainty)
-    return upright(rig, moments, stature_m, report.factors), report
+    return align_with_gravity(rig, moments, stature_m, report.factors), report
 
 
 def _with_rings(

@@ -157,7 +157,7 @@ def content_hash(params: DatabaseParams) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rendered:
+class RenderedPoses:
     """Packed id maps (N, PACKED) of poses, with root_m (N,3) and side_rad (N,) of each."""
 
     packed_maps: Bytes
@@ -171,10 +171,10 @@ def render(
     params: DatabaseParams,
     progress: Progress,
     map_chunks: MapChunks = map,
-) -> Rendered:
+) -> RenderedPoses:
     """Id maps of poses; `map_chunks` may be the `map` of a thread pool, as the kernel frees the lock."""
     n = len(poses)
-    out = Rendered(
+    out = RenderedPoses(
         np.zeros((n, PACKED), np.uint8), np.zeros((n, 3), np.float32), np.zeros(n, np.float32)
     )
     is_shirt = np.zeros(len(model.vertices_m), dtype=bool)

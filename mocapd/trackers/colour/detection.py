@@ -12,7 +12,7 @@ from mocapd.geometry.cameras import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_id_map
-from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.types import Camera, Floats
 
 WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales
@@ -25,7 +25,7 @@ class ShirtSighting:
     """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
 
     index: int  # of the camera
-    found: Found
+    found: ShirtCandidate
     centre_px: Floats  # full resolution
     side_px: float
     poses: np.ndarray

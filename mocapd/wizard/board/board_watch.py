@@ -22,7 +22,7 @@ _FRAME_NS = 1e9 / 30.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Seen:
+class BoardObservation:
     """The board in one picture; `motion_px`: of its corners since the look before [px per 1/30 s],
     infinite when it was not seen then."""
 
@@ -38,7 +38,7 @@ class Look:
     index: int
     t_ns: int
     frames: Mapping[str, Frame]
-    seen: Mapping[str, Seen]
+    seen: Mapping[str, BoardObservation]
 
     @property
     def spread_ns(self) -> int:
@@ -54,13 +54,13 @@ class BoardWatch:
         self, hub: FrameHub, names: Iterable[str], spec: BoardSpec, first_index: int = 0
     ) -> None:
         self.names = tuple(names)
-        self.newest: dict[str, Seen] = {}  # each camera's last sight of the board
+        self.newest: dict[str, BoardObservation] = {}  # each camera's last sight of the board
         self._hub, self._recent = hub, RecentFrames()
         self._detector = BoardDetector(spec)
         self._index = first_index
         self._frames: dict[str, Frame] = {}
         self._left: list[str] = []  # cameras of this instant not searched yet
-        self._seen: dict[str, Seen] = {}
+        self._seen: dict[str, BoardObservation] = {}
 
     @property
     def spec(self) -> BoardSpec:
@@ -118,7 +118,7 @@ class BoardWatch:
         view = self._detector.find(frame.pixels, self._index)
         if view is not None:
             motion_px = _motion_px(self.newest.get(frame.camera), view, frame.t_ns)
-            self._seen[frame.camera] = Seen(view, frame.t_ns, motion_px)
+            self._seen[frame.camera] = BoardObservation(view, frame.t_ns, motion_px)
 
 
 def points_of(pixels: Floats) -> tuple[tuple[float, float], ...]:
@@ -126,7 +126,7 @@ def points_of(pixels: Floats) -> tuple[tuple[float, float], ...]:
     return tuple((round(float(x), 1), round(float(y), 1)) for x, y in pixels)
 
 
-def _motion_px(before: Seen | None, view: BoardView, t_ns: int) -> float:
+def _motion_px(before: BoardObservation | None, view: BoardView, t_ns: int) -> float:
     if before is None or not 0 < t_ns - before.t_ns <= _REMEMBERED_NS:
         return float("inf")
     _, then, now = np.intersect1d(before.view.ids, view.ids, return_indices=True)

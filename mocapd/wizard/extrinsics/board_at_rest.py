@@ -10,7 +10,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
-from mocapd.wizard.board.board_watch import Look, Seen
+from mocapd.wizard.board.board_watch import BoardObservation, Look
 
 LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
 _SAME_PX = 2.0  # corners this near are of the board at rest
@@ -26,7 +26,7 @@ class BoardAtRest:
 
     def __init__(self) -> None:
         self._looks: list[Look] = []
-        self._seen: dict[str, list[Seen]] = {}
+        self._seen: dict[str, list[BoardObservation]] = {}
 
     @property
     def since_ns(self) -> int:
@@ -59,7 +59,7 @@ class BoardAtRest:
         index = self._looks[-1].index
         return {name: _mean([seen.view for seen in own], index) for name, own in self._seen.items()}
 
-    def _moved(self, name: str, seen: Seen) -> bool:
+    def _moved(self, name: str, seen: BoardObservation) -> bool:
         before = self._seen.get(name)
         if not before:
             return False

@@ -19,7 +19,7 @@ from mocapd.wizard.board.board_watch import BoardWatch, Look
 from mocapd.wizard.board.sightings import Moments
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
-from mocapd.wizard.intrinsics.lens_views import LensCamera, Offered
+from mocapd.wizard.intrinsics.lens_views import LensCamera, LensOffer
 from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
 from mocapd.wizard.step import (
     Context,
@@ -237,9 +237,9 @@ class LensStep:
             lens = self._context.draft.lenses.get(id_)
             found = lens_for(one.camera, saved)
             if lens is not None and lens.size_px == one.camera.size_px:
-                one.offered = Offered(lens, "", from_file=False)
+                one.offered = LensOffer(lens, "", from_file=False)
             elif found is not None:
-                one.offered = Offered(found.lens(), f"{found.when:%Y-%m-%d}", from_file=True)
+                one.offered = LensOffer(found.lens(), f"{found.when:%Y-%m-%d}", from_file=True)
 
     def _use_saved(self, cameras: Sequence[LensCamera]) -> None:
         offered = [one for one in cameras if one.offered is not None]

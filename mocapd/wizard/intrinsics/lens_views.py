@@ -35,7 +35,7 @@ class GoodLens:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Offered:
+class LensOffer:
     """A lens of before. when: the day it was measured, "" in this setup; from_file: of another setup."""
 
     lens: Intrinsics
@@ -49,8 +49,8 @@ class LensCamera:
 
     camera: DraftCamera
     picked: PickedViews
-    offered: Offered | None = None
-    taken: Offered | None = None  # the one that was offered, when the person took it
+    offered: LensOffer | None = None
+    taken: LensOffer | None = None  # the one that was offered, when the person took it
     lens: Intrinsics | None = None  # that the step ends with
     usable: Intrinsics | None = None  # the newest one that is not good enough yet
     refusal: Problem | None = None
@@ -90,7 +90,7 @@ class LensCamera:
         """The job found that these pictures give no lens."""
         self.tried, self.refusal = tried, Problem.of(error)
 
-    def use(self, offered: Offered | None) -> None:
+    def use(self, offered: LensOffer | None) -> None:
         """The lens of before; None: a new one is measured."""
         self.taken = offered
         self.lens = None if offered is None else offered.lens
