@@ -1,4 +1,4 @@
-"""The room from positions of a board that several cameras saw, and how well it fits."""
+"""The extrinsics from positions of a board that several cameras saw, and how well they fit."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

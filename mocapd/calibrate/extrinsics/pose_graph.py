@@ -1,4 +1,4 @@
-"""First guess of a room: cameras chained by the board positions that pairs of them share."""
+"""Initial extrinsics from a board: a pose graph of cameras, an edge for each pair that shares positions."""
 
 from collections.abc import Mapping, Sequence
 

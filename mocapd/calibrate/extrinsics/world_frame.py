@@ -1,4 +1,4 @@
-"""The cameras' places in the world: floor, up, front; and how well the room agrees with itself."""
+"""The world frame of the extrinsics: floor, up, front; and how well the cameras agree with each other."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A camera's lens from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
+"""A camera's intrinsics and distortion from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a webcam's lens is like before it is measured."""
+"""The prior of a webcam's intrinsics, before they are measured."""
 
 from dataclasses import dataclass
 

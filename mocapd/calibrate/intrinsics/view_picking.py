@@ -1,4 +1,4 @@
-"""Which live pictures of the board are kept for a lens, and what they lack as yet."""
+"""Which live views of the board the intrinsics are solved from, and what they lack as yet."""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,4 +1,4 @@
-"""How uncertain a camera's place is, told in degrees and in parts of its distance."""
+"""The uncertainty of a camera's extrinsics, in degrees and in parts of its distance."""
 
 from dataclasses import dataclass
 

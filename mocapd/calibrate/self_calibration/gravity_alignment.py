@@ -1,4 +1,4 @@
-"""Gravity, floor and origin from a person who stands and walks: the world's frame of a rig."""
+"""The world frame from a person who stands and walks: gravity, floor and origin."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Where the cameras stand about: each next to one that saw the same bodies."""
+"""Initial extrinsics from the wearer: each camera placed next to one that saw the same bodies."""
 
 from collections.abc import Sequence
 from dataclasses import replace

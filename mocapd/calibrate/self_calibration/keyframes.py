@@ -1,4 +1,4 @@
-"""Which moments of a recording are worth solving a room from, and where a body starts in it."""
+"""Which observations of a recording are worth solving extrinsics from, and where a body starts in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The wearer as each camera sees them alone: body, classified patches and marks, before any room is known."""
+"""The wearer as each camera sees them alone: body, classified patches and marks, before any extrinsics are known."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""The room from the wearer alone: poses, body shape and cameras, solved together until all pictures agree."""
+"""The extrinsics from the wearer alone: poses, body shape and cameras, solved together until all pictures agree."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

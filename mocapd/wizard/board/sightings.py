@@ -1,4 +1,4 @@
-"""Moments at which several cameras saw the board at rest: what a room is solved from."""
+"""Sightings: several cameras saw the board at rest at one instant, from which extrinsics are solved."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""The room from the moments of the lens step and of the room step: what the room step's job does."""
+"""The extrinsics from the sightings of the steps Lens and Room: what the step Room's job does."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
