@@ -19,7 +19,7 @@ import msgspec
 import numpy as np
 
 from mocapd.body.shape import N_FACTORS
-from mocapd.body.shirt import N_COLOURS
+from mocapd.body.shirt_patches import N_COLOURS
 from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_msgpack
 from mocapd.boundary.pictures import decode_picture

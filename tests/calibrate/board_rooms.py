@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard
 from mocapd.types import Camera, Floats
 from tests.geometry.rigs import looking_at

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.types import Bytes, Camera, Floats
 
 SIZE_PX = (320, 240)

@@ -17,7 +17,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, to_camera
+from mocapd.geometry.camera_model import centre, to_camera
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 

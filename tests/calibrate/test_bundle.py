@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
-from mocapd.calibrate.extrinsics.reprojection import (
+from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
     ReprojectionProblem,
     exp_matrices,
@@ -17,6 +15,8 @@ from mocapd.calibrate.extrinsics.reprojection import (
     moved,
     residuals_px,
 )
+from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     play_area_error,
     rig_in,
@@ -27,7 +27,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, project
+from mocapd.geometry.camera_model import centre, project
 from mocapd.types import Camera
 from tests.calibrate.board_rooms import cameras, corners_px, floor_pose, held_poses, middle_m
 

@@ -17,7 +17,7 @@ from mocapd.calibrate.extrinsics.folder_calibration import (
 )
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError, InputError
-from mocapd.geometry.cameras import centre, normalised, project
+from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes
 from tests.calibrate.board_rooms import cameras, floor_pose, held_poses, write_pictures

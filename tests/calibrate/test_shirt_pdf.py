@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
 from mocapd.printing.shirt_drawing import centre_of

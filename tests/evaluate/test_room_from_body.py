@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.evaluate.room_from_body import beside_first, score_room
+from mocapd.evaluate.extrinsics_from_body import beside_first, score_room
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats, Rig
 from tests.geometry.rigs import looking_at
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState
 from mocapd.geometry import rotations

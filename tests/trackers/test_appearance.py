@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation.appearance import Appearance
 from mocapd.types import Floats

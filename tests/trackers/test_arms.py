@@ -24,7 +24,7 @@ from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project, rays
+from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
 from tests.trackers.synthetic import FACTOR, MODEL, fitter, standing, views_of
 

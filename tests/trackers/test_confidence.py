@@ -7,7 +7,7 @@ import pytest
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.solver import Fit, View
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.types import Floats
 from tests.trackers.synthetic import fitter, standing, views_of

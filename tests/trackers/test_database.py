@@ -15,7 +15,7 @@ from mocapd.body.joint_limits import swing_twist
 from mocapd.body.pose_space import upper_body
 from mocapd.errors import CannotCreateError
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.database import (
     DatabaseParams,

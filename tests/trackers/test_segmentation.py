@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import plain
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,

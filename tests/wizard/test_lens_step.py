@@ -15,7 +15,7 @@ from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.types import Bytes
 from mocapd.wizard.board.board_form import usual_board
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.intrinsics.lens_step import LensStep
+from mocapd.wizard.intrinsics.intrinsics_step import LensStep
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME, lens_for, read_lenses, store_lenses
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (

@@ -11,11 +11,11 @@ import pytest
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.errors import InputError
-from mocapd.geometry.cameras import centre, normalised, project
+from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes, Rig
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.room_step import RoomStep
+from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,

@@ -14,14 +14,14 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.self_calibration.self_calibration import SelfCalibrationParams
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.types import Frame, FrameSet
 from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
-from mocapd.wizard.extrinsics.room_step import RoomStep
-from mocapd.wizard.extrinsics.room_with_wearer import WearerRoom
-from mocapd.wizard.extrinsics.wearer_walking import WalkParams
+from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.wearer_walk import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer

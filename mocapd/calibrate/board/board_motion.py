@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import ReprojectionProblem
+from mocapd.calibrate.extrinsics.board_reprojection import ReprojectionProblem
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 

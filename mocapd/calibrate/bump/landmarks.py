@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 _WIDTH_PX = 160  # of the small pictures: a turn of one degree is over two of their pixels

@@ -20,7 +20,7 @@ from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS

@@ -7,9 +7,7 @@ import numpy as np
 import scipy.optimize
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, lens_row, observations
-from mocapd.calibrate.extrinsics.reprojection import (
+from mocapd.calibrate.extrinsics.board_reprojection import (
     LENS,
     POSE,
     Observations,
@@ -17,6 +15,8 @@ from mocapd.calibrate.extrinsics.reprojection import (
     moved,
     residuals_px,
 )
+from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, lens_row, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
     play_area_error,

@@ -14,7 +14,7 @@ import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_motion import paths
-from mocapd.calibrate.extrinsics.reprojection import (
+from mocapd.calibrate.extrinsics.board_reprojection import (
     LENS,
     POSE,
     Observations,

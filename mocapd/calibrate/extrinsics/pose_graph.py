@@ -5,7 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.reprojection import Observations, ReprojectionProblem, residuals_px
+from mocapd.calibrate.extrinsics.board_reprojection import (
+    Observations,
+    ReprojectionProblem,
+    residuals_px,
+)
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.errors import ConfigError
 from mocapd.types import Floats

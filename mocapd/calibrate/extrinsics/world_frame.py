@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import Observations, ReprojectionProblem
+from mocapd.calibrate.extrinsics.board_reprojection import Observations, ReprojectionProblem
 from mocapd.errors import ConfigError
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats, Rig
 

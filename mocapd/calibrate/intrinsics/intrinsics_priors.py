@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import LENS
+from mocapd.calibrate.extrinsics.board_reprojection import LENS
 from mocapd.types import Floats
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera, Floats
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase

@@ -27,7 +27,7 @@ from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, stepped
 from mocapd.fit.solver import Fitter, View
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera, Floats, Rig
 
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker

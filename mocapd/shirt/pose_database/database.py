@@ -11,7 +11,7 @@ from mocapd.body.model import BodyModel, build_model
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_descriptor_kernels
 from mocapd.shirt.pose_database.idmap_crop_kernels import unpack
 from mocapd.shirt.pose_database.idmap_index import (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.errors import ConfigError
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model

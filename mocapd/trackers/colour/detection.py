@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, normalised, rays
+from mocapd.geometry.camera_model import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_id_map

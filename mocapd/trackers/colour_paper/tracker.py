@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
 from mocapd.geometry import rotations
 from mocapd.shirt.colour.colour_model import ColourModel

@@ -9,16 +9,16 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.boundary.numbers import brief
 from mocapd.calibrate.colours.stroke_check import StrokeProblem
 from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn, Solution, solve
-from mocapd.wizard.colour.freezing import Countdown, Frozen
-from mocapd.wizard.colour.proposing import LoadDatabase, pose_database, propose
+from mocapd.wizard.colour.still_pictures import Countdown, Frozen
 from mocapd.wizard.colour.stroke_images import decode_strokes, encode_picture, encode_strokes
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
 from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.draft import DraftColours
 from mocapd.wizard.step import (

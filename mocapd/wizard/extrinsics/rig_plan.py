@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.calibrate.extrinsics.board_extrinsics import PlacedRoom, SolvedRoom
 from mocapd.calibration.board_spec import centre_m
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Rig
 from mocapd.wizard.step import Json
 

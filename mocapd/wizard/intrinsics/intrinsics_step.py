@@ -19,7 +19,7 @@ from mocapd.wizard.board.board_watch import BoardWatch, Look
 from mocapd.wizard.board.sightings import Moments
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
-from mocapd.wizard.intrinsics.lens_views import LensCamera, LensOffer
+from mocapd.wizard.intrinsics.intrinsics_views import LensCamera, LensOffer
 from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
 from mocapd.wizard.step import (
     Context,

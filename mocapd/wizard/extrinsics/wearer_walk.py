@@ -21,7 +21,7 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.trackers.colour.build import colour_model, white_balance_of
 from mocapd.types import Camera, Floats, Rig
-from mocapd.wizard.colour.proposing import LoadDatabase
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibration_of

@@ -28,8 +28,8 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
 from mocapd.wizard.draft import RoomQuality
 from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
-from mocapd.wizard.extrinsics.room_plan import plan_of
-from mocapd.wizard.extrinsics.room_solving import PARAMS, solve_live
+from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
+from mocapd.wizard.extrinsics.rig_plan import plan_of
 from mocapd.wizard.step import (
     Context,
     Json,

@@ -13,11 +13,11 @@ import numpy as np
 
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.camera_trouble import stopped_cameras
-from mocapd.wizard.colour.proposing import LoadDatabase, pose_database
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
 from mocapd.wizard.commands import WEARER_ROOM, Command, StartWalk, StopWalk
 from mocapd.wizard.draft import RoomQuality
-from mocapd.wizard.extrinsics.room_plan import plan_of_cameras
-from mocapd.wizard.extrinsics.wearer_walking import (
+from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
+from mocapd.wizard.extrinsics.wearer_walk import (
     SEEN,
     Walk,
     WalkParams,

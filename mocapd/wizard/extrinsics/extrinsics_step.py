@@ -10,8 +10,8 @@ from typing import Protocol
 
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.commands import ROOM, Command, Method, Verbs
-from mocapd.wizard.extrinsics.room_with_board import BoardRoom
-from mocapd.wizard.extrinsics.room_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.extrinsics_with_board import BoardRoom
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
 from mocapd.wizard.step import Context, StepName, StepView
 
 

@@ -1,6 +1,6 @@
 """How well the wearer alone tells where the cameras stand, on captures whose rig is known.
 
-`python -m mocapd.evaluate.room_from_body [--rms] CAPTURE...`: of the rig only the lenses are given. With
+`python -m mocapd.evaluate.extrinsics_from_body [--rms] CAPTURE...`: of the rig only the lenses are given. With
 --rms the capture is tracked with both rigs, which takes a minute more.
 """
 
