@@ -21,6 +21,8 @@ from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.score import JOINT_SETS, match, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
+from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -52,11 +54,12 @@ def score_room(found: Rig, true: Rig) -> RoomScore:
     """Where every camera stands from the first, against the truth."""
     rotation, distance = {}, {}
     for one, wanted in zip(found.cameras[1:], true.cameras[1:], strict=True):
-        R, t_m = _relative(found.cameras[0], one)
-        R_true, t_true_m = _relative(true.cameras[0], wanted)
-        angle_rad = rotations.angle_rad(rotations.from_matrix(R), rotations.from_matrix(R_true))
+        mine, theirs = _relative(found.cameras[0], one), _relative(true.cameras[0], wanted)
+        angle_rad = rotations.angle_rad(
+            rotations.from_matrix(mine.R), rotations.from_matrix(theirs.R)
+        )
         rotation[one.name] = float(np.degrees(angle_rad))
-        length = float(np.linalg.norm(t_m) / np.linalg.norm(t_true_m))
+        length = float(np.linalg.norm(mine.t_m) / np.linalg.norm(theirs.t_m))
         distance[one.name] = 100.0 * (length - 1.0)
     return RoomScore(rotation, distance)
 
@@ -66,15 +69,14 @@ def beside_first(found: Rig, true: Rig) -> Rig:
     first = true.cameras[0]
     out = [first]
     for one in found.cameras[1:]:
-        R, t_m = _relative(found.cameras[0], one)
-        out.append(replace(one, R=R @ first.R, t_m=R @ first.t_m + t_m))
+        one_from_first = _relative(found.cameras[0], one)
+        out.append(with_extrinsics(one, one_from_first @ camera_from_world(first)))
     return Rig(tuple(out))
 
 
-def _relative(first: Camera, second: Camera) -> tuple[Floats, Floats]:
-    """R (3,3), t (3,): second_from_first."""
-    R: Floats = second.R @ first.R.T
-    return R, second.t_m - R @ first.t_m
+def _relative(first: Camera, second: Camera) -> RigidTransform:
+    """second_from_first."""
+    return camera_from_world(second) @ camera_from_world(first).inverse()
 
 
 def _known(capture: Path) -> _Known:
@@ -114,7 +116,7 @@ def _onto(truth: Truth, track: RecordedTrack) -> RecordedTrack:
     seen = track.joints_m[rows.track_rows][:, mine]
     true = truth.joints_m[rows.truth_rows][:, theirs]
     best = relative_pose(seen.reshape(-1, 3), true.reshape(-1, 3), np.ones(true[..., 0].size))
-    return replace(track, joints_m=track.joints_m @ best.R.T + best.t_m)
+    return replace(track, joints_m=best.second_from_first.apply(track.joints_m))
 
 
 def main() -> None:

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.geometry import camera_model
-from mocapd.geometry import rotations
+from mocapd.geometry import camera_model, rotations
 from mocapd.types import Camera, Floats
 from tests.geometry.rigs import WEBCAM_DIST, looking_at, points_in_the_play_area, ring
 
@@ -82,7 +81,9 @@ def test_the_middle_of_the_picture_is_what_it_looks_at_and_down_is_down() -> Non
     assert above[1] < camera.K[1, 2] - 10.0
     # seen from the front, a person who faces +Z has the left side (+X) on the right of the picture
     front = looking_at("b", np.array([0.0, 1.0, 3.0]), TARGET_M, roll_rad=0.0)
-    assert camera_model.project(front, TARGET_M + np.array([0.1, 0.0, 0.0]))[0] > front.K[0, 2] + 10.0
+    assert (
+        camera_model.project(front, TARGET_M + np.array([0.1, 0.0, 0.0]))[0] > front.K[0, 2] + 10.0
+    )
 
 
 def test_behind_the_camera_there_is_no_pixel() -> None:

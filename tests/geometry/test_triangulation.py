@@ -57,7 +57,9 @@ def test_residuals_are_distances_from_the_rays() -> None:
     xy = seen_by(rig, points_in_the_play_area(5), noise_px=5.0)
     points_m, residuals_m = triangulate(rig, xy)
     for i, camera in enumerate(rig):
-        pixels = camera_model.distort(camera.dist, xy[i]) * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
+        pixels = (
+            camera_model.distort(camera.dist, xy[i]) * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
+        )
         centre_m, directions = camera_model.rays(camera, pixels)
         expected = np.linalg.norm(np.cross(points_m - centre_m, directions), axis=-1)
         assert np.allclose(residuals_m[i], expected, atol=1e-6)

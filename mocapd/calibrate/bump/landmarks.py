@@ -2,7 +2,7 @@
 
 Corners of a small picture (Shi and Tomasi 1994) are followed to a later one (pyramidal Lucas-Kanade, there and
 back). What moved with a person goes every way; what the turn of the camera moved agrees on one
-rotation, found by trying pairs of points and solved from all that agree with the best (Kabsch 1976).
+rotation, found by trying pairs of points and solved from all that agree with the best (Kabsch).
 """
 
 from collections import Counter
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.geometry import rotations
+from mocapd.geometry.alignment import align_directions
 from mocapd.geometry.camera_model import normalised
 from mocapd.types import Bytes, Camera, Floats, Singles
 
@@ -70,7 +71,7 @@ def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     for _ in range(_ROUNDS):
         if agree.sum() < 3:
             break
-        R = _rotation(before[agree], now[agree])
+        R = align_directions(now[agree], before[agree])
         agree = _agreeing(R, before, now, limit)
     turn: Floats = rotations.log(rotations.from_matrix(R))
     return CameraTurn(turn, int(agree.sum()))
@@ -147,11 +148,3 @@ def _triad(a: Floats, b: Floats) -> Floats:
     c = np.cross(a, b)
     c /= np.maximum(np.linalg.norm(c, axis=1, keepdims=True), 1e-9)
     return np.stack([a, c, np.cross(a, c)], axis=2)
-
-
-def _rotation(before: Floats, now: Floats) -> Floats:
-    """The rotation (3,3) that takes rays (M,3) closest to where they are now."""
-    U, _, Vt = np.linalg.svd(now.T @ before)
-    U[:, 2] *= np.linalg.det(U @ Vt)
-    R: Floats = U @ Vt
-    return R

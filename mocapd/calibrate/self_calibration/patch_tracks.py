@@ -106,11 +106,11 @@ class PatchTracks:
             for camera in tracker.rig.cameras:
                 if camera.name not in track.evidence:
                     continue
-                to_this = rotations.from_matrix(camera.R)
+                camera_from_world_xyzw = rotations.from_matrix(camera.R)
                 seen[camera.name] = PatchSighting(
                     mine[camera.name].t_ns,
                     to_camera(camera, body.joints_m),
-                    rotations.multiply(to_this, body.pose.quats_xyzw),
+                    rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
                     body.confidence,
                     track.evidence[camera.name],
                     track.roi_px[camera.name],

@@ -77,7 +77,7 @@ def hypotheses(
     for s in sightings:
         camera = cameras[s.index]
         view = camera_from_view(camera, s.centre_px)
-        to_world = rotations.from_matrix(camera.R.T)
+        world_from_camera_xyzw = rotations.from_matrix(camera.R.T)
         for i in range(len(s.poses)):
             one, distance = s.poses[i : i + 1], s.distances[i : i + 1]
             side_rad = s.side_px / camera.K[0, 0]
@@ -90,7 +90,7 @@ def hypotheses(
             root = camera.R.T @ (rotations.rotate(view, in_view) - camera.t_m)
             local = database.local_xyzw[one[0]].astype(float)
             turned = rotations.multiply(view, database.camera_from_root_xyzw[one[0]].astype(float))
-            local[0] = rotations.canonical(rotations.multiply(to_world, turned))
+            local[0] = rotations.canonical(rotations.multiply(world_from_camera_xyzw, turned))
             out.append(MotionState(root, local, np.zeros(n_pose), factors, information))
     return out
 

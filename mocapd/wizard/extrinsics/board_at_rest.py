@@ -83,12 +83,12 @@ def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
     """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
     scene = room.bundle.scene
     lying = with_board(room, -1, views).bundle.scene
-    R, t_m = lying.board_turn[-1], lying.board_t_m[-1]
-    up = -R[:, 2]
-    upright = -scene.camera_turn[:, 1].sum(axis=0)
-    level = float(up @ upright) / float(np.linalg.norm(upright)) > np.cos(_LEVEL_RAD)
-    rolls = np.abs(np.arcsin(np.clip(scene.camera_turn[:, 0] @ up, -1.0, 1.0)))
-    height_m = float((R @ centre_m(room.spec) + t_m) @ up)
+    scene_from_board, camera_axes = lying.scene_from_board[-1], scene.camera_from_scene.R
+    up = -scene_from_board.R[:, 2]
+    cameras_up = -camera_axes[:, 1].sum(axis=0)
+    level = float(up @ cameras_up) / float(np.linalg.norm(cameras_up)) > np.cos(_LEVEL_RAD)
+    rolls = np.abs(np.arcsin(np.clip(camera_axes[:, 0] @ up, -1.0, 1.0)))
+    height_m = float(scene_from_board.apply(centre_m(room.spec)) @ up)
     above = float((camera_centres(scene) @ up).min()) - height_m > _ABOVE_M
     return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
 
@@ -97,7 +97,6 @@ def _lowest_m(room: SolvedRoom, up: Floats) -> float:
     """The height under which the board is lower than wherever it was held."""
     if not room.indices:
         return float("inf")
-    scene = room.bundle.scene
-    middles = scene.board_turn @ centre_m(room.spec) + scene.board_t_m
+    middles = room.bundle.scene.scene_from_board.apply(centre_m(room.spec))
     # not the very lowest: some may be wrong
     return float(np.percentile(middles @ up, 20)) - _UNDER_M

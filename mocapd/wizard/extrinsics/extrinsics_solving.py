@@ -15,11 +15,11 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     solve_room,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
-from mocapd.calibrate.extrinsics.pose_graph import lens_row
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import KnownLenses, LensPriors
 from mocapd.calibrate.intrinsics.views import Choice, chosen_views
 from mocapd.calibration.board_spec import BoardSpec
+from mocapd.geometry.reprojection import intrinsics_row
 from mocapd.wizard.board.sightings import Views
 from mocapd.wizard.draft import DraftCamera
 
@@ -83,7 +83,7 @@ def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
 
 def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownLenses:
     """Lenses without pictures of their own stay near what was measured."""
-    rows = np.stack([lens_row(lens) for lens in lenses])
+    rows = np.stack([intrinsics_row(lens.K, lens.dist) for lens in lenses])
     deviation = np.full(rows.shape, np.inf)
     for i, (lens, views) in enumerate(zip(lenses, alone, strict=True)):
         if len(views) >= _OWN_VIEWS:

@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.calibrate.extrinsics.board_extrinsics import PlacedRoom, SolvedRoom
 from mocapd.calibration.board_spec import centre_m
-from mocapd.geometry.camera_model import centre
+from mocapd.geometry.camera_model import camera_from_world, centre
 from mocapd.types import Rig
 from mocapd.wizard.step import Json
 
@@ -14,10 +14,8 @@ def plan_of(room: SolvedRoom, made: PlacedRoom) -> dict[str, Json]:
     scene = room.bundle.scene
     first = made.rig.cameras[0]
     # the scene's frame is the first camera's as it was at first; its own pose undoes what moved it
-    turn = first.R.T @ scene.camera_turn[0]
-    shift_m = first.R.T @ (scene.camera_t_m[0] - first.t_m)
-    middles = scene.board_turn @ centre_m(room.spec) + scene.board_t_m
-    boards = middles @ turn.T + shift_m
+    world_from_scene = camera_from_world(first).inverse() @ scene.camera_from_scene[0]
+    boards = world_from_scene.apply(scene.scene_from_board.apply(centre_m(room.spec)))
     return {**plan_of_cameras(made.rig), "boards_m": np.round(boards, 3).tolist()}
 
 

@@ -17,6 +17,7 @@ from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import from_camera
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.trackers.colour.build import colour_model, white_balance_of
@@ -157,7 +158,7 @@ def walk_and_solve(
     rig, report = room_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
     first = rig.cameras[0]
     walked = [
-        (m[first.name].joints_m[0] - first.t_m) @ first.R for m in tracks.moments if first.name in m
+        from_camera(first, m[first.name].joints_m[0]) for m in tracks.moments if first.name in m
     ]
     return WearerFound(rig, report, np.array(walked).reshape(-1, 3))
 
