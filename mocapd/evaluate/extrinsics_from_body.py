@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
+from mocapd.calibrate.self_calibration.joint_solver import RoomReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
-from mocapd.calibrate.self_calibration.self_calibration import RoomReport, room_from_body
+from mocapd.calibrate.self_calibration.self_calibration import room_from_body
 from mocapd.calibration.from_capture import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder

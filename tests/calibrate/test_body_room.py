@@ -8,8 +8,9 @@ import pytest
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
-from mocapd.calibrate.self_calibration.self_calibration import SelfCalibrationParams, room_from_body
+from mocapd.calibrate.self_calibration.self_calibration import room_from_body
 from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError

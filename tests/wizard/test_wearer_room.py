@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.calibrate.self_calibration.self_calibration import SelfCalibrationParams
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre

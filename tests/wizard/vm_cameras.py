@@ -29,7 +29,8 @@ from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.step import StepName, StepState
-from mocapd.wizard.wizard import Wizard, WizardView
+from mocapd.wizard.wizard import Wizard
+from mocapd.wizard.wizard_view import WizardView
 
 CAM = "/mnt/share/rig/cam.sh"
 BEGAN_NS = monotonic_ns()

@@ -7,12 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from mocapd.calibrate.self_calibration.joint_solver import RoomReport, SelfCalibrationParams
 from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchTracks, unplaced
-from mocapd.calibrate.self_calibration.self_calibration import (
-    RoomReport,
-    SelfCalibrationParams,
-    room_from_body,
-)
+from mocapd.calibrate.self_calibration.self_calibration import room_from_body
 from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import InputError
