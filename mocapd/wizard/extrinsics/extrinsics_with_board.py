@@ -5,9 +5,6 @@ Its commands are `commands.BOARD_ROOM`.
 
 from dataclasses import replace
 from enum import StrEnum
-from itertools import combinations
-
-import numpy as np
 
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     ContradictionError,
@@ -17,19 +14,17 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     placed,
     with_board,
 )
-from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
-from mocapd.calibration.board_spec import corners_m
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
 from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch, Look
-from mocapd.wizard.board.sightings import Moments
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
 from mocapd.wizard.draft import RoomQuality
 from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
+from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
-from mocapd.wizard.extrinsics.rig_plan import plan_of
+from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import (
     Context,
     Json,
@@ -40,11 +35,7 @@ from mocapd.wizard.step import (
     Tell,
 )
 
-_ENOUGH = 10  # moments in all
-_OWN = 5  # of them in this step: those of the lens step were held near one camera
-_SHARED = 4  # of each camera with the others
-_MORE = 3  # moments before another try
-_PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no moment
+_PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
 
 
 class RoomPhase(StrEnum):
@@ -65,7 +56,7 @@ class BoardRoom:
         self._context = context
         self._cameras = draft.cameras
         self._spec = draft.board or usual_board()
-        self._begin_moments()
+        self._seen = self._begin_anew()
         known = {index for own in draft.board_views.values() for index in own}
         self._earlier = frozenset(known)
         first = INDEX_STEP * (max(known, default=0) // INDEX_STEP + 1)
@@ -111,11 +102,15 @@ class BoardRoom:
         if look is not None:
             self._advice.take(look)
             if self._stage is RoomPhase.COLLECT:
-                self._own += self._moments.offer(look)
+                self._seen.offer(look)
             else:
                 self._watch_floor(look)
             self._advice.ask(now_ns, look.frames, self._spec)
-        if self._stage is RoomPhase.COLLECT and self._context.job is None and self._due():
+        if (
+            self._stage is RoomPhase.COLLECT
+            and self._context.job is None
+            and (self._asked or self._seen.due)
+        ):
             self._solve()
 
     def command(self, command: Command) -> None:
@@ -126,7 +121,7 @@ class BoardRoom:
             case SkipFloor():
                 self._skip_floor()
             case Solve():
-                if self._stage is not RoomPhase.COLLECT or not self._moments.linked(FEWEST_SHARED):
+                if self._stage is not RoomPhase.COLLECT or not self._seen.solvable:
                     raise InputError(
                         "there is nothing to solve yet",
                         "room",
@@ -142,7 +137,7 @@ class BoardRoom:
         self._refusal = Problem.of(error)
         if isinstance(error, ContradictionError):
             # nothing tells which of them are wrong
-            self._begin_moments()
+            self._seen = self._begin_anew()
 
     def view(self) -> StepView:
         """See Step."""
@@ -153,7 +148,7 @@ class BoardRoom:
             state = StepState.WORKING
         elif self._refusal is not None:
             state = StepState.FAILED
-        overlays = self._watch.shapes(self._now_ns, self._moments.still_px())
+        overlays = self._watch.shapes(self._now_ns, self._seen.still_px())
         return StepView(
             state,
             self._sentence(),
@@ -163,28 +158,16 @@ class BoardRoom:
             self._details(),
         )
 
-    # -- moments ---------------------------------------------------------------------------------
+    # -- sightings -------------------------------------------------------------------------------
 
-    def _begin_moments(self) -> None:
-        """With those of the lens step only."""
-        self._moments = Moments(
-            {camera.id: camera.size_px for camera in self._cameras}, corners_m(self._spec)
-        )
-        self._moments.add(self._context.draft.board_views)
-        self._own = 0  # moments of this step
-        self._tried = 0  # of them at the last try
-
-    def _due(self) -> bool:
-        if self._asked:
-            return True
-        enough = (
-            self._own >= _OWN and self._moments.count >= _ENOUGH and self._moments.linked(_SHARED)
-        )
-        return enough and (not self._tried or self._own >= self._tried + _MORE)
+    def _begin_anew(self) -> BoardCollection:
+        """With those of the step Lens only."""
+        return BoardCollection(self._cameras, self._spec, self._context.draft.board_views)
 
     def _solve(self) -> None:
-        self._tried, self._asked, self._solving = self._own, False, True
-        views, earlier = self._moments.views, self._earlier
+        self._seen.try_now()
+        self._asked, self._solving = False, True
+        views, earlier = self._seen.views, self._earlier
         cameras, spec, lenses = self._cameras, self._spec, dict(self._context.draft.lenses)
 
         def job(tell: Tell) -> tuple[SolvedRoom, PlacedRoom]:
@@ -207,7 +190,7 @@ class BoardRoom:
         self._context.scene(Scene.FLOOR)
 
     def _watch_floor(self, look: Look) -> None:
-        still = {name: self._moments.still(name, seen) for name, seen in look.seen.items()}
+        still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
         self._rest.take(look, still)
         if self._room is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
             return
@@ -261,7 +244,7 @@ class BoardRoom:
         self._context.draft = replace(
             self._context.draft,
             board=self._spec,
-            board_views=self._moments.views,
+            board_views=self._seen.views,
             rig=made.rig,
             floor_known=floor_known,
             room=RoomQuality(
@@ -286,7 +269,7 @@ class BoardRoom:
             )
         if self._solving:
             return "Working out where the cameras stand. You can go on showing the board."
-        apart = [c for c in self._cameras if c.id not in self._moments.largest_group(_SHARED)]
+        apart = self._seen.apart()
         if apart and len(self._cameras) > 2:
             name = apart[0].label or apart[0].id
             return f"Hold the board where {name} and another camera see it; keep it still for a moment."
@@ -297,12 +280,7 @@ class BoardRoom:
             return 1.0
         if self._stage is RoomPhase.FLOOR:
             return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
-        shares = (
-            self._own / _OWN,
-            self._moments.count / _ENOUGH,
-            len(self._moments.largest_group(_SHARED)) / len(self._cameras),
-        )
-        return 0.7 * float(np.mean(np.minimum(shares, 1.0)))
+        return 0.7 * self._seen.progress
 
     def _problems(self) -> tuple[Problem, ...]:
         told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
@@ -325,48 +303,24 @@ class BoardRoom:
                     camera.label or camera.id,
                     "hold the board still where it and another camera see it, or turn them together",
                 )
-                for camera in self._cameras
-                if not any(
-                    self._moments.shared(camera.id, other.id)
-                    for other in self._cameras
-                    if other.id != camera.id
-                )
+                for camera in self._seen.lonely()
             ]
         # on the floor one camera that sees the board is enough
         wanted = {camera.id: self._stage is RoomPhase.COLLECT for camera in self._cameras}
         return (*told, *self._advice.problems(self._now_ns, wanted))
 
     def _details(self) -> dict[str, Json]:
-        made = self._made
-        quality: dict[str, Json] | None = None
-        if made is not None:
-            quality = {
-                "rms_px": round(made.rms_px, 3),
-                "play_area_cm": round(made.play_area.median_cm, 2) if made.play_area else None,
-                "cameras": {
-                    name: {
-                        "rms_px": round(fit.rms_px, 3),
-                        "views": fit.views,
-                        "focal_percent": round(100.0 * fit.focal_deviation, 2),
-                    }
-                    for name, fit in made.cameras.items()
-                },
-                "positions": made.positions,
-            }
         return {
             "stage": self._stage.value,
             "solving": self._solving,
             "names": {camera.id: camera.label or camera.id for camera in self._cameras},
-            "moments": self._moments.count,
-            "enough": _ENOUGH,
-            "pairs": [
-                {"a": a.id, "b": b.id, "shared": self._moments.shared(a.id, b.id)}
-                for a, b in combinations(self._cameras, 2)
-            ],
+            "moments": self._seen.count,
+            "enough": ENOUGH,
+            "pairs": self._seen.pairs(),
             "at_rest": self._rest.seen,
-            "can_solve": self._stage is RoomPhase.COLLECT and self._moments.linked(FEWEST_SHARED),
-            "can_skip_floor": self._stage is RoomPhase.FLOOR and made is not None,
+            "can_solve": self._stage is RoomPhase.COLLECT and self._seen.solvable,
+            "can_skip_floor": self._stage is RoomPhase.FLOOR and self._made is not None,
             "floor_known": self._stage is RoomPhase.DONE and self._context.draft.floor_known,
-            "quality": quality,
+            "quality": None if self._made is None else quality_of(self._made),
             "plan": self._plan,
         }

@@ -1,4 +1,4 @@
-"""The room seen from above, for the page: cameras, where they look, and where the board was."""
+"""The rig for the page: from above, cameras, where they look and where the board was; how well it fits."""
 
 import numpy as np
 
@@ -33,4 +33,21 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
             }
             for camera in rig.cameras
         ]
+    }
+
+
+def quality_of(made: PlacedRoom) -> dict[str, Json]:
+    """How well the cameras fit each other."""
+    return {
+        "rms_px": round(made.rms_px, 3),
+        "play_area_cm": round(made.play_area.median_cm, 2) if made.play_area else None,
+        "cameras": {
+            name: {
+                "rms_px": round(fit.rms_px, 3),
+                "views": fit.views,
+                "focal_percent": round(100.0 * fit.focal_deviation, 2),
+            }
+            for name, fit in made.cameras.items()
+        },
+        "positions": made.positions,
     }
