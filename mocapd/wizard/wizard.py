@@ -12,11 +12,12 @@ from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, read_command
+from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, named
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import Context, Json, Problem, Scene, Step, StepName, StepState, T, Tell
+from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
 from mocapd.wizard.wizard_view import WizardView, steps_done, with_offer
 

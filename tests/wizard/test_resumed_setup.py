@@ -12,9 +12,10 @@ from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.commands import Command, Verbs
+from mocapd.wizard.context import Context
 from mocapd.wizard.kept_setup import FILE_NAME, read_kept
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import Context, StepName, StepState, StepView
+from mocapd.wizard.step import StepName, StepState, StepView
 from mocapd.wizard.wizard import MakeStep, Wizard
 from mocapd.wizard.wizard_view import WizardView
 from tests.wizard.drafts import begun, drafted, same

@@ -21,7 +21,7 @@ from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
 from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
-from mocapd.wizard.extrinsics.wearer_walk import WalkParams
+from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer

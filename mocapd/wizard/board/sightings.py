@@ -9,7 +9,7 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.types import Floats
-from mocapd.wizard.board.board_watch import BoardObservation, Look
+from mocapd.wizard.board.board_look import BoardObservation, Look
 
 Views = Mapping[str, Mapping[int, BoardView]]
 

@@ -20,18 +20,9 @@ from mocapd.wizard.colour.still_pictures import Countdown, Frozen
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
 from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftColours
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    Shape,
-    StepName,
-    StepState,
-    StepView,
-    Tell,
-)
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView, Tell
 
 _COUNTDOWN_S = 3.0
 

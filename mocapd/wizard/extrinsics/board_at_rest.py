@@ -10,7 +10,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
-from mocapd.wizard.board.board_watch import BoardObservation, Look
+from mocapd.wizard.board.board_look import BoardObservation, Look
 
 LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
 _SAME_PX = 2.0  # corners this near are of the board at rest

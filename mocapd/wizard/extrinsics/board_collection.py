@@ -1,16 +1,14 @@
 """Sightings of the board collected for the extrinsics: whether they are enough, and who shares none."""
 
 from collections.abc import Sequence
-from itertools import combinations
 
 import numpy as np
 
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
-from mocapd.wizard.board.board_watch import BoardObservation, Look
+from mocapd.wizard.board.board_look import BoardObservation, Look
 from mocapd.wizard.board.sightings import Moments, Views
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Json
 
 ENOUGH = 10  # sightings in all
 _OWN = 5  # of them in this step: those of the step Lens were held near one camera
@@ -94,9 +92,6 @@ class BoardCollection:
             )
         ]
 
-    def pairs(self) -> list[Json]:
-        """For the page: how many sightings each pair shares."""
-        return [
-            {"a": a.id, "b": b.id, "shared": self._moments.shared(a.id, b.id)}
-            for a, b in combinations(self._cameras, 2)
-        ]
+    def shared(self, a: DraftCamera, b: DraftCamera) -> int:
+        """How many sightings two cameras share."""
+        return self._moments.shared(a.id, b.id)

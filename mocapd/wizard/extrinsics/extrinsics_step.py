@@ -10,9 +10,10 @@ from typing import Protocol
 
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.commands import ROOM, Command, Method, Verbs
+from mocapd.wizard.context import Context
 from mocapd.wizard.extrinsics.extrinsics_with_board import BoardRoom
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
-from mocapd.wizard.step import Context, StepName, StepView
+from mocapd.wizard.step import StepName, StepView
 
 
 class RoomMethod(Protocol):

@@ -5,6 +5,7 @@ Its commands are `commands.BOARD_ROOM`.
 
 from dataclasses import replace
 from enum import StrEnum
+from itertools import combinations
 
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     ContradictionError,
@@ -17,23 +18,17 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
-from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch, Look
+from mocapd.wizard.board.board_look import Look
+from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import RoomQuality
 from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    StepState,
-    StepView,
-    Tell,
-)
+from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
 
 _PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
 
@@ -316,7 +311,10 @@ class BoardRoom:
             "names": {camera.id: camera.label or camera.id for camera in self._cameras},
             "moments": self._seen.count,
             "enough": ENOUGH,
-            "pairs": self._seen.pairs(),
+            "pairs": [
+                {"a": a.id, "b": b.id, "shared": self._seen.shared(a, b)}
+                for a, b in combinations(self._cameras, 2)
+            ],
             "at_rest": self._rest.seen,
             "can_solve": self._stage is RoomPhase.COLLECT and self._seen.solvable,
             "can_skip_floor": self._stage is RoomPhase.FLOOR and self._made is not None,

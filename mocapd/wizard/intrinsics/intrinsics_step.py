@@ -15,22 +15,15 @@ from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
-from mocapd.wizard.board.board_watch import BoardWatch, Look
+from mocapd.wizard.board.board_look import Look
+from mocapd.wizard.board.board_watch import BoardWatch
 from mocapd.wizard.board.sightings import Moments
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
+from mocapd.wizard.context import Context
 from mocapd.wizard.intrinsics.intrinsics_views import LensCamera, LensOffer
 from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
-from mocapd.wizard.step import (
-    Context,
-    Problem,
-    Scene,
-    Shape,
-    StepName,
-    StepState,
-    StepView,
-    Tell,
-)
+from mocapd.wizard.step import Problem, Scene, Shape, StepName, StepState, StepView, Tell
 
 _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
 
