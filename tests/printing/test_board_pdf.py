@@ -9,7 +9,7 @@ from mocapd.errors import ConfigError
 from mocapd.printing.board_pdf import board_pdf, fitted_board, flags_of, layout_of
 from mocapd.printing.paper_sizes import PAPERS_MM, RULER_MM
 from mocapd.types import Floats
-from tests.calibrate.printed import Print, keywords, pages, printed, text
+from tests.printing.printed import Print, keywords, pages, printed, text
 
 PX_PER_MM = 8.0
 

@@ -26,7 +26,7 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
-from tests.trackers.synthetic import FACTOR, MODEL, fitter, standing, views_of
+from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
 NO_CLOUD, NO_LIBRARY = np.empty((0, 6)), np.empty((0, 3, 4))
 BONES = ("Shoulder", "UpperArm", "LowerArm")

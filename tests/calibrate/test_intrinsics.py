@@ -11,7 +11,7 @@ from mocapd.calibrate.intrinsics.views import Choice, chosen_views, coverage, co
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
-from tests.calibrate.board_rooms import TARGET_M, cameras, corners_px, held_poses, middle_m
+from tests.calibrate.board_scenes import TARGET_M, cameras, corners_px, held_poses, middle_m
 
 BOARD_M = corners_m(BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052))
 (CAMERA,) = cameras(1)

@@ -20,7 +20,7 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes
-from tests.calibrate.board_rooms import cameras, floor_pose, held_poses, write_pictures
+from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 RIG = cameras(2)

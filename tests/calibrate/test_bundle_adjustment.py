@@ -28,7 +28,7 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre, project
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Camera
-from tests.calibrate.board_rooms import cameras, corners_px, floor_pose, held_poses, middle_m
+from tests.calibrate.board_scenes import cameras, corners_px, floor_pose, held_poses, middle_m
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 BOARD_M = corners_m(SPEC)

@@ -1,6 +1,6 @@
 """The step Cameras against a real uvcvideo driver: runs in the guest of ../shared/vm, not under pytest.
 
-Like tests/capture/vm_proof.py (see docs/webcams.md for the machine); needs mocapd's packages capture,
+Like tests/vm/vm_proof.py (see docs/webcams.md for the machine); needs mocapd's packages capture,
 calibrate, pipeline and wizard beside it, and libusb_package.
 
     python vm_cameras.py lock | sigterm | replug | yuyv | reasons

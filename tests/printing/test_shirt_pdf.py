@@ -22,7 +22,7 @@ from mocapd.printing.shirt_pattern import (
 from mocapd.printing.shirt_pdf import shirt_pdf as shirt_pdf_anew
 from mocapd.printing.shirt_tiles import EDGE_MM, FOOT_MM, tiling_of
 from mocapd.types import Floats
-from tests.calibrate.printed import pages, printed, text
+from tests.printing.printed import pages, printed, text
 
 SHIRT = standard_shirt()
 shirt_pdf = cache(shirt_pdf_anew)

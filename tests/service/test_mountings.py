@@ -9,7 +9,7 @@ from mocapd.clock import nanoseconds
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.mountings import Mountings
 from mocapd.types import Bytes, Frame, Rig
-from tests.calibrate.distant_room import Room, camera, turn
+from tests.calibrate.distant_scene import Room, camera, turn
 
 
 class Showing:

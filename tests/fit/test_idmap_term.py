@@ -20,9 +20,9 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.types import Bytes
-from tests.trackers import naive_alignment
-from tests.trackers.naive_alignment import Posed, Sums, posed
-from tests.trackers.synthetic import CAMERAS, MODEL, fitter, standing, stepped, views_of
+from tests.fit import naive_idmap_term
+from tests.fit.naive_idmap_term import Posed, Sums, posed
+from tests.fit.synthetic import CAMERAS, MODEL, fitter, standing, stepped, views_of
 
 TICK_S = 1.0 / 30.0
 # joints that the shirt tells of
@@ -99,7 +99,7 @@ def test_accumulate_equals_the_naive_twin(
     got = accumulated(
         state, drawn, image_ids, pixel_weight, phase, every, edge_weight, n_shape, grid_px
     )
-    wanted = naive_alignment.accumulate(
+    wanted = naive_idmap_term.accumulate(
         MODEL, state, drawn, camera, COARSE, image_ids, pixel_weight,
         grid_px, RADIUS_PX, ROBUST_PX, phase, every, edge_weight, n_shape, WEIGHT,
     )  # fmt: skip

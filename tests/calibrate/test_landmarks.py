@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.bump.landmarks import room_marks, seen_turn
-from tests.calibrate.distant_room import AXES, Room, camera, turn
+from tests.calibrate.distant_scene import AXES, Room, camera, turn
 
 
 @pytest.mark.parametrize("axis", AXES)
