@@ -9,10 +9,10 @@ from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import retract
 from mocapd.body.shape import mean_shape
-from mocapd.body.shirt import N_LABELS, standard_shirt
+from mocapd.body.shirt_patches import N_LABELS, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.shirt.pose_database.key_poses import arm_rotations

@@ -18,7 +18,8 @@ from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
 from mocapd.wizard.commands import Command, Verbs
-from mocapd.wizard.step import Context, Problem, Shape, StepName, StepState, StepView
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Problem, Shape, StepName, StepState, StepView
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring
 

@@ -29,11 +29,12 @@ from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
 from mocapd.wizard.check.check_step import CheckStep
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
+from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.room_step import RoomStep
-from mocapd.wizard.intrinsics.lens_step import LensStep
+from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.intrinsics.intrinsics_step import LensStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.step import Context, Step, StepName, Tell
+from mocapd.wizard.step import StepName, Tell
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import SIZE_PX, full_draft
 from tests.wizard.fake_webcam import FakeWebcam

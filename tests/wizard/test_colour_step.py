@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.capture.capture_folder import load_folder
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of

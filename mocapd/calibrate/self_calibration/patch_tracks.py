@@ -1,4 +1,4 @@
-"""The wearer as each camera sees them alone: body, classified patches and marks, before any room is known."""
+"""The wearer as each camera sees them alone: body, classified patches and marks, before any extrinsics are known."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -109,11 +109,11 @@ class PatchTracks:
             for camera in tracker.rig.cameras:
                 if camera.name not in track.evidence:
                     continue
-                to_this = rotations.from_matrix(camera.R)
+                camera_from_world_xyzw = rotations.from_matrix(camera.R)
                 seen[camera.name] = PatchSighting(
                     mine[camera.name].t_ns,
                     to_camera(camera, body.joints_m),
-                    rotations.multiply(to_this, body.pose.quats_xyzw),
+                    rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
                     body.confidence,
                     track.evidence[camera.name],
                     track.roi_px[camera.name],

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
 from mocapd.shirt.colour.strokes import stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import (
     INDEX,
     N_JOINTS,

@@ -22,16 +22,8 @@ from mocapd.wizard.body.body_measuring import (
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
 from mocapd.wizard.commands import BODY, Command, MeasureBody, SkipBody, Stature
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    Shape,
-    StepName,
-    StepState,
-    StepView,
-)
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView
 
 
 class BodyStep:

@@ -15,7 +15,7 @@ from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import Fitter, View
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.trackers.base import Track, Tracker
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 
