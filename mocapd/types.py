@@ -13,7 +13,7 @@ Quaternions are xyzw with w >= 0. Arrays are read-only by convention after const
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -126,17 +126,3 @@ class BodyState:
     joints_m: Floats | None
     confidence: Floats
     cameras: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Track:
-    """What a tracker says of one frame set: the body, and per camera an image of the evidence.
-
-    `evidence[camera]` is an id map (h,w) uint8 over the region `roi_px[camera]` = x0, y0, x1, y1 of
-    the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
-    (colour tracker: colour ids). For previews only.
-    """
-
-    body: BodyState
-    evidence: Mapping[str, Bytes] = field(default_factory=dict)
-    roi_px: Mapping[str, tuple[int, int, int, int]] = field(default_factory=dict)

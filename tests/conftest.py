@@ -8,9 +8,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
+
+if TYPE_CHECKING:  # numba takes a second to import, and most tests need none of it
+    from mocapd.shirt.pose_database.database import PoseDatabase
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
@@ -47,6 +51,14 @@ def cache_home(pytestconfig: pytest.Config) -> Path:
     """Where child processes keep the pose database and films, so that they are made once."""
     assert pytestconfig.cache is not None
     return pytestconfig.cache.mkdir("mocapd")
+
+
+@pytest.fixture(scope="session")
+def pose_database() -> "PoseDatabase":
+    """A small pose database, built once."""
+    from mocapd.shirt.pose_database.database import DatabaseParams, build_database
+
+    return build_database(DatabaseParams(count=3000, pool=1.2, cells=32))
 
 
 @pytest.fixture

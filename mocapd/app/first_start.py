@@ -161,7 +161,5 @@ def _fingerprint(config: "Config") -> str:
         stat = path.stat()
         digest.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
     tracker = config.tracker
-    digest.update(
-        f"{platform.python_version()} {version('numba')} {tracker.name} {tracker.variant}".encode()
-    )
+    digest.update(f"{platform.python_version()} {version('numba')} {tracker.name}".encode())
     return digest.hexdigest()

@@ -22,8 +22,8 @@ from mocapd.calibration.saved_calibration import (
 )
 from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.colour.strokes import read_labelled, strokes_beside
-from mocapd.trackers.colour.build import colour_model
 from mocapd.types import Camera, Floats, LabelledPicture, Rig
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 

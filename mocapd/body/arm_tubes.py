@@ -4,7 +4,7 @@ statures added under cloth."""
 import numpy as np
 
 from mocapd.body.shape import BodyShape
-from mocapd.body.shirt import SLEEVE_PATCHES, ShirtPatch, standard_shirt
+from mocapd.body.shirt_patches import SLEEVE_PATCHES, ShirtPatch, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.body.surface import LEFT_ARM, LIMB_COLUMNS, RIGHT_ARM, SHIRT, SKIN, Tube
 from mocapd.types import Floats, Skeleton

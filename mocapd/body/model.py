@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
 from mocapd.body.pose_space import PoseSpace, upper_body
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import PARENTS
 from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM
 from mocapd.body.surface_building import build_surface, build_whole_surface, shape_derivatives

@@ -13,7 +13,7 @@ import numpy as np
 from mocapd.body.joint_limit_kernels import JointLimits
 from mocapd.body.joint_limits import limits_of
 from mocapd.body.shape import FACTOR_SD, FACTORS, LOWER_FACTOR_SD, WHOLE_FACTORS
-from mocapd.body.shirt import SLEEVE_PATCHES
+from mocapd.body.shirt_patches import SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Ints

@@ -30,14 +30,22 @@ FACTOR_SD = np.array([0.04, 0.05, 0.02, 0.07, 0.12, 0.14, 0.18])
 # the leg's length varies by 0.04 at fixed stature (ANSUR II, crotch height). Hips: hip breadth. Girth:
 # circumferences of thigh (0.09) and calf (0.08), widened by trousers. Head: its length and breadth.
 LOWER_FACTOR_SD = np.array([0.05, 0.04, 0.06, 0.15, 0.04])
+# of measured proportions, as a part of the spread over all people
+_MEASURED_SPREAD = 0.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyShape:
-    """stature_m [m] and factors (N,), 1.0 being the mean body: those of FACTORS, or of WHOLE_FACTORS."""
+    """stature_m [m] and factors (N,), 1.0 being the mean body: those of FACTORS, or of WHOLE_FACTORS.
+
+    What is known of the factors: information (N,N), the inverse of their covariance, None for no more than
+    what people are like; taught_s: of good tracking that they were learned from [s].
+    """
 
     stature_m: float
     factors: Floats
+    information: Floats | None = None
+    taught_s: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.8 <= self.stature_m <= 2.5:
@@ -61,6 +69,12 @@ class BodyShape:
 def mean_shape(stature_m: float) -> BodyShape:
     """The mean body of this stature."""
     return BodyShape(stature_m, np.ones(N_FACTORS))
+
+
+def measured_shape(stature_m: float, factors: Floats) -> BodyShape:
+    """A wearer whose proportions, those of FACTORS, `calibrate.body_shape` has measured."""
+    information = np.diag(1.0 / (_MEASURED_SPREAD * FACTOR_SD) ** 2)
+    return BodyShape(stature_m, factors, information)
 
 
 def skeleton_of(shape: BodyShape) -> Skeleton:

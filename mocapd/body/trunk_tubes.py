@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.body.shape import N_FACTORS, BodyShape
-from mocapd.body.shirt import ShirtPatch
+from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.body.surface import HEAD, LIMB_COLUMNS, SHIRT, SKIN, TORSO, TROUSERS, Tube
 from mocapd.types import Floats, Skeleton

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.body.shirt import N_COLOURS, standard_shirt
+from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.boundary.files import is_file, is_folder
 from mocapd.errors import ConfigError, InputError
 from mocapd.shirt.colour.strokes import read_labelled, stroked_pictures, strokes_beside

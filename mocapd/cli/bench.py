@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import (
+    ConfigOption,
+    SetOption,
+    VariantOption,
+    effective_config,
+    refuse_variant,
+)
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -26,9 +32,7 @@ def bench_command(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: all that the input suits]")
     ] = None,
-    variant: Annotated[
-        str | None, typer.Option(help="Which variant of it [default: that of the config]")
-    ] = None,
+    variant: VariantOption = None,
     capture: Annotated[
         str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
     ] = _DEFAULT,
@@ -54,9 +58,8 @@ def bench_command(
     from mocapd.app.libraries import prepare_libraries
     from mocapd.outputs.registry import zenoh_section
 
-    effective = effective_config(
-        config, settings, tracker__name=tracker, tracker__variant=variant
-    ).config
+    refuse_variant(variant)
+    effective = effective_config(config, settings, tracker__name=tracker).config
     if live and not capture.startswith(_SIM):
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
     if watched and not live:
@@ -72,10 +75,10 @@ def bench_command(
 
     own = effective.tracker
     with ProgressBars() as progress:
-        recording = open_input(capture, effective.cache_dir, own.stature_m, own.variant, progress)
-        bench = Bench(recording, tracker, effective.cache_dir, own, progress)
+        recording = open_input(capture, effective.cache_dir, own.stature_m, progress)
+        bench = Bench(recording, tracker, effective.cache_dir, own, own.sections, progress)
         if live:
-            command = _daemon_command(capture, config, settings, own.variant)
+            command = _daemon_command(capture, config, settings)
             found = bench.live(command, seconds, _watching() if watched else None)
         elif endurance is not None:
             found = bench.endurance(endurance)
@@ -92,12 +95,10 @@ def _watching() -> "Watching":
     return watching
 
 
-def _daemon_command(
-    capture: str, config: Path | None, settings: list[str] | None, variant: str
-) -> list[str]:
+def _daemon_command(capture: str, config: Path | None, settings: list[str] | None) -> list[str]:
     """`mocapd run` as this command was called."""
     words = [sys.executable, "-m", "mocapd.cli.main", "run", "--capture", capture]
     words += ["--config", str(config)] if config else []
-    for setting in (*(settings or ()), f"tracker.variant={variant}"):
+    for setting in settings or ():
         words += ["--set", setting]
     return words

@@ -9,21 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import (
+    ConfigOption,
+    SetOption,
+    VariantOption,
+    effective_config,
+    refuse_variant,
+)
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
     from mocapd.evaluate.runs import EvaluationResults
-
-_COMPARABLE = "colour"
-
-
-class Variant(StrEnum):
-    """How the colour tracker works."""
-
-    FULL = "full"
-    PAPER = "paper"
-    BASELINE = "baseline"
 
 
 class Joints(StrEnum):
@@ -53,12 +49,12 @@ def evaluate_captures(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: that of the config]")
     ] = None,
-    variant: Annotated[
-        Variant, typer.Option(help="The full method, the paper's own, or the paper's baseline.")
-    ] = Variant.FULL,
+    variant: VariantOption = None,
     compare: Annotated[
         Compare | None,
-        typer.Option(help="Run the full method, the paper's and the baseline, and compare them."),
+        typer.Option(
+            help="Run the tracker, the method as published and its baseline, and compare."
+        ),
     ] = None,
     joints: Annotated[Joints, typer.Option(help="Which joints are scored.")] = Joints.UPPER,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
@@ -74,14 +70,18 @@ def evaluate_captures(
     Example: mocapd eval captures/office captures/gym --compare baseline --out docs
     """
     from mocapd.app.libraries import prepare_libraries
+    from mocapd.trackers.registry import TRACKERS, entry
 
+    refuse_variant(variant)
     effective = effective_config(config, settings, tracker__name=tracker).config
-    name = effective.tracker.name
-    if compare is not None and name != _COMPARABLE:
+    name, sections = effective.tracker.name, effective.tracker.sections
+    rivals = entry(name).compared_with
+    if compare is not None and not rivals:
+        comparable = (known for known, one in TRACKERS.items() if one.compared_with)
         raise ConfigError(
             f"the tracker {name!r} has no baseline",
             "--compare baseline",
-            f"add --tracker {_COMPARABLE}",
+            f"add --tracker {' or '.join(comparable)}",
         )
     prepare_libraries(effective.cache_dir)
 
@@ -89,28 +89,28 @@ def evaluate_captures(
     from mocapd.calibration.record import Calibration
     from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
+    from mocapd.evaluate.compare import FULL
     from mocapd.evaluate.page import write_page
-    from mocapd.session.tracker_setup import cached, ready_tracker
-    from mocapd.trackers.base import Tracker
+    from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 
     cases = [open_case(capture) for capture in captures]
     with ProgressBars() as progress:
 
-        def build(known: Calibration, variant: str) -> Tracker:
-            return ready_tracker(name, known, cached(effective.cache_dir, progress), variant)
+        def build(known: Calibration, method: str) -> ReadyTracker:
+            tracker, section = rivals.get(method, (name, sections[name]))
+            return ready_tracker(tracker, known, cached(effective.cache_dir, progress), section)
 
         setting = runs.EvaluationSettings(
             build, effective.tracker.stature_m, joints.value, progress
         )
         if compare is None:
-            results = runs.run(cases, variant.value, setting)
-            title = name if name != _COMPARABLE else f"{name}, variant {variant.value}"
-            findings = runs.EvaluationResults(title, joints.value, results, {}, ())
+            results = runs.run(cases, FULL, setting)
+            findings = runs.EvaluationResults(name, joints.value, results, {}, ())
         else:
             findings = runs.compare(cases, name, setting)
     _print(findings, as_json)
     if out is not None:
-        words = _command(captures, name, variant, compare, joints, out)
+        words = _command(captures, name, compare, joints, out)
         for path in write_page(out, findings, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
 
@@ -123,8 +123,8 @@ def _print(findings: "EvaluationResults", as_json: bool) -> None:
         told |= report.score_json(findings.results)
         if findings.comparison:
             told["comparison"] = {
-                variant: report.score_json(results)
-                for variant, results in findings.comparison.items()
+                method: report.score_json(results)
+                for method, results in findings.comparison.items()
             }
         if findings.rocs:
             told["roc"] = report.roc_json(findings.roc)
@@ -141,7 +141,6 @@ def _print(findings: "EvaluationResults", as_json: bool) -> None:
 def _command(
     captures: list[Path],
     name: str,
-    variant: Variant,
     compare: Compare | None,
     joints: Joints,
     out: Path,
@@ -150,5 +149,5 @@ def _command(
     words = ["mocapd", "eval", *(os.path.relpath(capture) for capture in captures)]
     words += ["--tracker", name]
     words += ["--joints", joints.value] if joints is not Joints.UPPER else []
-    words += ["--compare", compare.value] if compare else ["--variant", variant.value]
+    words += ["--compare", compare.value] if compare else []
     return [*words, "--out", os.path.relpath(out)]

@@ -17,7 +17,7 @@ def main() -> None:
     end_at_once(sys.argv)  # before the imports, which take long
 
     import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
-    from mocapd.cli.app import app
+    from mocapd.cli.command_list import app
     from mocapd.errors import MocapdError
 
     interruptible(sys.argv)

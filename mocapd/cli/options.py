@@ -30,6 +30,17 @@ CameraOption = Annotated[
 ]
 
 
+VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
+
+
+def refuse_variant(variant: str | None) -> None:
+    """Raises ConfigError for the option of earlier versions."""
+    from mocapd.config.sections import GONE
+
+    if variant is not None:
+        raise ConfigError("there is no --variant any more", "command line", GONE["tracker.variant"])
+
+
 def effective_config(
     config: Path | None,
     settings: list[str] | None,

@@ -5,7 +5,13 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import (
+    ConfigOption,
+    SetOption,
+    VariantOption,
+    effective_config,
+    refuse_variant,
+)
 
 
 def add_to(app: typer.Typer) -> None:
@@ -19,10 +25,7 @@ def track(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: that of the config]")
     ] = None,
-    variant: Annotated[
-        str | None,
-        typer.Option(help="full, paper (as published) or baseline [default: that of the config]"),
-    ] = None,
+    variant: VariantOption = None,
     calibration: Annotated[
         Path | None,
         typer.Option(
@@ -43,9 +46,8 @@ def track(
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.logs import set_up_logs
 
-    effective = effective_config(
-        config, settings, tracker__name=tracker, tracker__variant=variant
-    ).config
+    refuse_variant(variant)
+    effective = effective_config(config, settings, tracker__name=tracker).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
@@ -65,13 +67,15 @@ def track(
     else:
         known = known_of_recording(load_saved(calibration), folder)
     with ProgressBars() as progress:
+        ready = ready_tracker(
+            own.name,
+            known.assuming(own.stature_m),
+            cached(effective.cache_dir, progress, own),
+            own.sections[own.name],
+        )
         result = track_all(
-            ready_tracker(
-                own.name,
-                known.assuming(own.stature_m),
-                cached(effective.cache_dir, progress, own),
-                own.variant,
-            ),
+            ready.tracker,
+            ready.shape,
             frame_sets(folder),
             lambda done: progress(f"tracking {capture.name}", done, frames),
         )

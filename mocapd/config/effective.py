@@ -14,7 +14,7 @@ import platformdirs
 
 from mocapd.boundary.files import exists, is_file, is_folder, user_path
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
-from mocapd.config.sections import CameraSection, Config
+from mocapd.config.sections import GONE, CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
 
@@ -105,7 +105,7 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
             )
     for path, raw in leaves(file.data):
         if path not in known:
-            raise unknown_key(path, path, known, file.where(path))
+            raise _unknown(path, known, file.where(path))
         value = converted(known[path].type, raw, path, file.where)
         found[path] = (_beside(folder, known[path], value, file.where(path)), file.where(path))
     return found
@@ -113,10 +113,13 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
 
 def _from_env(env: Mapping[str, str], known: Mapping[str, Key]) -> Found:
     by_name = {env_name(path): key for path, key in known.items()}
+    gone = {env_name(path): path for path in GONE}
     found: Found = {}
     for name in sorted(env):
         if not name.startswith(ENV_PREFIX) or name in NOT_KEYS:
             continue
+        if name in gone:
+            raise _unknown(gone[name], known, f"environment {name}")
         if name not in by_name:
             raise unknown_key(name, name, by_name, "environment")
         found[by_name[name].path] = _from_text(by_name[name], env[name], f"environment {name}")
@@ -127,9 +130,15 @@ def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
     found: Found = {}
     for path, text in flags.items():
         if path not in known:
-            raise unknown_key(path, path, known, "command line")
+            raise _unknown(path, known, "command line")
         found[path] = _from_text(known[path], text, "command line")
     return found
+
+
+def _unknown(path: str, known: Mapping[str, Key], where: str) -> ConfigError:
+    if path in GONE:
+        return ConfigError(f"there is no key {path!r} any more", where, GONE[path])
+    return unknown_key(path, path, known, where)
 
 
 def _from_text(key: Key, text: str, origin: str) -> tuple[Any, str]:

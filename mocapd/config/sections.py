@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import platformdirs
 from msgspec import Meta
@@ -15,7 +15,7 @@ from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
 from mocapd.outputs.registry import OutputSection, default_sections, output_sections
 from mocapd.pipeline.smoothing import PRESETS
-from mocapd.trackers.registry import entry
+from mocapd.trackers.registry import entry, tracker_sections
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 
@@ -66,23 +66,32 @@ class CameraSection:
 class TrackerSection(TrackingStateParams):
     """Which tracker, and what it needs to know of the wearer.
 
-    name: the tracker: colour, or canned, a pose that moves by itself
-    variant: how the colour tracker works: full, paper (the method as published) or baseline
+    name: the tracker: colour, colour_paper (the method as published), or canned, a pose that moves by itself
     stature_m: the wearer's height without shoes [m]
-    colour_model: folder of images of the shirt with strokes
     coast_s: how long after the last evidence a pose is still predicted [s]
     confirm_s: how long evidence must persist before a lost person is believed to be back [s]
     """
 
     name: str = "colour"
-    variant: str = "full"
     stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
-    colour_model: Path | None = None
+    sections: Annotated[Mapping[str, Any], SectionTable(tracker_sections)] = field(
+        default_factory=lambda: {name: section() for name, section in tracker_sections().items()}
+    )
 
     def __post_init__(self) -> None:
         # a class with slots is made twice, which a bare super() does not survive
         TrackingStateParams.__post_init__(self)
-        entry(self.name, self.variant)
+        entry(self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class ShirtSection:
+    """What is known of the shirt without a setup.
+
+    colour_model: folder of images of the shirt with strokes
+    """
+
+    colour_model: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +142,17 @@ class Config:
     ] = field(default_factory=default_state_dir)
     camera: tuple[CameraSection, ...] = ()
     tracker: TrackerSection = field(default_factory=TrackerSection)
+    shirt: ShirtSection = field(default_factory=ShirtSection)
     smoothing: SmoothingSection = field(default_factory=SmoothingSection)
     outputs: Annotated[Mapping[str, OutputSection], SectionTable(output_sections)] = field(
         default_factory=default_sections
     )
     web: WebSection = field(default_factory=WebSection)
+
+
+# Keys of earlier versions: what to write now.
+GONE = {
+    "tracker.variant": 'the published method is a tracker now: tracker.name = "colour_paper", and for its baseline '
+    "tracker.colour_paper.baseline = true",
+    "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
+}

@@ -2,11 +2,12 @@
 
 import time
 from collections.abc import Callable, Container
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from mocapd.body.shape import BodyShape
 from mocapd.calibration.from_capture import from_capture
 from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
@@ -14,10 +15,11 @@ from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import Score, score
 from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.trackers.base import Tracker
-from mocapd.types import Bytes, FrameSet, Skeleton, Track
+from mocapd.session.tracker_setup import ReadyTracker
+from mocapd.trackers.base import Probe, Track, Tracker, unprobed
+from mocapd.types import BodyState, Bytes, FrameSet
 
-BuildTracker = Callable[[Calibration, str], Tracker]  # in one of its variants
+BuildTracker = Callable[[Calibration, str], ReadyTracker]  # of a method by its label
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,30 +59,26 @@ class CaptureResult:
     evidence: dict[tuple[str, int], Evidence]
 
 
-@dataclass(slots=True)
 class _Watched:
     """A tracker with a stopwatch; keeps its evidence of the frames asked for."""
 
-    name: str
-    tracker: Tracker
-    keep: Container[int]
-    step_ms: list[float] = field(default_factory=list)
-    evidence: dict[tuple[str, int], Evidence] = field(default_factory=dict)
+    def __init__(self, tracker: Tracker, keep: Container[int]) -> None:
+        self.name = tracker.name
+        self.probe: Probe = unprobed
+        self._tracker, self._keep = tracker, keep
+        self.step_ms: list[float] = []
+        self.evidence: dict[tuple[str, int], Evidence] = {}
 
-    @property
-    def skeleton(self) -> Skeleton:
-        return self.tracker.skeleton
+    def reset(self, near: BodyState | None = None) -> None:
+        self._tracker.reset(near)
 
-    def reset(self) -> None:
-        self.tracker.reset()
-
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         start_s = time.perf_counter()
-        track = self.tracker.step(frames)
+        track = self._tracker.step(frames, shape)
         self.step_ms.append(1e3 * (time.perf_counter() - start_s))
         for camera, ids in track.evidence.items():
             frame = frames.frames[camera].seq
-            if frame in self.keep:
+            if frame in self._keep:
                 # the array may be a buffer of the tracker's
                 self.evidence[camera, frame] = Evidence(ids.copy(), track.roi_px[camera])
         return track
@@ -96,7 +94,7 @@ def evaluate(
     build: BuildTracker,
     *,
     stature_m: float,
-    variant: str,
+    method: str,
     joints: str = "upper",
     keep_evidence: Container[int] = (),
     on_frame: Callable[[int], None] = lambda _: None,
@@ -106,9 +104,9 @@ def evaluate(
     `stature_m` is for captures that do not say. What the tracker is given is what `mocapd track`
     gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
     """
-    tracker = build(from_capture(case.folder).assuming(stature_m), variant)
-    watched = _Watched(tracker.name, tracker, keep_evidence)
-    track = track_all(watched, frame_sets(case.folder), on_frame)
+    ready = build(from_capture(case.folder).assuming(stature_m), method)
+    watched = _Watched(ready.tracker, keep_evidence)
+    track = track_all(watched, ready.shape, frame_sets(case.folder), on_frame)
     return CaptureResult(
         case=case,
         track=track,

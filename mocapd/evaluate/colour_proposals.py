@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.shirt import N_LABELS, standard_shirt
+from mocapd.body.shirt_patches import N_LABELS, standard_shirt
 from mocapd.shirt.colour.white_balance import frobenius_distance
 from mocapd.types import Bytes, Floats
 

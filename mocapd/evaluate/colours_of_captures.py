@@ -14,9 +14,9 @@ from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.colour_proposals import ProposalScore, score_by_strokes, table
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.trackers.colour.build import colour_model
 
 
 def score_capture(

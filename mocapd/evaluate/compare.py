@@ -9,18 +9,18 @@ from mocapd.evaluate.capture_eval import CaptureResult
 from mocapd.evaluate.score import interior_angle_deg, match
 from mocapd.types import Floats
 
-FULL, PAPER, BASELINE = VARIANTS = ("full", "paper", "baseline")
+FULL, PAPER, BASELINE = METHODS = ("full", "paper", "baseline")
 SHOULDER = ("neck", "leftUpperArm", "leftLowerArm")
 
 
-# Per variant of VARIANTS its results, one per capture, in one order.
+# Per method of METHODS its results, one per capture, in one order.
 Comparison = Mapping[str, Sequence[CaptureResult]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShoulderAngles:
     """The interior angle at the left shoulder over time: times_s (N,), and by whom it is told,
-    `truth` or a variant, angles (N,) [degrees], NaN where nothing was tracked."""
+    `truth` or a method, angles (N,) [degrees], NaN where nothing was tracked."""
 
     capture: str
     times_s: Floats
@@ -34,13 +34,13 @@ def shoulder_angles(comparison: Comparison) -> list[ShoulderAngles]:
         truth = full.case.truth
         rows = match(truth, full.track).rows
         angles = {"truth": interior_angle_deg(truth.joints_m, truth.names, SHOULDER)[rows]}
-        for variant in (FULL, BASELINE):
-            track = comparison[variant][i].track
+        for method in (FULL, BASELINE):
+            track = comparison[method][i].track
             matches = match(truth, track)
             told = np.full(len(truth.times_s), np.nan)
             told[matches.truth_rows] = interior_angle_deg(
                 track.joints_m[matches.track_rows], track.joint_names, SHOULDER
             )
-            angles[variant] = told[rows]
+            angles[method] = told[rows]
         out.append(ShoulderAngles(full.case.name, truth.times_s[rows], angles))
     return out

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.compare import VARIANTS, Comparison
+from mocapd.evaluate.compare import METHODS, Comparison
 from mocapd.evaluate.roc import Roc, correct_at
 from mocapd.evaluate.tables import number, table
 
@@ -61,7 +61,7 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
 
 
 def comparison_tables(comparison: Comparison) -> list[str]:
-    """Per capture and variant: RMS error [cm], as in the paper's Fig. 9; its median; the coverage [%].
+    """Per capture and method: RMS error [cm], as in the paper's Fig. 9; its median; the coverage [%].
 
     An error is that of the tracked frames alone, so the coverage belongs to it; the median tells a
     tracker that is a little off everywhere from one that is right but for a few frames.
@@ -93,7 +93,7 @@ def roc_json(roc: Roc) -> dict[str, Any]:
 
 def _side_by_side(comparison: Comparison, key: str) -> str:
     title, digits, value = next(column[1:] for column in _COLUMNS if column[0] == key)
-    columns = [comparison[variant] for variant in VARIANTS]
+    columns = [comparison[method] for method in METHODS]
     rows = [
         [results[0].case.name, *(number(value(result), digits) for result in results)]
         for results in zip(*columns, strict=True)
@@ -101,7 +101,7 @@ def _side_by_side(comparison: Comparison, key: str) -> str:
     for groups in zip(*map(_groups, columns), strict=True):
         means = [_mean([value(result) for result in group]) for _, group in groups]
         rows.append([groups[0][0], *(number(mean, digits) for mean in means)])
-    return table([title, *VARIANTS], rows)
+    return table([title, *METHODS], rows)
 
 
 def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:

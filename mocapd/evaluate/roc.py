@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.colour.whitening import Whitening
 from mocapd.trackers.colour_paper.classify_kernels import classify, classify_with_prior
 from mocapd.types import Bytes, Floats, Singles

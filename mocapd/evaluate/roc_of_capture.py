@@ -32,9 +32,9 @@ from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
 from mocapd.shirt.colour.whitening import fold
-from mocapd.trackers.colour.build import colour_model, white_balance_of
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour_paper.classify_kernels import sum_colours
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet

@@ -1,11 +1,11 @@
-"""Whole evaluations: every capture with one variant, or with all of them side by side."""
+"""Whole evaluations: every capture with one method, or with all of them side by side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from mocapd.evaluate.capture_eval import BuildTracker, CaptureResult, Case, evaluate
-from mocapd.evaluate.compare import FULL, VARIANTS, Comparison
+from mocapd.evaluate.compare import FULL, METHODS, Comparison
 from mocapd.evaluate.roc import Roc, no_roc
 from mocapd.evaluate.truth import labelled_frames
 from mocapd.session.tracker_setup import Progress
@@ -38,38 +38,34 @@ class EvaluationResults:
         return sum((roc for _, roc in self.rocs), no_roc())
 
 
-def run(cases: Sequence[Case], variant: str, setting: EvaluationSettings) -> list[CaptureResult]:
-    """Every capture with one variant of the tracker."""
+def run(cases: Sequence[Case], method: str, setting: EvaluationSettings) -> list[CaptureResult]:
+    """Every capture with one of the methods."""
     return [
         evaluate(
             case,
             setting.build,
             stature_m=setting.stature_m,
-            variant=variant,
+            method=method,
             joints=setting.joints,
             keep_evidence=_labelled(case),
-            on_frame=partial(
-                _frames_done, setting.progress, f"{case.name}, {variant}", case.frames
-            ),
+            on_frame=partial(_frames_done, setting.progress, f"{case.name}, {method}", case.frames),
         )
         for case in cases
     ]
 
 
 def compare(cases: Sequence[Case], tracker: str, setting: EvaluationSettings) -> EvaluationResults:
-    """Every capture with every variant, and the classifiers over the labelled frames."""
+    """Every capture with every method, and the classifiers over the labelled frames."""
     # the colour tracker is a second to import, and needed only here
     from mocapd.evaluate.roc_of_capture import roc_of_capture
 
-    comparison = {variant: run(cases, variant, setting) for variant in VARIANTS}
+    comparison = {method: run(cases, method, setting) for method in METHODS}
     labelled = [result for result in comparison[FULL] if _labelled(result.case)]
     rocs = []
     for done, result in enumerate(labelled, start=1):
         rocs.append((result.case.name, roc_of_capture(result, setting.stature_m)))
         setting.progress("classifying labelled frames", done, len(labelled))
-    return EvaluationResults(
-        f"{tracker}, variant {FULL}", setting.joints, comparison[FULL], comparison, rocs
-    )
+    return EvaluationResults(tracker, setting.joints, comparison[FULL], comparison, rocs)
 
 
 def _labelled(case: Case) -> set[int]:

@@ -7,7 +7,7 @@ from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, Triangl
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.idmap_term_kernels import (

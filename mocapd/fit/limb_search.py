@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES, PoseSpace
-from mocapd.body.shirt import SLEEVE_PATCHES
+from mocapd.body.shirt_patches import SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.fit_params import LimbSearchParams

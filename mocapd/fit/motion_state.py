@@ -1,17 +1,15 @@
 """A body in motion as the colour tracker carries it from frame to frame."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.body.pose_space import PoseSpace
+from mocapd.body.pose_space import PoseSpace, full_body
 from mocapd.body.posing_kernels import difference, retract
+from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.types import Floats
-
-# of measured proportions, as a part of the spread over all people
-_MEASURED_SPREAD = 0.2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,9 +29,24 @@ def initial_information(space: PoseSpace) -> Floats:
     return np.diag(1.0 / space.factor_sd**2)
 
 
-def measured_information(space: PoseSpace) -> Floats:
-    """What is known of proportions that `calibrate.body_shape_fit` has measured."""
-    return np.diag(1.0 / (_MEASURED_SPREAD * space.factor_sd) ** 2)
+def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
+    """The factors (n_shape,) that a space has, of a wearer's shape, and their information matrix."""
+    n = space.n_shape
+    if shape.information is None:
+        return shape.factors[:n].copy(), initial_information(space)
+    return shape.factors[:n].copy(), shape.information[:n, :n].copy()
+
+
+def learned(shape: BodyShape, factors: Floats, information: Floats, taught_s: float) -> BodyShape:
+    """The shape with what was learned of its first factors."""
+    if len(factors) == len(shape.factors):
+        return replace(shape, factors=factors, information=information, taught_s=taught_s)
+    n, all_factors = len(factors), shape.factors.copy()
+    all_factors[:n] = factors
+    known = initial_information(full_body()) if shape.information is None else shape.information
+    known = known.copy()
+    known[:n, :n] = information
+    return BodyShape(shape.stature_m, all_factors, known, taught_s)
 
 
 def stepped(

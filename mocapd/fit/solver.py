@@ -14,7 +14,7 @@ from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.fit_params import FitParams

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera, Floats
 
 _PARALLEL = 1e-9  # least ratio of the extreme singular values: rays closer to parallel meet nowhere

@@ -1,13 +1,12 @@
 """What is told while no camera delivers at all: the pose fades for a moment, then nobody is known. Pure."""
 
-import math
 from collections import deque
 from dataclasses import replace
 
 import numpy as np
 
 from mocapd.clock import NS_PER_S, nanoseconds, seconds
-from mocapd.trackers.tracking_state import FADE_S
+from mocapd.trackers.tracking_state import faded
 from mocapd.types import BodyState, Tracking
 
 COASTING_EVERY_NS = NS_PER_S // 10
@@ -78,7 +77,7 @@ class Absence:
         """The last pose, believed less and less; None when it is too old, or there was none."""
         if last.tracking is Tracking.LOST or t_ns - self._evidence_ns > self._coast_ns:
             return None
-        fading = math.exp(-seconds(t_ns - last.t_ns) / FADE_S)
+        fading = faded(seconds(t_ns - last.t_ns))
         return replace(
             last,
             t_ns=t_ns,

@@ -4,7 +4,8 @@ import threading
 from dataclasses import dataclass
 from typing import Protocol
 
-from mocapd.types import BodyState, FrameSet, Skeleton, Track
+from mocapd.trackers.base import Track
+from mocapd.types import BodyState, FrameSet, Skeleton
 
 
 @dataclass(frozen=True, slots=True, eq=False)

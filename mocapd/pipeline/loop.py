@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import replace
 
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.body_hub import BodySample, TakesBodies
@@ -11,8 +12,8 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Tracker
-from mocapd.types import FrameSet, Track
+from mocapd.trackers.base import Track, Tracker
+from mocapd.types import FrameSet
 
 OnDeath = Callable[[BaseException], None]
 
@@ -20,7 +21,7 @@ LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should 
 
 
 class PipelineLoop:
-    """Runs one tracker on whatever the collector holds, until stopped.
+    """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape.
 
     `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; with an
     empty frame set what `absence` tells while no frames come, which it says when given.
@@ -32,6 +33,7 @@ class PipelineLoop:
         self,
         collector: FrameCollector,
         tracker: Tracker,
+        shape: BodyShape,
         smoother: Smoother,
         bodies: TakesBodies,
         on_death: OnDeath,
@@ -39,6 +41,8 @@ class PipelineLoop:
     ) -> None:
         self._collector = collector
         self._tracker = tracker
+        self._shape = shape  # the wearer's: outlives what one tracker knows
+        self._skeleton = skeleton_of(shape)
         self._smoother = smoother
         self._bodies = bodies
         self._on_death = on_death
@@ -90,13 +94,15 @@ class PipelineLoop:
 
     def _one(self, frames: FrameSet) -> None:
         start_ns = monotonic_ns()
-        track = self._tracker.step(frames)
+        track = self._tracker.step(frames, self._shape)
         step_ns = monotonic_ns() - start_ns
-        self._smoother.skeleton = self._tracker.skeleton
+        if track.shape is not self._shape:
+            self._shape = track.shape
+            self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)
         body = self._smoother.step(track.body)
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
-        self._bodies.put(BodySample(replace(track, body=body), self._tracker.skeleton, frames))
+        self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         self._recorder.published(frames, body, step_ns, monotonic_ns())
 
     def _none(self, absence: Absence) -> None:
@@ -104,7 +110,7 @@ class PipelineLoop:
         body = absence.tell(monotonic_ns())
         if body is not None:
             nothing = FrameSet(body.t_ns, {})
-            self._bodies.put(BodySample(Track(body), self._tracker.skeleton, nothing))
+            self._bodies.put(BodySample(Track(body, self._shape), self._skeleton, nothing))
             self._recorder.absent(body)
 
     def _wait_s(self) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from mocapd.body.shape import BodyShape
 from mocapd.clock import NS_PER_S
 from mocapd.trackers.base import Tracker
 from mocapd.types import Bytes, Camera, Frame, FrameSet, Rig
@@ -14,11 +15,12 @@ _PERIOD_NS = NS_PER_S // 30
 
 def rehearse(
     tracker: Tracker,
+    shape: BodyShape,
     rig: Rig | None,
     pictures: Mapping[str, Bytes],
     tell: Callable[[int, int], None],
 ) -> None:
-    """Step it through still pictures and reset it.
+    """Step it through still pictures, of a wearer of this shape, and reset it.
 
     Its kernels are compiled if that never happened on this machine, which takes half a minute, else
     loaded, and its memory is touched. pictures: by camera, one (h,w,3) BGR with the person in it;
@@ -31,7 +33,7 @@ def rehearse(
     for step in range(STEPS):
         t_ns = step * _PERIOD_NS
         frames = {name: Frame(name, step, t_ns, pixels) for name, pixels in seen.items()}
-        tracker.step(FrameSet(t_ns, frames))
+        shape = tracker.step(FrameSet(t_ns, frames), shape).shape
         tell(step + 1, STEPS)
     tracker.reset()
 

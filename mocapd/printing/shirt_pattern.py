@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.shape import mean_shape, skeleton_of
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.types import Floats

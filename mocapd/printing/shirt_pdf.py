@@ -2,7 +2,7 @@
 
 from reportlab.pdfgen.canvas import Canvas
 
-from mocapd.body.shirt import N_COLOURS, Shirt, standard_shirt
+from mocapd.body.shirt_patches import N_COLOURS, Shirt, standard_shirt
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
 from mocapd.printing.paper_sizes import (

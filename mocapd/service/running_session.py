@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 
+from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
 from mocapd.config.sections import Config
@@ -43,9 +44,15 @@ class RunningSession:
         self._captures = [
             CaptureThread(c.source, self.hub, died, c.expected_hz) for c in session.cameras
         ]
-        smoother = Smoother(config.smoothing.preset, session.tracker.skeleton)
+        smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
         self._loop = PipelineLoop(
-            collector, session.tracker, smoother, bodies, died, _absence(config, session)
+            collector,
+            session.tracker,
+            session.shape,
+            smoother,
+            bodies,
+            died,
+            _absence(config, session),
         )
 
     def start(self) -> None:
@@ -90,5 +97,5 @@ def _absence(config: Config, session: Session) -> Absence | None:
     """Who tells that no frames come; nobody where recordings are played, which end."""
     if all(camera.source.recorded for camera in session.cameras):
         return None
-    tracker = session.tracker
-    return Absence(tracker.name, len(tracker.skeleton.names), config.tracker.coast_s)
+    n_joints = len(skeleton_of(session.shape).names)
+    return Absence(session.tracker.name, n_joints, config.tracker.coast_s)

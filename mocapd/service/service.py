@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 
+from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureStatus
 from mocapd.config.sections import Config
@@ -102,8 +103,8 @@ class Service:
         self._begin()
 
     def _begin(self) -> None:
-        session = self.session
-        self._publisher.begin(session.tracker.skeleton, session.stature_m)
+        shape = self.session.shape
+        self._publisher.begin(skeleton_of(shape), shape.stature_m)
         self._running.start()
 
     # -- the session that runs -------------------------------------------------------------------

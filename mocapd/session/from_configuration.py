@@ -2,17 +2,17 @@
 
 from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.calibration.shirt_pictures import read_model, stroked_folder, stroked_image
-from mocapd.config.sections import CameraSection, TrackerSection
+from mocapd.config.sections import CameraSection, ShirtSection
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.types import Rig
 
 
 def from_configuration(
-    tracker: TrackerSection, cameras: tuple[CameraSection, ...], rig: Rig | None
+    shirt: ShirtSection, cameras: tuple[CameraSection, ...], rig: Rig | None
 ) -> Calibration:
     """The rig that it names, and the pictures of the shirt. Its stature is not known but assumed, where
     nobody else says. Raises InputError or ConfigError."""
-    folder = tracker.colour_model
+    folder = shirt.colour_model
     return Calibration(
         rig,
         shirt=ShirtColours(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
 from mocapd.errors import CannotCreateError
 from mocapd.trackers.base import Tracker
@@ -33,13 +34,14 @@ class RecordedTrack:
 
 
 def track_all(
-    tracker: Tracker, frames: Iterable[FrameSet], on_frame: Callable[[int], None]
+    tracker: Tracker, shape: BodyShape, frames: Iterable[FrameSet], on_frame: Callable[[int], None]
 ) -> RecordedTrack:
-    """Step the tracker through all frame sets; `on_frame` is told how many are done."""
-    names = tracker.skeleton.names
+    """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done."""
+    names = skeleton_of(shape).names
     times, joints, quats, confidence, by = [], [], [], [], []
     for done, one in enumerate(frames, start=1):
-        body = tracker.step(one).body
+        track = tracker.step(one, shape)
+        body, shape = track.body, track.shape
         if body.pose is not None and body.joints_m is not None:
             times.append(seconds(body.t_ns))
             joints.append(body.joints_m)

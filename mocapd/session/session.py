@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from mocapd.body.shape import BodyShape
 from mocapd.calibration.from_capture import from_capture
 from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import load_folder
@@ -20,8 +21,8 @@ from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
-from mocapd.session.tracker_setup import Progress, cached, ready_tracker
-from mocapd.trackers.base import Tracker, stature_m
+from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
+from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
@@ -32,13 +33,14 @@ SIM = "sim:"  # the renderer is imported for such cameras only: it takes a secon
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Session:
-    """`rig_source`: the file or scenario that the rig is from, for people; `stature_m`: the wearer's [m]."""
+    """rig_source: the file or scenario that the rig is from, for people; shape: the wearer's, for the tracker's
+    first step."""
 
     cameras: tuple[CameraInput, ...]
     rig: Rig | None
     rig_source: str
     tracker: Tracker
-    stature_m: float
+    shape: BodyShape
 
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
@@ -77,9 +79,8 @@ def open_session(config: Config, progress: Progress) -> Session:
         known = from_capture(folder).overlaid(known)
         rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
     inputs = camera_inputs(cameras, rig)
-    known = known.assuming(config.tracker.stature_m)
-    tracker = _ready_tracker(config, known, progress)
-    return Session(inputs, rig, rig_source, tracker, stature_m(known))
+    ready = _ready_tracker(config, known, progress)
+    return Session(inputs, rig, rig_source, ready.tracker, ready.shape)
 
 
 def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
@@ -91,7 +92,7 @@ def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
 
 def _known(config: Config, rig: Rig | None, saved: Saved | None) -> Calibration:
     """From configuration and calibration: what the configuration itself gives goes before."""
-    own = from_configuration(config.tracker, config.camera, rig)
+    own = from_configuration(config.shirt, config.camera, rig)
     return own if saved is None else saved.known.overlaid(own)
 
 
@@ -115,21 +116,20 @@ def _simulated(config: Config, source: str, saved: Saved | None, progress: Progr
         known = simulation.from_scenario(film.setup).overlaid(known)
     else:
         rig_source = str(saved.path)
-    known = known.assuming(config.tracker.stature_m)
-    tracker = _ready_tracker(config, known, progress)
+    ready = _ready_tracker(config, known, progress)
     # last, as they begin to play now
     cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, known.rig, rig_source, tracker, stature_m(known))
+    return Session(cameras, known.rig, rig_source, ready.tracker, ready.shape)
 
 
-def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Tracker:
+def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> ReadyTracker:
     """Built, and its kernels warm."""
     own = config.tracker
     return ready_tracker(
         own.name,
-        known,
+        known.assuming(own.stature_m),
         cached(config.cache_dir, progress, own),
-        own.variant,
+        own.sections[own.name],
         partial(progress, "preparing the tracker"),
     )
 

@@ -4,13 +4,15 @@ import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mocapd.body.shape import BodyShape
 from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.trackers import registry
 from mocapd.trackers.base import Tracker
+from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 from mocapd.trackers.tracking_state import TrackingStateParams
 
@@ -24,27 +26,36 @@ def _itself(tracker: Tracker) -> Tracker:
     return tracker
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadyTracker:
+    """A tracker, and the wearer's shape for its first step."""
+
+    tracker: Tracker
+    shape: BodyShape
+
+
 def ready_tracker(
     name: str,
     calibration: Calibration,
     resources: Resources,
-    variant: str = "full",
+    section: object | None = None,
     rehearsal: Callable[[int, int], None] | None = None,
     watched: Callable[[Tracker], Tracker] = _itself,
-) -> Tracker:
+) -> ReadyTracker:
     """The tracker of this name, ready to step. Raises ConfigError naming what it lacks.
 
-    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own
-    pictures, so that live frames need not wait; None for recordings, which can. watched: puts another
-    around it that is rehearsed with it.
+    section: the tracker's own of the configuration, None for its defaults. rehearsal: hears of steps done,
+    in all, while the tracker is stepped through the calibration's own pictures, so that live frames need not
+    wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
     """
+    shape = known_shape(calibration)
     with _pooled(resources) as pooled:
-        tracker = watched(build(name, calibration, pooled, variant))
+        tracker = watched(build(name, calibration, pooled, section))
     if rehearsal is not None:
         shirt = calibration.shirt or ShirtColours()
         pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
-        rehearse(tracker, calibration.rig, pictures, rehearsal)
-    return tracker
+        rehearse(tracker, shape, calibration.rig, pictures, rehearsal)
+    return ReadyTracker(tracker, shape)
 
 
 def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:

@@ -1,40 +1,73 @@
 """The interface of every tracker."""
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Protocol
 
-from mocapd.calibration.record import Calibration
-from mocapd.errors import ConfigError
-from mocapd.types import FrameSet, Skeleton, Track
+import numpy as np
+
+from mocapd.body.shape import BodyShape
+from mocapd.body.skeleton import N_JOINTS
+from mocapd.types import BodyState, Bytes, FrameSet, Tracking
+
+Probe = Callable[[str], None]  # hears that the stage of this name has ended
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """What a tracker says of one frame set.
+
+    shape: the wearer's as known now, that of the step or what was learned beyond it; quality: how much
+    of the evidence the body explains, 0..1, 0 when lost.
+
+    evidence[camera] is an id map (h,w) uint8 over the region roi_px[camera] = x0, y0, x1, y1 of
+    the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
+    (shirt trackers: colour ids).
+    """
+
+    body: BodyState
+    shape: BodyShape
+    quality: float = 0.0
+    evidence: Mapping[str, Bytes] = field(default_factory=dict)
+    roi_px: Mapping[str, tuple[int, int, int, int]] = field(default_factory=dict)
 
 
 class Tracker(Protocol):
     """A pure step machine: no threads, no clock, no I/O.
 
     Promises, each tested on every registered tracker: time comes only from `frames.t_ns` and the
-    frames' own `t_ns`; the same frames after `reset()` give the same output; a missing camera or
-    an empty room gives `lost`, never an exception; frames are not written to.
+    frames' own `t_ns`; the same frames and shapes after `reset()` give the same output; a missing camera
+    or an empty room gives `lost`, never an exception; frames are not written to. The joints of a body are
+    those of `skeleton_of(track.shape)` in its pose.
     """
 
     name: str
+    probe: Probe  # called at the end of each stage of a step; `unprobed` for nobody
 
-    @property
-    def skeleton(self) -> Skeleton:
-        """The skeleton of the person being tracked; its proportions may be refined while tracking."""
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget everything learned since construction. near: begin from this body, as another tracker
+        knew it; it is believed when the next frames confirm it."""
         ...
 
-    def reset(self) -> None:
-        """Forget everything learned since construction."""
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """Track one frame set of a wearer of this shape; times never decrease from call to call.
+
+        Whoever steps it owns the shape: to let the tracker learn, hand the shape of the last track to
+        the next step. Its stature is the one that the tracker was built for.
+        """
         ...
 
-    def step(self, frames: FrameSet) -> Track:
-        """Track one frame set; times never decrease from call to call."""
-        ...
+
+def unprobed(stage: str) -> None:
+    """Nobody measures."""
 
 
-def stature_m(calibration: Calibration) -> float:
-    """The wearer's height [m]. Raises ConfigError where it is not known."""
-    if calibration.wearer.stature_m is None:
-        raise ConfigError(
-            "the wearer's height is not known", "tracker.stature_m", "give it in metres"
-        )
-    return calibration.wearer.stature_m
+def lost_body(t_ns: int, tracker: str) -> BodyState:
+    """Nobody is known."""
+    return BodyState(t_ns, Tracking.LOST, tracker, None, None, np.zeros(N_JOINTS))
+
+
+def require_stature(shape: BodyShape, stature_m: float) -> None:
+    """Raises ValueError when a tracker that was built for this stature [m] is stepped with another's shape."""
+    if shape.stature_m != stature_m:
+        raise ValueError(f"a shape of {shape.stature_m} m for a tracker of {stature_m} m")

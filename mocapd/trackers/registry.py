@@ -1,15 +1,17 @@
 """The trackers that exist: one line each in TRACKERS."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from mocapd.body.skeleton import standard_skeleton
 from mocapd.calibration.record import Calibration
 from mocapd.errors import ConfigError
-from mocapd.trackers.base import Tracker, stature_m
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.colour.section import ColourSection
+from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
@@ -40,23 +42,41 @@ class Resources:
 
 @dataclass(frozen=True, slots=True)
 class TrackerEntry:
-    """`build` makes the tracker in one of its variants and raises ConfigError naming what it lacks; it imports it only then.
+    """`build` makes the tracker from what is known, its own section and the resources; it imports it only then.
 
-    `sees`: whether it looks at the pictures, so that it needs calibrated cameras, and an empty room
-    must give `lost`; `variants`: the first is the usual one; `make_caches`: what it keeps in the
-    cache folder, made if need be.
+    section: what a user may set, which becomes `[tracker.<name>]`; lacks: given what is known and the names
+    of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
+    that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
+    which a setup measures; make_caches: what it keeps in the cache folder, made if need be; compared_with:
+    what `mocapd eval --compare` sets beside it, by label a tracker and its section.
     """
 
-    build: Callable[[Calibration, Resources, str], Tracker]
+    build: Callable[[Calibration, Any, Resources], Tracker]
+    section: type
+    lacks: Callable[[Calibration, Collection[str]], str]
     sees: bool
-    variants: tuple[str, ...] = ("full",)
+    reads_shirt: bool = False
     make_caches: Callable[[Resources], object] = _quiet
+    compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
 
-def _canned(calibration: Calibration, _resources: Resources, _variant: str) -> Tracker:
+def _nothing_lacks(_calibration: Calibration, _cameras: Collection[str]) -> str:
+    return ""
+
+
+def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+    """For trackers that one calibrated camera suffices."""
+    if calibration.rig is None:
+        return "needs to know where the cameras are"
+    if not set(calibration.rig.names) & set(cameras):
+        return f"needs one of the calibrated cameras ({', '.join(calibration.rig.names)})"
+    return ""
+
+
+def _canned(_calibration: Calibration, section: CannedSection, _resources: Resources) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
-    return CannedTracker(standard_skeleton(stature_m(calibration)))
+    return CannedTracker(section)
 
 
 def _database(resources: Resources) -> "PoseDatabase":
@@ -73,53 +93,82 @@ def _database(resources: Resources) -> "PoseDatabase":
     return loaded.database
 
 
-def _colour(calibration: Calibration, resources: Resources, variant: str) -> Tracker:
+def _colour(calibration: Calibration, section: ColourSection, resources: Resources) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
 
-    return build_colour_tracker(calibration, _database(resources), variant, resources.tracking)
+    return build_colour_tracker(calibration, _database(resources), section, resources.tracking)
+
+
+def _colour_paper(
+    calibration: Calibration, section: ColourPaperSection, resources: Resources
+) -> Tracker:
+    from mocapd.trackers.colour_paper.build import build_paper_tracker
+
+    return build_paper_tracker(calibration, _database(resources), section, resources.tracking)
 
 
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
-        "canned": TrackerEntry(_canned, sees=False),
+        "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
         "colour": TrackerEntry(
             _colour,
+            ColourSection,
+            _rig_lacks,
             sees=True,
-            variants=("full", "paper", "paper-tolerant", "baseline", "baseline-tolerant"),
+            reads_shirt=True,
+            make_caches=_database,
+            compared_with={
+                "paper": ("colour_paper", ColourPaperSection()),
+                "baseline": ("colour_paper", ColourPaperSection(baseline=True)),
+            },
+        ),
+        "colour_paper": TrackerEntry(
+            _colour_paper,
+            ColourPaperSection,
+            _rig_lacks,
+            sees=True,
+            reads_shirt=True,
             make_caches=_database,
         ),
     }
 )
 
 
-def entry(name: str, variant: str = "full") -> TrackerEntry:
-    """The tracker of this name. Raises ConfigError when there is none, or not in this variant."""
+def tracker_sections() -> Mapping[str, type]:
+    """Each tracker's own section of the configuration."""
+    return {name: one.section for name, one in TRACKERS.items()}
+
+
+def entry(name: str) -> TrackerEntry:
+    """The tracker of this name. Raises ConfigError when there is none."""
     if name not in TRACKERS:
         raise ConfigError(
             f"there is no tracker {name!r}", "tracker.name", f"one of: {', '.join(TRACKERS)}"
         )
-    found = TRACKERS[name]
-    if variant not in found.variants:
-        raise ConfigError(
-            f"the tracker {name!r} has no variant {variant!r}",
-            "tracker.variant",
-            f"one of: {', '.join(found.variants)}",
-        )
-    return found
+    return TRACKERS[name]
+
+
+def shirt_tracker(preferred: str) -> str:
+    """The preferred tracker if it reads the shirt, else the first that does: a setup's measurements need it."""
+    if entry(preferred).reads_shirt:
+        return preferred
+    return next(name for name, one in TRACKERS.items() if one.reads_shirt)
 
 
 def build(
-    name: str, calibration: Calibration, resources: Resources, variant: str = "full"
+    name: str, calibration: Calibration, resources: Resources, section: object | None = None
 ) -> Tracker:
-    """The tracker of this name. Raises ConfigError when there is none, or it is not told what it needs."""
-    found = entry(name, variant)
-    if found.sees and calibration.rig is None:
+    """The tracker of this name, as set by its own section; None: as usual. Raises ConfigError when there is
+    none, or it is not told what it needs."""
+    found = entry(name)
+    reason = found.lacks(calibration, calibration.rig.names if calibration.rig else ())
+    if reason:
         raise ConfigError(
-            f"the tracker {name!r} needs to know where the cameras are",
+            f"the tracker {name!r} {reason}",
             "rig",
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
-    return found.build(calibration, resources, variant)
+    return found.build(calibration, found.section() if section is None else section, resources)
 
 
 def make_caches(name: str, resources: Resources) -> None:

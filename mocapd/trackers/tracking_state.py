@@ -1,5 +1,6 @@
 """`live`, `coasting` or `lost`, from evidence and time alone."""
 
+import math
 from dataclasses import dataclass
 
 from mocapd.clock import nanoseconds
@@ -7,6 +8,11 @@ from mocapd.errors import ConfigError
 from mocapd.types import Tracking
 
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
+
+
+def faded(away_s: float) -> float:
+    """How much is left of a confidence without evidence since `away_s` [s]."""
+    return math.exp(-away_s / FADE_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +41,10 @@ class TrackingState:
         self._confirm_ns = nanoseconds(params.confirm_s)
         self.reset()
 
-    def reset(self) -> None:
-        """Lost, and nothing seen."""
-        self.now = Tracking.LOST
-        self._evidence_ns: int | None = None  # the last time there was any
+    def reset(self, live_ns: int | None = None) -> None:
+        """Lost, and nothing seen; or live, with the last evidence at that time [ns]."""
+        self.now = Tracking.LOST if live_ns is None else Tracking.LIVE
+        self._evidence_ns = live_ns  # the last time there was any
         self._since_ns: int | None = None  # while lost: since when every frame had some
 
     def step(self, t_ns: int, evidence: bool) -> Tracking:

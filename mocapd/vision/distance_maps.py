@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.shirt import N_COLOURS
+from mocapd.body.shirt_patches import N_COLOURS
 from mocapd.types import Bytes, Singles
 from mocapd.vision import distance_kernels
 

@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.geometry.cameras import centre, rays
+from mocapd.geometry.camera_model import centre, rays
 from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 

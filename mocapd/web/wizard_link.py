@@ -21,7 +21,7 @@ from mocapd.web.links import MOST_HZ, received, send_json, serve
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.step import Problem
-from mocapd.wizard.wizard import WizardView
+from mocapd.wizard.wizard_view import WizardView
 
 NOT_THE_DRIVER = Problem(
     "another window leads this setup", "this window", "choose Take over to lead it from here"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.types import BodyState, Camera, Skeleton
 from mocapd.wizard.step import Shape
 

@@ -3,7 +3,8 @@
 from collections.abc import Iterable
 
 from mocapd.capture.thread import CaptureState
-from mocapd.wizard.step import Context, Problem
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Problem
 
 _FIX = "plug it in again: the step goes on by itself; or leave it out in the step Cameras"
 

@@ -14,8 +14,8 @@ from mocapd.wizard.check.check_step import CheckStep
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.extrinsics.room_step import RoomStep
-from mocapd.wizard.intrinsics.lens_step import LensStep
+from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.intrinsics.intrinsics_step import LensStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import StepName
 from mocapd.wizard.wizard import MakeStep

@@ -4,10 +4,7 @@ import logging
 import queue
 import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from mocapd.boundary.numbers import brief
 from mocapd.capture.thread import CaptureStatus
@@ -15,22 +12,14 @@ from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, read_command
+from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, named
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    Step,
-    StepName,
-    StepState,
-    StepView,
-    T,
-    Tell,
-)
+from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, T, Tell
+from mocapd.wizard.step_job import StepJob
+from mocapd.wizard.wizard_view import WizardView, steps_done, with_offer
 
 _TICK_S = 0.05
 _MOST_COMMANDS = 32  # that wait to be taken, of up to 8 MB each; a person never gets there
@@ -40,21 +29,6 @@ _log = logging.getLogger(__name__)
 _TOO_MANY = Problem("too many commands at once", "the page", "wait until it answers")
 
 MakeStep = Callable[[Context], Step]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class WizardView:
-    """A snapshot: `serial` grows with every change; steps: those there are; done: the steps whose result
-    is in the draft; refused: why the last command was not taken, None when it was."""
-
-    serial: int
-    step: StepName
-    done: frozenset[StepName]
-    view: StepView
-    refused: Problem | None
-    saved: bool
-    ended: bool
-    steps: tuple[StepName, ...] = tuple(StepName)
 
 
 class Wizard:
@@ -87,10 +61,7 @@ class Wizard:
         self._commands: queue.Queue[tuple[str, Mapping[str, Json]]] = queue.Queue(_MOST_COMMANDS)
         self._flooded = threading.Event()  # a command was not even queued
         self._stopping = threading.Event()
-        self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
-        self._job: Future[Any] | None = None
-        self._job_done: Callable[[Any], None] | None = None
-        self._told: list[tuple[str, float]] = []  # by the job that runs; each job has its own
+        self._job = StepJob()
         self._reached: set[StepName] = set()  # those that were done since the start
         if self.draft.rig is not None:  # an earlier setup, of which some steps are done again
             self._reached |= set(StepName)
@@ -111,7 +82,7 @@ class Wizard:
     def stop(self, timeout_s: float = 1.0) -> bool:
         """End; False when the thread or its job is still busy after `timeout_s` [s]."""
         self._stopping.set()
-        self._worker.shutdown(wait=False, cancel_futures=True)
+        self._job.close()
         if self._thread.ident is not None:
             self._thread.join(timeout_s)
         return not self._thread.is_alive()
@@ -151,15 +122,7 @@ class Wizard:
 
     def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
         """See Context."""
-        assert self._job is None, "one job at a time"
-        self._told = told = [("", 0.0)]
-
-        # bound to this job: one that nobody listens to any more may still be telling
-        def tell(what: str, share: float) -> None:
-            told[0] = (what, share)
-
-        self._job_done = done
-        self._job = self._worker.submit(job, tell)
+        self._job.start(job, done)
 
     def saved(self) -> None:
         """See Context."""
@@ -172,7 +135,7 @@ class Wizard:
     @property
     def job(self) -> tuple[str, float] | None:
         """See Context."""
-        return self._told[0] if self._job is not None else None
+        return self._job.progress
 
     # -- the wizard's thread ---------------------------------------------------------------------
 
@@ -193,12 +156,8 @@ class Wizard:
             raise
 
     def _look_after_job(self) -> None:
-        job, done = self._job, self._job_done
-        if job is None or done is None or not job.done():
-            return
-        self._job = self._job_done = None
         try:
-            done(job.result())
+            self._job.finish()
         except EXPECTED as error:
             self._step.job_failed(named(error, self._step.name))
 
@@ -299,34 +258,20 @@ class Wizard:
     def _show(self, name: StepName) -> None:
         step = self._steps[name](self)  # refused when what it builds on is missing: this one stays
         self._step.leave()
-        # a job that runs on ends for itself: nobody hears of it
-        if self._job is not None and not self._job.done():
-            self._worker.shutdown(wait=False, cancel_futures=True)
-            self._worker = ThreadPoolExecutor(1, thread_name_prefix="wizard-job")
-        self._job = self._job_done = None
+        self._job.forget()
         self._step = step
         self._step.enter()
 
     def _is_done(self, name: StepName) -> bool:
-        """Whether its result is in the draft."""
-        draft = self.draft
-        ids = {camera.id for camera in draft.cameras}
-        results = {
-            StepName.CAMERAS: bool(ids),
-            StepName.LENS: bool(ids) and ids <= draft.lenses.keys(),
-            StepName.ROOM: draft.rig is not None and ids == set(draft.rig.names),
-            StepName.COLOUR: bool(ids) and ids <= draft.colours.keys(),
-            StepName.BODY: draft.stature_m is not None,
-            StepName.CHECK: self._saved,
-        }
-        return name in self._reached and results[name]
+        """Whether its result is in the draft, and was reached since the start."""
+        return name in self._reached and name in steps_done(self.draft, self._saved)
 
     def _snapshot(self, serial: int) -> WizardView:
         view = self._step.view()
         if view.state is StepState.DONE:
             self._reached.add(self._step.name)
         if self._offer is not None:
-            view = _with_offer(view, self._offer)
+            view = with_offer(view, self._offer)
         return WizardView(
             serial,
             self._step.name,
@@ -344,16 +289,3 @@ class Wizard:
             self._changed.notify_all()
         if self._keeper is not None:
             self._keeper.keep(self.draft, self._view.done)
-
-
-def _with_offer(view: StepView, offer: KeptSetup) -> StepView:
-    """Nobody goes on before the choice is made."""
-    told: Json = {
-        "when": offer.when.isoformat(),
-        "done": [name.value for name in StepName if name in offer.done],
-    }
-    view = replace(view, details={**view.details, "kept": told})
-    if view.state is not StepState.DONE:
-        return view
-    sentence = "Say below whether to go on with the setup that is kept, or begin anew."
-    return replace(view, state=StepState.WAITING, sentence=sentence)

@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.body.model import build_model, shape_of, shaped
 from mocapd.body.shape import skeleton_of
-from mocapd.body.shirt import N_COLOURS, standard_shirt
+from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEGS
 from mocapd.body.surface_building import build_surface, mean_surface

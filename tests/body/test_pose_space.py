@@ -6,7 +6,7 @@ import pytest
 from mocapd.body.joint_limits import soft_limit
 from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.body.shape import FACTORS, WHOLE_FACTORS
-from mocapd.body.shirt import ShirtPatch
+from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations

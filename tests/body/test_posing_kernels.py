@@ -20,7 +20,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS, NAMES, PARENTS, joint_position
 from mocapd.body.surface import LEGS, posed_vertices
 from mocapd.body.surface_building import mean_surface
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project, to_camera
+from mocapd.geometry.camera_model import project, to_camera
 from mocapd.types import Camera, Floats, Skeleton
 from tests.body.random_poses import pose_of, random_local, random_root
 from tests.geometry.rigs import ring

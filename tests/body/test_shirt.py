@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from mocapd.assets import asset_path
-from mocapd.body.shirt import (
+from mocapd.body.shirt_patches import (
     N_COLOURS,
     N_PATCHES,
     SLEEVE_PATCHES,

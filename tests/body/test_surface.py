@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from mocapd.assets import asset_path
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
-from mocapd.body.shirt import N_PATCHES, standard_shirt
+from mocapd.body.shirt_patches import N_PATCHES, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.body.surface import (
     LEFT_ARM,

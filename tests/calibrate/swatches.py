@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.trackers.colour.build import colour_model
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.types import Bytes, Floats
 
 MODEL = colour_model(())

@@ -12,7 +12,7 @@ from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, boa
 from mocapd.errors import ConfigError
 from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard, printed
 from mocapd.types import Bytes
-from tests.calibrate.board_rooms import PRINT, cameras, corners_px, held_poses
+from tests.calibrate.board_scenes import PRINT, cameras, corners_px, held_poses
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 CHESS = BoardSpec(BoardKind.CHESSBOARD, 5, 6, 0.07)

@@ -14,7 +14,7 @@ from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Camera, Frame
-from tests.calibrate.distant_room import AXES, Room, camera, turn
+from tests.calibrate.distant_scene import AXES, Room, camera, turn
 
 NOTICED_S = 5.0  # wanted
 CAPTURES = (

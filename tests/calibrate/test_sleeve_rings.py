@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import moved_camera
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
@@ -12,7 +12,7 @@ from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, placed_by_r
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, normalised, project, to_camera
+from mocapd.geometry.camera_model import centre, normalised, project, to_camera
 from mocapd.types import Floats
 from tests.geometry.rigs import looking_at
 

@@ -14,11 +14,11 @@ from mocapd.calibrate.colours.stroke_proposal import (
 from mocapd.errors import InputError
 from mocapd.evaluate.colour_proposals import score_by_labels, score_by_strokes, table
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.setup import SimSetup, setup_of
 from mocapd.sim.world import World
-from mocapd.trackers.colour.build import colour_model
 from mocapd.types import Bytes, Camera, LabelledPicture
 from tests.calibrate.swatches import MODEL, swatches
 from tests.sim import small

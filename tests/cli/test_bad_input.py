@@ -88,9 +88,9 @@ def test_an_unknown_tracker(track: Track) -> None:
     assert_one_line(track("--tracker", "magic"), 78, "'magic'", "canned")
 
 
-def test_an_unknown_variant(track: Track) -> None:
-    outcome = track("--tracker", "colour", "--variant", "rapid")
-    assert_one_line(outcome, 78, "tracker.variant", "'rapid'", "full, paper")
+def test_the_option_of_earlier_versions_names_what_to_write_now(track: Track) -> None:
+    outcome = track("--tracker", "colour", "--variant", "paper")
+    assert_one_line(outcome, 78, "--variant", "colour_paper")
 
 
 def test_several_cameras_without_a_rig(clean_env: dict[str, str], capture: Path) -> None:

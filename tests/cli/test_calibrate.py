@@ -7,10 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.saved_session import load_saved
-from tests.calibrate.board_rooms import cameras, floor_pose, held_poses, write_pictures
+from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
 from tests.cli.mocapd_process import Outcome, mocapd
 
 SIZE_PX = (640, 480)

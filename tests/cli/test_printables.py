@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from mocapd.cli.app import app
+from mocapd.cli.command_list import app
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError
-from tests.calibrate.printed import keywords, pages
 from tests.cli.mocapd_process import mocapd
+from tests.printing.printed import keywords, pages
 
 Run = Callable[..., str]
 

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
+from mocapd.config.effective import load_config
 from mocapd.errors import ConfigError
-from mocapd.trackers.canned.tracker import CannedParams, canned_pose
+from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import Floats
 
 SKELETON = standard_skeleton(1.7)
@@ -13,7 +15,7 @@ MS = 1_000_000
 
 
 def joints_at(t_ns: int) -> Floats:
-    return joint_positions(SKELETON, canned_pose(SKELETON, CannedParams(), t_ns))
+    return joint_positions(SKELETON, canned_pose(SKELETON, CannedSection(), t_ns))
 
 
 def test_the_loop_closes_and_goes_on_for_years() -> None:
@@ -39,5 +41,5 @@ def test_the_left_hand_is_up_and_the_right_is_down() -> None:
 
 
 def test_a_loop_of_no_length_is_refused() -> None:
-    with pytest.raises(ConfigError, match="loop_s"):
-        CannedParams(loop_s=0.0)
+    with pytest.raises(ConfigError, match=r"tracker\.canned\.loop_s"):
+        load_config({"tracker.canned.loop_s": "0"}, env={}, candidates=())

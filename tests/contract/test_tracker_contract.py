@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import NAMES, joint_positions
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.record import Calibration, Wearer
 from mocapd.errors import ConfigError
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Track, unprobed
 from mocapd.trackers.registry import TRACKERS, Resources, build
-from mocapd.types import BodyState, FrameSet, Track, Tracking
+from mocapd.types import BodyState, FrameSet, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
+from tests.trackers.stepping import Stepping
 
 DAY_NS = 86_400_000_000_000
 
@@ -32,7 +33,7 @@ def case(built: TrackerCase) -> TrackerCase:
     return built
 
 
-def run(tracker: Tracker, sets: Sequence[FrameSet]) -> list[Track]:
+def run(tracker: Stepping, sets: Sequence[FrameSet]) -> list[Track]:
     return [tracker.step(one) for one in sets]
 
 
@@ -50,7 +51,7 @@ def assert_same(one: BodyState, other: BodyState) -> None:
     assert np.array_equal(one.joints_m, other.joints_m)
 
 
-def assert_well_formed(tracker: Tracker, track: Track, frames: FrameSet) -> None:
+def assert_well_formed(tracker: Stepping, track: Track, frames: FrameSet) -> None:
     body = track.body
     n = len(tracker.skeleton.names)
     assert body.t_ns == frames.t_ns
@@ -58,7 +59,9 @@ def assert_well_formed(tracker: Tracker, track: Track, frames: FrameSet) -> None
     assert set(body.cameras) <= set(frames.frames)
     assert body.confidence.shape == (n,)
     assert ((body.confidence >= 0.0) & (body.confidence <= 1.0)).all()
+    assert 0.0 <= track.quality <= 1.0
     if body.tracking is Tracking.LOST:
+        assert track.quality == 0.0
         assert body.pose is None
         assert body.joints_m is None
         assert not body.confidence.any()
@@ -90,6 +93,59 @@ def test_it_tracks_a_person_and_all_it_says_is_well_formed(case: TrackerCase) ->
         assert_well_formed(case.tracker, track, one)
     assert track.body.tracking is Tracking.LIVE
     assert track.body.cameras
+    assert track.quality > 0.3
+
+
+def test_it_goes_on_from_another_trackers_body_at_once(case: TrackerCase) -> None:
+    """Without the frames in which a person who comes is not believed yet, and without a jump."""
+    half = len(case.person) // 2
+    tracks = run(case.tracker, case.person)
+    assert tracks[0].body.tracking is not Tracking.LIVE or not TRACKERS[case.tracker.name].sees
+    before = tracks[half - 1].body
+    case.tracker.reset(near=replace(before, tracker="another"))
+    for there, again in zip(tracks[half:], run(case.tracker, case.person[half:]), strict=True):
+        assert again.body.tracking is Tracking.LIVE
+        assert again.body.tracker == case.tracker.name
+        assert there.body.joints_m is not None
+        assert again.body.joints_m is not None
+        apart_m = np.linalg.norm(again.body.joints_m - there.body.joints_m, axis=1)
+        assert np.sqrt((apart_m**2).mean()) < 0.1
+
+
+def test_a_body_that_the_pictures_do_not_confirm_is_not_believed(case: TrackerCase) -> None:
+    if not TRACKERS[case.tracker.name].sees:
+        return
+    body = run(case.tracker, case.person)[-1].body
+    case.tracker.reset(near=replace(body, t_ns=case.empty[0].t_ns - 1, tracker="another"))
+    assert all(t.body.tracking is not Tracking.LIVE for t in run(case.tracker, case.empty))
+
+
+def test_the_shape_is_its_owners(case: TrackerCase) -> None:
+    """Bones are as long as those of the shape that is handed in, also of measured proportions."""
+    run(case.tracker, case.person[:6])
+    factors = case.tracker.shape.factors.copy()
+    factors[2] = 1.1  # upper arms
+    case.tracker.shape = replace(case.tracker.shape, factors=factors)
+    track = case.tracker.step(case.person[6])
+    assert_well_formed(case.tracker, track, case.person[6])
+    assert abs(track.shape.factors[2] - 1.1) < 0.05
+
+
+def test_what_it_lacks_is_said_before_it_is_built(case: TrackerCase) -> None:
+    name, one = case.tracker.name, TRACKERS[case.tracker.name]
+    blind = Calibration(wearer=Wearer(1.7))
+    assert bool(one.lacks(blind, ("left",))) == one.sees
+    if one.sees:
+        with pytest.raises(ConfigError, match=name):
+            build(name, blind, Resources())
+
+
+def test_each_stage_of_a_step_is_heard_of(case: TrackerCase) -> None:
+    stages: list[str] = []
+    case.tracker.tracker.probe = stages.append
+    run(case.tracker, case.person)
+    case.tracker.tracker.probe = unprobed
+    assert bool(stages) == TRACKERS[case.tracker.name].sees
 
 
 def test_the_same_frames_after_reset_give_the_same_output(case: TrackerCase) -> None:

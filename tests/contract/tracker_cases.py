@@ -7,15 +7,18 @@ import numpy as np
 
 from mocapd.calibration.record import Calibration, Wearer
 from mocapd.session.simulation import from_scenario
-from mocapd.shirt.pose_database.database import DatabaseParams, build_database
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
+from mocapd.trackers.colour_paper.build import build_paper_tracker
+from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
+from tests.trackers.stepping import Stepping
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
 PERIOD_NS = 33_333_333
@@ -26,7 +29,7 @@ N_PERSON, N_EMPTY = 14, 6
 class TrackerCase:
     """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight."""
 
-    tracker: Tracker
+    tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
 
@@ -63,16 +66,18 @@ def canned_case() -> TrackerCase:
     sets = frame_sets(
         {"cam0": grey_room(8, 0), "cam1": grey_room(8, 1)}, offset_ns={"cam1": 11_000_000}
     )
-    return TrackerCase(build("canned", Calibration(wearer=Wearer(1.7)), Resources()), sets, sets)
+    known = Calibration(wearer=Wearer(1.7))
+    tracker = build("canned", known, Resources())
+    return TrackerCase(Stepping(tracker, known_shape(known)), sets, sets)
 
 
-def colour_case() -> TrackerCase:
+def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) -> TrackerCase:
     """Two simulated webcams in a room with things in it; a pose database of a fiftieth of the size."""
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
     scenario = small.scenario(cameras=cameras)
     renderers = camera_renderers(World(scenario))
     known = from_scenario(setup_of(scenario, renderers))
-    tracker = build_colour_tracker(known, build_database(DatabaseParams(count=1600, cells=32)))
+    tracker = build_tracker(known, build_database(DatabaseParams(count=1600, cells=32)))
     offset_ns = {"right": 11_000_000}
     person = {r.camera.name: [r.frame(i) for i in range(N_PERSON)] for r in renderers}
     empty = {
@@ -80,7 +85,7 @@ def colour_case() -> TrackerCase:
         for r in renderers
     }
     return TrackerCase(
-        tracker,
+        Stepping(tracker, known_shape(known)),
         frame_sets(person, offset_ns=offset_ns),
         frame_sets(empty, offset_ns=offset_ns),
     )
@@ -89,5 +94,6 @@ def colour_case() -> TrackerCase:
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
 CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "canned": canned_case,
-    "colour": colour_case,
+    "colour": lambda: shirt_case(build_colour_tracker),
+    "colour_paper": lambda: shirt_case(build_paper_tracker),
 }

@@ -3,7 +3,7 @@
 import sys
 
 from mocapd.app.running import Signals, run_daemon
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import mean_shape
 from mocapd.config.sections import Config
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
@@ -29,8 +29,9 @@ class DyingCamera:
 def main() -> int:
     """The daemon's exit code."""
     config = Config(outputs={})
-    tracker = CannedTracker(standard_skeleton(1.75))
-    session = Session((CameraInput(DyingCamera(), "test"),), None, "", tracker, 1.75)
+    session = Session(
+        (CameraInput(DyingCamera(), "test"),), None, "", CannedTracker(), mean_shape(1.75)
+    )
     return run_daemon(Service(config, session), Signals())
 
 

@@ -4,7 +4,7 @@ import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
 from mocapd.config.sections import Config
@@ -13,8 +13,9 @@ from mocapd.outputs.registry import OscSection
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
+from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Frame, FrameSet, Track
+from mocapd.types import Frame, FrameSet
 from tests.capture.films import SIZE_PX, picture
 
 PERIOD_S = 1.0 / 60.0
@@ -67,14 +68,14 @@ def daemon_on(*cameras: FakeCamera, osc_port: int) -> Service:
         state_dir=Path("/nonexistent"),
     )
     inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)
-    return Service(config, Session(inputs, None, "", StrictTracker(standard_skeleton(1.75)), 1.75))
+    return Service(config, Session(inputs, None, "", StrictTracker(), mean_shape(1.75)))
 
 
 class StrictTracker(CannedTracker):
     """The canned one, which looks at no picture, as particular about sizes as the one that does."""
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         for frame in frames.frames.values():
             if frame.pixels.shape[1::-1] != SIZE_PX:
                 raise ConfigError("does not fit its calibration", frame.camera)
-        return super().step(frames)
+        return super().step(frames, shape)

@@ -61,8 +61,9 @@ def frames_of(name: str, video: Path) -> Iterator[Frame]:
 def found_in(rig: Rig, sets: Iterator[FrameSet], cache_dir: Path) -> list[float]:
     """The times at which the colour tracker sees somebody [s]; the pictures alone tell it who."""
     resources = cached(cache_dir, lambda *_: None)
-    tracker = ready_tracker("colour", Calibration(rig, Wearer(1.75)), resources)
-    return [float(t) for t in track_all(tracker, sets, _nobody).times_s]
+    ready = ready_tracker("colour", Calibration(rig, Wearer(1.75)), resources)
+    track = track_all(ready.tracker, ready.shape, sets, _nobody)
+    return [float(t) for t in track.times_s]
 
 
 def _nobody(_: int) -> None: ...

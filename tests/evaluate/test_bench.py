@@ -1,19 +1,20 @@
 """The benchmark: what it prints, that stages add up, that time goes on in a long run."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.calibration.record import Calibration, Wearer
 from mocapd.evaluate.bench.bench_endurance import endure
 from mocapd.evaluate.bench.bench_input import CHUNK, BenchInput
-from mocapd.evaluate.bench.bench_step import REST, Probed, bench_tracker
+from mocapd.evaluate.bench.bench_step import REST, bench_tracker
+from mocapd.session.tracker_setup import ReadyTracker
+from mocapd.trackers.base import Track, Tracker
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Frame, FrameSet, Track
+from mocapd.types import BodyState, Frame, FrameSet
 from tests.cli.mocapd_process import mocapd
 from tests.cli.small_capture import FRAMES, write_capture
 
@@ -25,21 +26,24 @@ class StagedTracker(CannedTracker):
     """The canned tracker in two stages, the second in every other step."""
 
     def __init__(self) -> None:
-        super().__init__(standard_skeleton(1.75))
-        self.probe: Callable[[str], None] = print
+        super().__init__()
         self.times_ns: list[int] = []
         self.resets = 0
 
-    def reset(self) -> None:
+    def reset(self, near: BodyState | None = None) -> None:
         self.resets += 1
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         self.times_ns.append(frames.t_ns)
-        track = super().step(frames)
+        track = super().step(frames, shape)
         self.probe("look")
         if len(self.times_ns) % 2:
             self.probe("now and then")
         return track
+
+
+def ready(tracker: Tracker) -> ReadyTracker:
+    return ReadyTracker(tracker, mean_shape(1.75))
 
 
 @pytest.fixture
@@ -59,9 +63,10 @@ def recording() -> BenchInput:
 def test_stages_add_up_to_the_step(recording: BenchInput) -> None:
     tracker = StagedTracker()
     told: list[tuple[int, int]] = []
-    figures = bench_tracker(tracker, recording, lambda done, total: told.append((done, total)))
+    figures = bench_tracker(
+        ready(tracker), recording, lambda done, total: told.append((done, total))
+    )
 
-    assert isinstance(tracker, Probed)
     assert told[-1] == (2 * SETS, 2 * SETS)
     assert tracker.resets == 1  # between the run that warms up and the one that counts
     assert len(tracker.times_ns) == 2 * SETS
@@ -76,15 +81,13 @@ def test_stages_add_up_to_the_step(recording: BenchInput) -> None:
 
 
 def test_a_tracker_without_stages_is_timed_as_a_whole(recording: BenchInput) -> None:
-    figures = bench_tracker(
-        CannedTracker(standard_skeleton(1.75)), recording, lambda done, total: None
-    )
+    figures = bench_tracker(ready(CannedTracker()), recording, lambda done, total: None)
     assert list(figures.stages) == [REST]
 
 
 def test_in_a_long_run_time_goes_on(recording: BenchInput) -> None:
     tracker = StagedTracker()
-    figures = endure(tracker, recording, 0.02, lambda done, total: None)
+    figures = endure(ready(tracker), recording, 0.02, lambda done, total: None)
     assert figures.sets == len(tracker.times_ns) > SETS
     assert all(np.diff(tracker.times_ns) > 0)
     assert len(figures.median_ms) == len(figures.p95_ms) == len(figures.cpu_ms) == 4

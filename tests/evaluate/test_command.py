@@ -43,7 +43,7 @@ def test_it_prints_a_table_and_writes_the_page(
     assert "evaluation.md: written" in outcome.err
     text = (tmp_path / "evaluation.md").read_text()
     assert outcome.out.strip() in re.sub(r"[\d.]+ \|$", told[-2] + " |", text, flags=re.M)
-    assert "mocapd eval small --tracker canned --variant full --out " in text
+    assert "mocapd eval small --tracker canned --out " in text
 
 
 def test_json_holds_the_same_figures_as_the_tables(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.model import build_model
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.evaluate.retraced import proportions, states
 from mocapd.evaluate.roc import (

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence, open_case
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.roc import correct_at

@@ -40,10 +40,15 @@ source = "rtsp://admin:secret@192.168.1.20:554/stream?channel=1"
 
 [tracker]
 name = "colour"
-variant = "full"
 stature_m = 1.72
-colour_model = "model"
 coast_s = 0.5
+
+[tracker.colour]
+learn_shape = true
+live_match = 0.45
+
+[shirt]
+colour_model = "model"
 
 [smoothing]
 preset = "balanced"

@@ -29,7 +29,8 @@ from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Json, StepName, Tell
 from mocapd.wizard.steps import SetupCameras, all_steps
-from mocapd.wizard.wizard import Wizard, WizardView
+from mocapd.wizard.wizard import Wizard
+from mocapd.wizard.wizard_view import WizardView
 from tests.fuzz.row import DeadlyError
 from tests.wizard.drafts import NAMES, PORTS, SIZE_PX, full_draft, source_of
 from tests.wizard.fake_webcam import FakeWebcam

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.geometry.cameras import centre, project
+from mocapd.geometry.camera_model import centre, project
 from mocapd.geometry.nominal_rig import nominal_rig
 
 

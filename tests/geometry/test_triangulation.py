@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from mocapd.geometry import cameras
+from mocapd.geometry import camera_model
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 from tests.geometry.rigs import looking_at, points_in_the_play_area, ring
@@ -14,9 +14,9 @@ def seen_by(rig: tuple[Camera, ...], world_m: Floats, noise_px: float = 0.0) -> 
     rng = np.random.default_rng(8)
     return np.stack(
         [
-            cameras.normalised(
+            camera_model.normalised(
                 c,
-                cameras.project(c, world_m)
+                camera_model.project(c, world_m)
                 + noise_px * rng.standard_normal((*world_m.shape[:-1], 2)),
             )
             for c in rig
@@ -41,7 +41,7 @@ def test_with_noise_it_is_as_good_as_the_least_reprojection_error() -> None:
 
     def optimum(k: int) -> Floats:
         def error(x_m: Floats) -> Floats:
-            p = np.stack([cameras.to_camera(c, x_m) for c in rig])
+            p = np.stack([camera_model.to_camera(c, x_m) for c in rig])
             return np.asarray((p[:, :2] / p[:, 2:] - xy[:, k]).ravel())
 
         return np.asarray(least_squares(error, world_m[k], xtol=1e-14, ftol=1e-14).x)
@@ -57,8 +57,10 @@ def test_residuals_are_distances_from_the_rays() -> None:
     xy = seen_by(rig, points_in_the_play_area(5), noise_px=5.0)
     points_m, residuals_m = triangulate(rig, xy)
     for i, camera in enumerate(rig):
-        pixels = cameras.distort(camera.dist, xy[i]) * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
-        centre_m, directions = cameras.rays(camera, pixels)
+        pixels = (
+            camera_model.distort(camera.dist, xy[i]) * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
+        )
+        centre_m, directions = camera_model.rays(camera, pixels)
         expected = np.linalg.norm(np.cross(points_m - centre_m, directions), axis=-1)
         assert np.allclose(residuals_m[i], expected, atol=1e-6)
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.pipeline.absence import FIRST_NS, LOST_EVERY_NS, Absence
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -21,7 +22,7 @@ PERIOD_NS = 33 * MS
 
 def live(t_ns: int) -> BodyState:
     frame = Frame("a", 0, t_ns, PIXELS)
-    return CannedTracker(SKELETON).step(FrameSet(t_ns, {"a": frame})).body
+    return CannedTracker().step(FrameSet(t_ns, {"a": frame}), mean_shape(1.7)).body
 
 
 def lost(t_ns: int) -> BodyState:

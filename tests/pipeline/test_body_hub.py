@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.pipeline.body_hub import BodyHub, BodySample
-from mocapd.types import BodyState, FrameSet, Track, Tracking
+from mocapd.trackers.base import Track
+from mocapd.types import BodyState, FrameSet, Tracking
 
-SKELETON = standard_skeleton(1.75)
+SHAPE = mean_shape(1.75)
 
 
 class Taker:
@@ -19,7 +20,7 @@ class Taker:
 
 def sample(t_ns: int) -> BodySample:
     nobody = BodyState(t_ns, Tracking.LOST, "test", None, None, np.zeros(22))
-    return BodySample(Track(nobody), SKELETON, FrameSet(t_ns, {}))
+    return BodySample(Track(nobody, SHAPE), skeleton_of(SHAPE), FrameSet(t_ns, {}))
 
 
 def test_the_newest_is_there_for_who_looks_until_it_no_longer_holds() -> None:

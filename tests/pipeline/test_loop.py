@@ -7,19 +7,19 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Probe, Track, Tracker, unprobed
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Frame, FrameSet, Track, Tracking
+from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
 
-SKELETON = standard_skeleton(1.7)
+SHAPE = mean_shape(1.7)
 MS = 1_000_000
 
 
@@ -27,19 +27,19 @@ class FailingTracker:
     """Breaks at its third step."""
 
     name = "failing"
-    skeleton = SKELETON
 
     def __init__(self) -> None:
-        self._inner = CannedTracker(SKELETON)
+        self.probe: Probe = unprobed
+        self._inner = CannedTracker()
         self._steps = 0
 
-    def reset(self) -> None: ...
+    def reset(self, near: BodyState | None = None) -> None: ...
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         self._steps += 1
         if self._steps == 3:
             raise ArithmeticError("singular")
-        return self._inner.step(frames)
+        return self._inner.step(frames, shape)
 
 
 class Run:
@@ -51,7 +51,12 @@ class Run:
         self.deaths: list[BaseException] = []
         self.news = threading.Condition()
         self.loop = PipelineLoop(
-            self.collector, tracker, Smoother("balanced", SKELETON), BodyHub(self), self._die
+            self.collector,
+            tracker,
+            SHAPE,
+            Smoother("balanced", skeleton_of(SHAPE)),
+            BodyHub(self),
+            self._die,
         )
         self._seq = 0
 
@@ -82,7 +87,7 @@ class Run:
 
 
 def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
-    run = Run(CannedTracker(SKELETON))
+    run = Run(CannedTracker())
     run.loop.start()
     run.feed_until_out(12)
     assert run.loop.stop(20.0)
@@ -105,7 +110,7 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
 
 
 def test_metrics_before_the_first_frame_are_there_and_empty() -> None:
-    run = Run(CannedTracker(SKELETON))
+    run = Run(CannedTracker())
     metrics = run.loop.metrics()
     assert metrics.published == 0
     assert metrics.rate_hz == 0.0
@@ -127,7 +132,7 @@ def test_a_death_is_heard_of_with_its_cause() -> None:
 
 
 def test_stopping_wakes_a_loop_without_frames_and_is_no_death() -> None:
-    run = Run(CannedTracker(SKELETON))
+    run = Run(CannedTracker())
     run.loop.start()
     assert run.loop.stop(20.0)
     assert run.loop.stop(20.0)

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.pipeline.rehearsal import STEPS, rehearse
+from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Camera, FrameSet, Rig, Track
+from mocapd.types import BodyState, Camera, FrameSet, Rig
 
 
 def camera(name: str) -> Camera:
@@ -16,16 +17,16 @@ class Witness(CannedTracker):
     """Remembers what it was shown since the last reset."""
 
     def __init__(self) -> None:
-        super().__init__(standard_skeleton(1.75))
+        super().__init__()
         self.shown: list[FrameSet] = []
         self.before_reset: list[FrameSet] = []
 
-    def reset(self) -> None:
+    def reset(self, near: BodyState | None = None) -> None:
         self.before_reset, self.shown = self.shown, []
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         self.shown.append(frames)
-        return super().step(frames)
+        return super().step(frames, shape)
 
 
 def test_it_is_shown_the_person_and_forgets_it() -> None:
@@ -33,7 +34,13 @@ def test_it_is_shown_the_person_and_forgets_it() -> None:
     picture = np.full((6, 8, 3), 7, np.uint8)
     wrong = np.full((12, 16, 3), 7, np.uint8)
     rig = Rig((camera("a"), camera("b"), camera("c")))
-    rehearse(tracker, rig, {"a": picture, "b": wrong}, lambda *parts: told.append(parts))
+    rehearse(
+        tracker,
+        mean_shape(1.75),
+        rig,
+        {"a": picture, "b": wrong},
+        lambda *parts: told.append(parts),
+    )
 
     assert tracker.shown == []
     assert len(tracker.before_reset) == STEPS
@@ -49,5 +56,5 @@ def test_it_is_shown_the_person_and_forgets_it() -> None:
 
 def test_without_a_rig_there_is_nothing_to_show() -> None:
     tracker = Witness()
-    rehearse(tracker, None, {}, lambda *_: None)
+    rehearse(tracker, mean_shape(1.75), None, {}, lambda *_: None)
     assert {len(frames.frames) for frames in tracker.before_reset} == {0}

@@ -2,13 +2,15 @@
 
 from dataclasses import replace
 
+from mocapd.body.shape import mean_shape
 from mocapd.clock import NS_PER_S
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import RestSkeleton, StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.service.publisher import REST_EVERY_NS, Publisher
-from mocapd.types import FrameSet, Skeleton, Track
+from mocapd.trackers.base import Track
+from mocapd.types import FrameSet, Skeleton
 from tests.outputs.frames import left_hand_up
 
 BODY, SKELETON = left_hand_up()
@@ -54,7 +56,9 @@ class Run:
         until_ns = self.now_ns + for_ns
         while self.now_ns < until_ns:
             self.now_ns += FRAME_NS
-            self.publisher.put(BodySample(Track(BODY), skeleton, FrameSet(BODY.t_ns, {})))
+            self.publisher.put(
+                BodySample(Track(BODY, mean_shape(1.75)), skeleton, FrameSet(BODY.t_ns, {}))
+            )
 
 
 def grown(by: float) -> Skeleton:

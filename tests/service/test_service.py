@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.body.skeleton import standard_skeleton
+from mocapd.body.shape import mean_shape
 from mocapd.config.sections import Config, SmoothingSection
 from mocapd.outputs import registry
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, RestSkeleton
@@ -50,8 +50,8 @@ def config_of(preset: str = "balanced") -> Config:
 
 def session_of(*names: str, stature_m: float = 1.75, rig: Rig | None = None) -> Session:
     inputs = tuple(CameraInput(FakeCamera(name), f"test-{name}", SIZE_PX) for name in names)
-    tracker = CannedTracker(standard_skeleton(stature_m))
-    return Session(inputs, rig, "rig.json" if rig else "", tracker, stature_m)
+    source = "rig.json" if rig else ""
+    return Session(inputs, rig, source, CannedTracker(), mean_shape(stature_m))
 
 
 @pytest.fixture

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard, printed
 from mocapd.types import Floats
-from tests.calibrate.board_rooms import cameras, held_poses
+from tests.calibrate.board_scenes import cameras, held_poses
 
 INK, PAPER = 0.04, 0.75
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mocapd.errors import CannotCreateError
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.geometry.rig_file import load_rig
 from mocapd.sim.export import export_capture
 from mocapd.sim.world import World

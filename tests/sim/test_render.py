@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import posed_vertices
 from mocapd.body.surface_building import build_surface
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import model_pictures, scribble_picture

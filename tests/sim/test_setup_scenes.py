@@ -16,7 +16,7 @@ from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in, wor
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_lens
 from mocapd.calibrate.intrinsics.views import covered
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
-from mocapd.geometry.cameras import centre, project
+from mocapd.geometry.camera_model import centre, project
 from mocapd.sim.board.board_clips import board_scenes, hold_frames, load_board_clips
 from mocapd.sim.clips import Clip
 from mocapd.sim.scenario import Scenario, load_scenario

@@ -10,10 +10,11 @@ from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
+from mocapd.trackers.known import known_shape
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
+from tests.trackers.stepping import Stepping
 
 N = 36
 START_NS = 50_000_000_000_000
@@ -71,7 +72,7 @@ def _still(pixels: Bytes) -> Bytes:
     return pixels
 
 
-def tracker_of(filmed: Filmed, database: PoseDatabase) -> Tracker:
+def tracker_of(filmed: Filmed, database: PoseDatabase) -> Stepping:
     """The full colour tracker, calibrated on the film's own room as a user would."""
-    setup = setup_of(filmed.scenario, filmed.renderers)
-    return build_colour_tracker(from_scenario(setup), database)
+    known = from_scenario(setup_of(filmed.scenario, filmed.renderers))
+    return Stepping(build_colour_tracker(known, database), known_shape(known))

@@ -9,9 +9,10 @@ import pytest
 from mocapd.body.skeleton import INDEX, PARENTS, joint_positions
 from mocapd.errors import ConfigError
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.base import Tracker
-from mocapd.types import BodyState, Bytes, Floats, FrameSet, Track, Tracking
+from mocapd.trackers.base import Track
+from mocapd.types import BodyState, Bytes, Floats, FrameSet, Tracking
 from tests.trackers.filmed import Filmed, Pictures, film, tracker_of
+from tests.trackers.stepping import Stepping
 
 UPPER = [
     j for name, j in INDEX.items() if not any(s in name for s in ("Leg", "Foot", "Toes", "head"))
@@ -26,17 +27,17 @@ def filmed() -> Filmed:
 
 
 @pytest.fixture(scope="module")
-def built(filmed: Filmed, pose_database: PoseDatabase) -> Tracker:
+def built(filmed: Filmed, pose_database: PoseDatabase) -> Stepping:
     return tracker_of(filmed, pose_database)
 
 
 @pytest.fixture
-def tracker(built: Tracker) -> Tracker:
+def tracker(built: Stepping) -> Stepping:
     built.reset()
     return built
 
 
-def run(tracker: Tracker, frames: Sequence[FrameSet]) -> list[BodyState]:
+def run(tracker: Stepping, frames: Sequence[FrameSet]) -> list[BodyState]:
     return [tracker.step(frame).body for frame in frames]
 
 
@@ -56,7 +57,7 @@ def dark(pictures: Pictures) -> Pictures:
 
 
 def test_it_finds_the_person_and_follows_within_five_centimetres(
-    tracker: Tracker, filmed: Filmed
+    tracker: Stepping, filmed: Filmed
 ) -> None:
     shown = filmed.empty[:6] + filmed.pictures
     bodies = run(tracker, filmed.frame_sets(shown))[6:]
@@ -69,7 +70,7 @@ def test_it_finds_the_person_and_follows_within_five_centimetres(
         assert body.confidence[UPPER].mean() > 0.5
 
 
-def test_a_body_is_one_pose_of_its_skeleton(tracker: Tracker, filmed: Filmed) -> None:
+def test_a_body_is_one_pose_of_its_skeleton(tracker: Stepping, filmed: Filmed) -> None:
     for frame in filmed.frame_sets(filmed.pictures[:12]):
         body = tracker.step(frame).body
         if body.pose is None or body.joints_m is None:
@@ -84,7 +85,7 @@ def test_a_body_is_one_pose_of_its_skeleton(tracker: Tracker, filmed: Filmed) ->
     np.testing.assert_allclose(lengths, true, atol=0.04)
 
 
-def test_an_empty_room_is_lost_throughout(tracker: Tracker, filmed: Filmed) -> None:
+def test_an_empty_room_is_lost_throughout(tracker: Stepping, filmed: Filmed) -> None:
     for frame in filmed.frame_sets(filmed.empty):
         track = tracker.step(frame)
         body = track.body
@@ -98,7 +99,7 @@ def test_an_empty_room_is_lost_throughout(tracker: Tracker, filmed: Filmed) -> N
 
 @pytest.mark.parametrize("gone", ["away", "dark"])
 def test_who_is_gone_is_lost_and_found_again_within_five_frames(
-    tracker: Tracker, filmed: Filmed, gone: str
+    tracker: Stepping, filmed: Filmed, gone: str
 ) -> None:
     absent = [
         filmed.empty[i % 10] if gone == "away" else dark(filmed.pictures[0]) for i in range(20)
@@ -120,7 +121,7 @@ def test_who_is_gone_is_lost_and_found_again_within_five_frames(
     assert error_m(after[-1], filmed.joints_m[29]) < 0.05
 
 
-def test_one_camera_goes_missing_for_a_while(tracker: Tracker, filmed: Filmed) -> None:
+def test_one_camera_goes_missing_for_a_while(tracker: Stepping, filmed: Filmed) -> None:
     shown: list[Pictures] = []
     for i, pictures in enumerate(filmed.pictures):
         alone = {"left": pictures["left"]} if 14 <= i < 20 else {"right": pictures["right"]}
@@ -152,7 +153,7 @@ def same(a: Track, b: Track) -> bool:
     return all(np.array_equal(x, y) for x, y in arrays)
 
 
-def test_the_same_frames_after_reset_give_the_same(tracker: Tracker, filmed: Filmed) -> None:
+def test_the_same_frames_after_reset_give_the_same(tracker: Stepping, filmed: Filmed) -> None:
     shown = filmed.empty[:3] + filmed.pictures[:14] + filmed.empty[3:6] + filmed.pictures[14:20]
     frames = filmed.frame_sets(shown)
     first = [tracker.step(frame) for frame in frames]
@@ -162,7 +163,7 @@ def test_the_same_frames_after_reset_give_the_same(tracker: Tracker, filmed: Fil
     assert first[-1].body.tracking is Tracking.LIVE
 
 
-def test_evidence_shows_the_shirt_where_the_person_is(tracker: Tracker, filmed: Filmed) -> None:
+def test_evidence_shows_the_shirt_where_the_person_is(tracker: Stepping, filmed: Filmed) -> None:
     track = [tracker.step(frame) for frame in filmed.frame_sets(filmed.pictures[:10])][-1]
     assert set(track.evidence) == {"left", "right"}
     for name, ids in track.evidence.items():
@@ -172,7 +173,7 @@ def test_evidence_shows_the_shirt_where_the_person_is(tracker: Tracker, filmed: 
         assert ids.max() <= 10
 
 
-def test_a_picture_of_another_size_is_told(tracker: Tracker, filmed: Filmed) -> None:
+def test_a_picture_of_another_size_is_told(tracker: Stepping, filmed: Filmed) -> None:
     frame = filmed.frame_sets(filmed.pictures[:1])[0]
     small = replace(frame.frames["left"], pixels=np.zeros((120, 160, 3), np.uint8))
     with pytest.raises(ConfigError, match=r"160x120.*320x240"):

@@ -7,10 +7,10 @@ import pytest
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.solver import Fit, View
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.types import Floats
-from tests.trackers.synthetic import fitter, standing, views_of
+from tests.fit.synthetic import fitter, standing, views_of
 
 RIGHT = [INDEX["right" + bone] for bone in ("LowerArm", "Hand")]
 LEFT = [INDEX["left" + bone] for bone in ("LowerArm", "Hand")]

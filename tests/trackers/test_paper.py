@@ -8,10 +8,11 @@ import pytest
 from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import retract
-from mocapd.body.shirt import N_LABELS, standard_shirt
+from mocapd.body.shape import mean_shape
+from mocapd.body.shirt_patches import N_LABELS, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.shirt.pose_database.key_poses import arm_rotations
@@ -27,7 +28,7 @@ from mocapd.trackers.colour_paper.paper_drawing import (
     triangle_points,
 )
 from mocapd.trackers.colour_paper.paper_segmenter import PaperSegmenter
-from mocapd.trackers.colour_paper.params import Params, tolerant
+from mocapd.trackers.colour_paper.params import Params, published, tolerating
 from mocapd.trackers.colour_paper.patch_kernels import (
     centroid_rows,
     classified_patches,
@@ -35,7 +36,9 @@ from mocapd.trackers.colour_paper.patch_kernels import (
 )
 from mocapd.trackers.colour_paper.placement import Constraints, Guess, place
 from mocapd.trackers.colour_paper.tracker import PaperTracker
+from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Tracking
+from tests.trackers.stepping import Stepping
 
 STATURE_M = 1.75
 FRAME_NS = 33_333_333
@@ -102,9 +105,10 @@ def database() -> PoseDatabase:
     return build_database(DatabaseParams(count=4000, pool=1.2, cells=32))
 
 
-def tracker(database: PoseDatabase, params: Params | None = None) -> PaperTracker:
+def tracker(database: PoseDatabase, params: Params | None = None) -> Stepping:
     white = {c.name: np.eye(3) for c in RIG.cameras}
-    return PaperTracker(RIG, STATURE_M, colours(), white, database, params)
+    made = PaperTracker(RIG, STATURE_M, colours(), white, database, params)
+    return Stepping(made, mean_shape(STATURE_M))
 
 
 def arm_error_m(tracked: Floats, body: Posture) -> float:
@@ -287,8 +291,10 @@ def test_follows_a_person_and_says_lost_when_nobody_is_there(database: PoseDatab
     assert state.confidence[INDEX["leftFoot"]] == 0.0
     assert state.cameras == ("left", "right")
     np.testing.assert_allclose(np.linalg.norm(state.pose.quats_xyzw, axis=1), 1.0)
-    after = [t.step(frame_set(None, seq)).body for seq in range(8, 18)]
+    after = [t.step(frame_set(None, seq)).body for seq in range(8, 28)]
     assert after[0].tracking is Tracking.COASTING
+    coasted_s = sum(b.tracking is Tracking.COASTING for b in after) * FRAME_NS * 1e-9
+    assert coasted_s == pytest.approx(TrackingStateParams().coast_s, abs=0.05)  # as every tracker
     assert after[-1].tracking is Tracking.LOST
 
 
@@ -320,10 +326,10 @@ def test_the_same_frames_after_a_reset_give_the_same_output(database: PoseDataba
 
 def test_the_switches_make_the_papers_baseline(database: PoseDatabase) -> None:
     baseline = Params(pose_prior=False, adaptive_white_balance=False)
-    for params in (baseline, tolerant(Params()), replace(baseline, threshold=4.0)):
+    for params in (baseline, tolerating(Params()), replace(baseline, threshold=4.0)):
         t = tracker(database, params)
         t.step(frame_set(None, 0))
         for seq in range(1, 4):
             state = t.step(frame_set(standing(), seq)).body
         assert state.tracking is Tracking.LIVE
-    assert tracker(database, baseline).name == "colour-baseline"
+    assert published(baseline=True) == baseline

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, connect
 from tests.web.tiny_host import TinyHost

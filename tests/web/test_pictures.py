@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
 from mocapd.clock import NS_PER_S
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.types import Bytes
 from mocapd.web.links import MOST_HZ
 from mocapd.web.server import WebServer

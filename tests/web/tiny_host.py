@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import joint_positions, standard_skeleton
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
@@ -15,10 +16,13 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
-from mocapd.trackers.canned.tracker import CannedParams, canned_pose
-from mocapd.types import BodyState, Frame, FrameSet, Rig, Track, Tracking
+from mocapd.trackers.base import Track
+from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.tracker import canned_pose
+from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
-from mocapd.wizard.step import Context, Problem, Shape, StepName, StepState, StepView
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Problem, Shape, StepName, StepState, StepView
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring
 
@@ -115,12 +119,12 @@ class TinyHost:
         if not self.tracks:
             return None
         now_ns = monotonic_ns()
-        pose = canned_pose(self.skeleton, CannedParams(), now_ns)
+        pose = canned_pose(self.skeleton, CannedSection(), now_ns)
         joints_m = joint_positions(self.skeleton, pose)
         confidence = np.ones(len(joints_m))
         confidence[-4:] = 0.1
         state = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)
-        return BodySample(Track(state), self.skeleton, FrameSet(now_ns, {}))
+        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, FrameSet(now_ns, {}))
 
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:

@@ -9,7 +9,7 @@ from mocapd.geometry import rotations
 from mocapd.sim.board.board_picture import BoardFilm
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.wizard.draft import DraftCamera
-from tests.calibrate.board_rooms import PRINT, cameras, floor_pose, held_poses, middle_m
+from tests.calibrate.board_scenes import PRINT, cameras, floor_pose, held_poses, middle_m
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 RIG = cameras(2)

@@ -9,8 +9,9 @@ from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Bytes, Frame
 from mocapd.wizard.commands import read_command
+from mocapd.wizard.context import Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.step import Scene, Step, T, Tell
+from mocapd.wizard.step import Scene, T, Tell
 
 
 def do(step: Step, verb: str, args: Mapping[str, object] | None = None) -> None:

@@ -1,8 +1,12 @@
-"""A draft in which every step is done, of two small webcams."""
+"""Drafts in which every step is done, of two small webcams, and how two drafts are compared."""
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 
 from mocapd.body.shape import N_FACTORS
+from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.capture.webcam.controls import Controls
@@ -62,3 +66,36 @@ def full_draft() -> Draft:
         stature_m=1.72,
         factors=np.linspace(0.9, 1.1, N_FACTORS).round(4),
     )  # fmt: skip
+
+
+def drafted() -> Draft:
+    """All of it, with moments of the board and a camera whose address has a password."""
+    draft = full_draft()
+    one, other = draft.cameras
+    corners_px = np.random.default_rng(2).uniform(0, 48, (24, 2))
+    views = {7: BoardView(7, np.arange(24), corners_px, 0.4)}
+    return replace(
+        draft,
+        cameras=(one, replace(other, source="rtsp://admin:hunter2@10.0.0.7/live")),
+        board_views={"cam0": views, "gone": views},
+    )
+
+
+def begun(draft: Draft) -> Draft:
+    """What the next setup begins with: the same cameras, nothing known."""
+    return Draft(cameras=draft.cameras)
+
+
+def same(a: object, b: object) -> bool:
+    """Whether two drafts, or parts of them, hold the same."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if is_dataclass(a):
+        return type(a) is type(b) and all(
+            same(getattr(a, field.name), getattr(b, field.name)) for field in fields(a)
+        )
+    if isinstance(a, tuple) and isinstance(b, tuple):
+        return len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, float | np.ndarray):
+        return np.array_equal(a, b, equal_nan=isinstance(a, float))  # type: ignore[arg-type]
+    return a == b

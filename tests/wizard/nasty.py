@@ -18,8 +18,8 @@ import numpy as np
 
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import CannotCreateError, InputError, MocapdError
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.base import Tracker
 from mocapd.types import Bytes
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.body.body_step import BodyStep
@@ -29,11 +29,12 @@ from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
 from mocapd.wizard.check.check_step import CheckStep
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
+from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.room_step import RoomStep
-from mocapd.wizard.intrinsics.lens_step import LensStep
+from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.intrinsics.intrinsics_step import LensStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.step import Context, Step, StepName, Tell
+from mocapd.wizard.step import StepName, Tell
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import SIZE_PX, full_draft
 from tests.wizard.fake_webcam import FakeWebcam
@@ -116,7 +117,7 @@ def no_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
     raise CannotCreateError("the cache cannot be written", str(cache_dir), "make room")
 
 
-def no_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
+def no_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> ReadyTracker:
     """Nobody is seen."""
     raise InputError("the wearer was not seen", "body", "stand there")
 

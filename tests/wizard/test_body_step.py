@@ -13,16 +13,17 @@ from mocapd.body.skeleton import INDEX
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
-from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.trackers.known import known_shape
 from mocapd.types import Frame, FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import Drawn, solve
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Scene, StepState, Tell
+from tests.trackers.stepping import Stepping
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
@@ -107,9 +108,9 @@ def measured(
 ) -> BodyStep:
     """The step after this stature was typed and the wearer was measured."""
 
-    def make(draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
+    def make(draft: Draft, _cache_dir: Path, _tell: Tell) -> ReadyTracker:
         known = calibration_of(replace(draft, factors=None)).assuming(1.75)
-        return build_colour_tracker(known, database)
+        return ReadyTracker(build_colour_tracker(known, database), known_shape(known))
 
     step = BodyStep(context, make)
     step.enter()
@@ -171,13 +172,11 @@ def test_a_tracker_starts_nearer_from_measured_proportions(
 ) -> None:
     known = calibration_of(replace(draft, stature_m=person.stature_m, factors=person.factors))
 
-    def tracker(factors: np.ndarray | None) -> ColourTracker:
-        wearer = replace(known.wearer, shape_factors=factors)
-        made = build_colour_tracker(replace(known, wearer=wearer), database)
-        assert isinstance(made, ColourTracker)
-        return made
+    def tracker(factors: np.ndarray | None) -> Stepping:
+        mine = replace(known, wearer=replace(known.wearer, shape_factors=factors))
+        return Stepping(build_colour_tracker(mine, database), known_shape(mine))
 
-    def error_m(one: ColourTracker) -> float:
+    def error_m(one: Stepping) -> float:
         """Of the arms' joints over the first frames in which the wearer is known."""
         errors = []
         for frames in bends[:10]:
@@ -187,7 +186,7 @@ def test_a_tracker_starts_nearer_from_measured_proportions(
                 errors.append(np.linalg.norm(body.joints_m - truth, axis=1)[ARMS].mean())
         return float(np.mean(errors))
 
-    def shape_error_m(one: ColourTracker) -> float:
+    def shape_error_m(one: Stepping) -> float:
         return float(np.abs(one.skeleton.rest_m - person.truth.skeleton.rest_m)[ARMS].mean())
 
     assert known.wearer.shape_factors is person.factors
@@ -251,16 +250,13 @@ def test_where_nothing_can_be_measured_the_stature_is_enough(
 def test_leaving_ends_the_measurement(
     tmp_path: Path, draft: Draft, person: SimulatedWearer, database: PoseDatabase
 ) -> None:
-    def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> Tracker:
+    known = Calibration(
+        person.rig, Wearer(person.stature_m), ShirtColours(white_balance=person.scribbles)
+    )
+
+    def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> ReadyTracker:
         step.leave()
-        return build_colour_tracker(
-            Calibration(
-                person.rig,
-                Wearer(person.stature_m),
-                ShirtColours(white_balance=person.scribbles),
-            ),
-            database,
-        )
+        return ReadyTracker(build_colour_tracker(known, database), known_shape(known))
 
     context = FakeContext(tmp_path, draft)
     step = BodyStep(context, make)

@@ -11,6 +11,7 @@ from mocapd.sim.world import rig_of
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from tests.trackers.filmed import Filmed, film, tracker_of
+from tests.trackers.stepping import Stepping
 
 TURN_RAD = np.radians(1.0)
 
@@ -23,12 +24,12 @@ def measured() -> tuple[Filmed, list[Measure], list[Measure]]:
     first, second = rig.cameras
     up = rotations.to_matrix(rotations.exp(np.array([TURN_RAD, 0.0, 0.0])))
     turned = Rig((first, replace(second, R=up @ second.R, t_m=up @ second.t_m)))
-    tracker = tracker_of(filmed, build_database(DatabaseParams(count=3000, pool=1.2, cells=32)))
+    ready = tracker_of(filmed, build_database(DatabaseParams(count=3000, pool=1.2, cells=32)))
     found = []
     for one in (rig, turned):
-        tracker.reset()
+        ready.reset()
         into = TrackingMeasures()
-        watched = MeasuredTracker(tracker, one, filmed.scenario.body.stature_m, None, into)
+        watched = Stepping(MeasuredTracker(ready.tracker, one, ready.shape, into), ready.shape)
         for frames in filmed.frame_sets(filmed.pictures):
             watched.step(frames)
         found.append(list(into.taken()))

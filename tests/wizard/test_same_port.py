@@ -12,9 +12,10 @@ from mocapd.errors import InputError, UnavailableError
 from mocapd.wizard.cameras.found_cameras import plugged_cameras, where_now
 from mocapd.wizard.cameras.same_port import AsksForPorts, moved_cameras
 from mocapd.wizard.commands import CAMERAS, Command, Lock
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import save_draft
-from mocapd.wizard.step import Context, StepName, StepState, StepView
+from mocapd.wizard.step import StepName, StepState, StepView
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft, source_of
 

@@ -15,9 +15,11 @@ from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Camera, Rig
 from mocapd.wizard.commands import Command
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.step import Context, Json, Scene, StepName, StepState, StepView, Tell
-from mocapd.wizard.wizard import Wizard, WizardView
+from mocapd.wizard.step import Json, Scene, StepName, StepState, StepView, Tell
+from mocapd.wizard.wizard import Wizard
+from mocapd.wizard.wizard_view import WizardView
 
 WAIT_S = 10.0
 CAMERA = DraftCamera("cam0", "sim:cam0", (640, 480))

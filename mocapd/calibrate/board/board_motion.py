@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import ReprojectionProblem
+from mocapd.calibrate.extrinsics.board_reprojection import ReprojectionProblem
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -28,6 +28,7 @@ def paths(scene: ReprojectionProblem, indices: Sequence[int]) -> Floats:
 
 def _step(scene: ReprojectionProblem, start: int, end: int) -> Floats:
     """Turn [rad] and shift [m] (6,) from one position to the other."""
-    turn = scene.board_turn[end] @ scene.board_turn[start].T
-    shift_m = scene.board_t_m[end] - scene.board_t_m[start]
+    before, after = scene.scene_from_board[start], scene.scene_from_board[end]
+    turn = after.R @ before.R.T
+    shift_m = after.t_m - before.t_m
     return np.concatenate([rotations.log(rotations.from_matrix(turn)), shift_m])

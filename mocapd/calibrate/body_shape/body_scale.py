@@ -1,4 +1,4 @@
-"""Whether the typed stature agrees with the scale of the room, and what is wrong when it does not."""
+"""Whether the typed stature agrees with the scale of the extrinsics, and what is wrong when it does not."""
 
 from dataclasses import dataclass
 

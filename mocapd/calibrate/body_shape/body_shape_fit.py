@@ -25,7 +25,8 @@ from mocapd.fit.motion_state import (
     stepped,
 )
 from mocapd.fit.solver import Fitter, View
-from mocapd.types import Camera, Floats, FrameSet, Track
+from mocapd.trackers.base import Track
+from mocapd.types import Camera, Floats, FrameSet
 
 _PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker

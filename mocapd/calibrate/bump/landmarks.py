@@ -2,7 +2,7 @@
 
 Corners of a small picture (Shi and Tomasi 1994) are followed to a later one (pyramidal Lucas-Kanade, there and
 back). What moved with a person goes every way; what the turn of the camera moved agrees on one
-rotation, found by trying pairs of points and solved from all that agree with the best (Kabsch 1976).
+rotation, found by trying pairs of points and solved from all that agree with the best (Kabsch).
 """
 
 from collections import Counter
@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.alignment import align_directions
+from mocapd.geometry.camera_model import normalised
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 _WIDTH_PX = 160  # of the small pictures: a turn of one degree is over two of their pixels
@@ -37,7 +38,7 @@ class RoomMarks:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Turned:
+class CameraTurn:
     """How the camera turned since the marks were made: rotation vector (3,) [rad], from rays before to
     rays now; `agree` of the marks were moved so."""
 
@@ -55,14 +56,14 @@ def room_marks(pixels: Bytes, camera: Camera) -> RoomMarks:
     return RoomMarks(picture, places, _rays(places, camera))
 
 
-def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> Turned:
+def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     """How far the camera is turned in a later picture. None is a turn as likely as another one that
     twice as many marks say."""
     before, now = _followed(marks, _small(pixels), camera)
     focal_px = float(camera.K[0, 0]) * _WIDTH_PX / camera.size_px[0]
     limit = _AGREE_PX / focal_px
     if len(before) < 2:
-        return Turned(np.zeros(3), 0)
+        return CameraTurn(np.zeros(3), 0)
     still = _agreeing(np.eye(3), before, now, limit)
     R, agree = _best_rotation(before, now, limit)
     if 2 * still.sum() >= agree.sum():
@@ -70,10 +71,10 @@ def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> Turned:
     for _ in range(_ROUNDS):
         if agree.sum() < 3:
             break
-        R = _rotation(before[agree], now[agree])
+        R = align_directions(now[agree], before[agree])
         agree = _agreeing(R, before, now, limit)
     turn: Floats = rotations.log(rotations.from_matrix(R))
-    return Turned(turn, int(agree.sum()))
+    return CameraTurn(turn, int(agree.sum()))
 
 
 def _spread(places: Singles) -> Singles:
@@ -147,11 +148,3 @@ def _triad(a: Floats, b: Floats) -> Floats:
     c = np.cross(a, b)
     c /= np.maximum(np.linalg.norm(c, axis=1, keepdims=True), 1e-9)
     return np.stack([a, c, np.cross(a, c)], axis=2)
-
-
-def _rotation(before: Floats, now: Floats) -> Floats:
-    """The rotation (3,3) that takes rays (M,3) closest to where they are now."""
-    U, _, Vt = np.linalg.svd(now.T @ before)
-    U[:, 2] *= np.linalg.det(U @ Vt)
-    R: Floats = U @ Vt
-    return R

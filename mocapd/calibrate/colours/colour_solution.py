@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
+from mocapd.shirt.colour.from_pictures import white_balance_of
 from mocapd.shirt.colour.white_balance import balanced
-from mocapd.trackers.colour.build import white_balance_of
 from mocapd.types import Floats, LabelledPicture
 
 

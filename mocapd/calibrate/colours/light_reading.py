@@ -8,27 +8,22 @@ in its own light.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
+from mocapd.calibrate.colours.light_refinement import IDLE_TURNS, LightRefinement, Reading
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import IdMapRenderer, image_scales
-from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
-from mocapd.geometry.cameras import to_camera
+from mocapd.fit.solver import Fit, View
 from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.strokes import COLOURS
-from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.shirt.segmentation.appearance import Appearance, fresh
-from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
-from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
+from mocapd.shirt.segmentation.appearance import fresh
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes, Camera
@@ -40,9 +35,6 @@ _ALIKE = 0.15  # |W - W'|_F under which two candidates about one place are one
 _ALIKE_PX = 24  # work px
 _FIRST_TURNS = 2
 _LAST_TURNS = 8  # of the arm search, so that all of its library is tried
-# turns in a row that may be no better: with one camera pose and light then drift off together
-_IDLE_TURNS = 2
-_LOOSE_S = 0.1
 _ALONE = 0.8  # share of the work that each camera's own reading is
 _ARM_JOINTS = [
     INDEX[side + bone]
@@ -50,7 +42,6 @@ _ARM_JOINTS = [
     for bone in ("Shoulder", "UpperArm", "LowerArm")
 ]
 _GAINS = (1.0, 1.8)  # brightness beyond that of the hypotheses
-_NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
 
 
 # runs the readings of several cameras: `map`, or that of a pool of threads
@@ -61,26 +52,6 @@ MapCameras = Callable[
 
 def _quiet(_: float) -> None:
     """Nobody watches."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Reading:
-    """A picture read in one light: the fitted body, the view it was fitted to, what the colours look
-    like, the agreement 0..1 (the share of the rendered shirt that the picture confirms, less what it
-    shows elsewhere), and how many of the colours are confirmed."""
-
-    light: str
-    fit: Fit
-    view: View
-    appearance: Appearance
-    agreement: float
-    colours: int
-
-    @property
-    def score(self) -> float:
-        """What readings are compared by. From every side a whole shirt shows all of its colours, so
-        that few of them, however well they agree, are a bookshelf."""
-        return self.agreement * self.colours / COLOURS
 
 
 class LightReader:
@@ -94,20 +65,14 @@ class LightReader:
         stature_m: float = MEAN_STATURE_M,
         params: Params | None = None,
     ) -> None:
-        self._params = p = params if params is not None else Params()
-        self._cameras, self._model, self._database = tuple(cameras), model, database
-        scales = image_scales(cameras, p.fit.work_width_px)
-        self._fitter = Fitter(build_model(stature_m), self._cameras, scales, p.fit)
-        self._arms = ArmSearch(self._fitter, p.limbs)
-        self._segmenters = [
-            CameraSegmenter(c, f, model, np.eye(3), p.segmentation)
-            for c, f in zip(cameras, scales, strict=True)
-        ]
-        self._precision = shade_precision(model)
+        self._params = params if params is not None else Params()
+        self._cameras, self._database = tuple(cameras), database
+        self._refinement = LightRefinement(self._cameras, model, stature_m, self._params)
+        self._segmenters = self._refinement.segmenters
 
     def drawing(self, index: int) -> IdMapRenderer:
         """What draws a reading's body into camera `index`."""
-        return self._fitter.drawings[index]
+        return self._refinement.drawing(index)
 
     def read(
         self, index: int, pixels: Bytes, progress: Callable[[float], None] = _quiet
@@ -127,7 +92,7 @@ class LightReader:
             if fit is None:
                 continue
             start = fresh(found.W)
-            reading = self._follow(index, name, fit, start, range(_FIRST_TURNS))
+            reading = self._refinement.follow(index, name, fit, start, range(_FIRST_TURNS))
             if reading is not None and reading.colours >= self._params.accept_colours:
                 readings.append(reading)
         if not readings:
@@ -142,7 +107,7 @@ class LightReader:
         finals = []
         for i, r in enumerate(readings[:_FINALISTS]):
             progress((_FOLLOWED + i) / (_FOLLOWED + _FINALISTS))
-            finals.append(self._follow(index, r.light, r.fit, r.appearance, turns) or r)
+            finals.append(self._refinement.follow(index, r.light, r.fit, r.appearance, turns) or r)
         return max([*finals, readings[0]], key=lambda r: r.score)
 
     def read_together(
@@ -182,29 +147,29 @@ class LightReader:
 
     # --- stages ---
 
-    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, Found]]:
+    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, ShirtCandidate]]:
         """The most even places over all lights, no two alike, best first."""
-        found: list[tuple[str, Found]] = []
+        found: list[tuple[str, ShirtCandidate]] = []
         for light in light_hypotheses(segmenter.picture):
             segmenter.memory.references = (light.W,)
             seen = segmenter.find(detection.WINDOWS)
             if seen is not None:
                 found.append((light.name, seen))
         found.sort(key=lambda f: -f[1].evenness)
-        kept: list[tuple[str, Found]] = []
+        kept: list[tuple[str, ShirtCandidate]] = []
         for name, seen in found:
             if len(kept) < _FOLLOWED and not any(_alike(seen, other) for _, other in kept):
                 kept.append((name, seen))
         return kept
 
-    def _detected(self, index: int, found: Found) -> Fit | None:
+    def _detected(self, index: int, found: ShirtCandidate) -> Fit | None:
         """The body as the pose database has it, fitted to the ids of the search."""
         p, segmenter = self._params, self._segmenters[index]
         segmenter.memory.references = (found.W,)
         sighting = detection.sight(index, segmenter, self._database, p.neighbours)
         if sighting is None:
             return None
-        model = self._fitter.model
+        model = self._refinement.fitter.model
         states = detection.hypotheses(
             [sighting],
             self._cameras,
@@ -217,28 +182,7 @@ class LightReader:
         unknown = np.full(seen.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
         view = View(index, seen.roi, seen.ids, unknown, 0.0)
         asked = [_arms_out(state) for state in states]
-        return detection.best_fit(self._fitter, states + asked, [view])
-
-    def _follow(
-        self, index: int, light: str, fit: Fit, start: Appearance, turns: range
-    ) -> Reading | None:
-        """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
-        self._segmenters[index].memory.appearance = start
-        best: Reading | None = None
-        idle = 0
-        for turn in turns:
-            view = self._classified(index, fit)
-            if view is None or idle == _IDLE_TURNS:
-                break
-            idle += 1
-            fit = self._fitted(fit.state, [view], turn)
-            appearance = self._segmenters[index].memory.appearance
-            agreement, colours = fit.explained, fit.confirmed_colours()
-            reading = Reading(light, fit, view, appearance, agreement, colours)
-            if best is None or reading.score > best.score:
-                best, idle = reading, 0
-            self._relight(index, fit.state, view)
-        return best
+        return detection.best_fit(self._refinement.fitter, states + asked, [view])
 
     def _common(self, own: Mapping[int, Reading]) -> dict[int, Reading]:
         """One body fitted to all cameras, started from what each saw alone."""
@@ -260,12 +204,12 @@ class LightReader:
             fit, light = start.fit, start.light
             most, idle = 0.0, 0
             for turn in range(_FIRST_TURNS + _LAST_TURNS):
-                views = [v for i in own if (v := self._classified(i, fit)) is not None]
-                if len(views) < len(own) or idle == _IDLE_TURNS:
+                views = [v for i in own if (v := self._refinement.classify(i, fit)) is not None]
+                if len(views) < len(own) or idle == IDLE_TURNS:
                     break
                 for index in own:
                     self._segmenters[index].memory.references = ()
-                fit = self._fitted(fit.state, views, turn)
+                fit = self._refinement.fit(fit.state, views, turn)
                 seen = (fit.explained, fit.confirmed_colours())
                 readings = [
                     Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *seen)
@@ -276,62 +220,14 @@ class LightReader:
                 if not best or most > best[0].score:
                     best = readings
                 for view in views:
-                    self._relight(view.index, fit.state, view)
+                    self._refinement.relight(view.index, fit.state, view)
         out = dict(own)
         for reading in best:
             alone = own[reading.view.index]
-            mine = self._seen_alone(reading)
-            if mine.score >= self._seen_alone(alone).score:
+            mine = self._refinement.judged_alone(reading)
+            if mine.score >= self._refinement.judged_alone(alone).score:
                 out[reading.view.index] = replace(mine, light=alone.light)
         return out
-
-    def _seen_alone(self, reading: Reading) -> Reading:
-        """The reading judged by its own camera alone."""
-        view = reading.view
-        rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
-        n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]
-        same = np.bincount(rendered[rendered == view.ids], minlength=COLOURS + 1)[1:]
-        return replace(
-            reading,
-            agreement=float(same.sum() / max(n.sum(), 1)),
-            colours=int(np.count_nonzero(confirmed_parts(same, n))),
-        )
-
-    def _fitted(self, state: MotionState, views: list[View], turn: int) -> Fit:
-        fit = self._fitter.fit(
-            state, views, _LOOSE_S, self._params.fit.iterations, learn_shape=False
-        )
-        return self._arms.improve(fit, views, _LOOSE_S, turn, learn_shape=False)[0]
-
-    def _classified(self, index: int, fit: Fit) -> View | None:
-        """The picture's colours, given where the body was; None when it left the picture."""
-        drawing = self.drawing(index)
-        if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
-            return None
-        roi = drawing.region(fit.state, 0.0, self._params.segmentation.uncertain_margin_px)
-        if roi is None:
-            return None
-        predicted = drawing.render(fit.state, 0.0, roi)
-        # no arm is called uncertain: looked for far away, its colours are found in the room, whose
-        # background is not known yet
-        ids, pixel_weight = self._segmenters[index].classify(
-            predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
-        )
-        return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
-
-    def _relight(self, index: int, state: MotionState, view: View) -> None:
-        """Read on in the light that the fitted body's patches ask for."""
-        segmenter = self._segmenters[index]
-        rendered = self.drawing(index).render(state, 0.0, view.roi)
-        sums = np.zeros((10, 4))
-        colour_statistics(
-            segmenter.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums
-        )
-        n = sums[:, 0]
-        means = sums[:, 3:0:-1] / np.maximum(n, 1.0)[:, None]
-        before = segmenter.memory.appearance.W
-        W = solve_white_balance(means, self._model.mean, n, before, precision=self._precision)
-        segmenter.memory.appearance = Appearance(W, sums)
 
 
 def _arms_out(state: MotionState) -> MotionState:
@@ -341,7 +237,7 @@ def _arms_out(state: MotionState) -> MotionState:
     return replace(state, local_xyzw=local)
 
 
-def _alike(a: Found, b: Found) -> bool:
+def _alike(a: ShirtCandidate, b: ShirtCandidate) -> bool:
     near = max(abs(p - q) for p, q in zip(a.roi, b.roi, strict=True)) <= _ALIKE_PX
     return near and float(np.linalg.norm(a.W - b.W)) < _ALIKE
 

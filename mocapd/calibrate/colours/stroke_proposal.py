@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M, LightReader, MapCameras, Reading
+from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M, LightReader, MapCameras
+from mocapd.calibrate.colours.light_refinement import Reading
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS, stroke_means

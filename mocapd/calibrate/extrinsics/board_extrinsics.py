@@ -1,4 +1,4 @@
-"""The room from positions of a board that several cameras saw, and how well it fits."""
+"""The extrinsics from positions of a board that several cameras saw, and how well they fit."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -7,16 +7,15 @@ import numpy as np
 import scipy.optimize
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, lens_row, observations
-from mocapd.calibrate.extrinsics.reprojection import (
-    LENS,
+from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
     ReprojectionProblem,
-    moved,
     residuals_px,
+    stepped_problem,
 )
+from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
+from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
     play_area_error,
@@ -27,6 +26,8 @@ from mocapd.calibrate.extrinsics.world_frame import (
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.calibration.board_spec import BoardSpec, centre_m, corners_m
 from mocapd.errors import ConfigError
+from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_row
+from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
 from mocapd.types import Floats, Rig
 
 
@@ -109,13 +110,11 @@ def lone_camera(
     """One camera and no board yet: what `with_board` then adds gives it a place."""
     none = np.zeros(0, np.int64)
     scene = ReprojectionProblem(
-        lens_row(lens)[None],
-        np.eye(3)[None],
-        np.zeros((1, 3)),
-        np.zeros((0, 3, 3)),
-        np.zeros((0, 3)),
+        intrinsics_row(lens.K, lens.dist)[None],
+        stack([IDENTITY]),
+        stack([]),
         np.zeros(1),
-        np.zeros((0, 2, 6)),
+        np.zeros((0, 2, POSE)),
     )
     seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)))
     bundle = Bundle(scene, np.zeros(0, bool), np.array([lens.focal_deviation]))
@@ -131,13 +130,11 @@ def with_board(room: SolvedRoom, index: int, views: Mapping[str, BoardView]) -> 
     best, best_px = None, np.inf
     for name, view in views.items():
         i = room.names.index(name)
-        fx, fy, cx, cy = scene.lens[i, :4]
-        K = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
-        pose = board_pose(view, board_m, K, scene.lens[i, 4:])
-        if pose is None:
+        row = scene.intrinsics[i]
+        camera_from_board = board_pose(view, board_m, camera_matrix(row), row[4:])
+        if camera_from_board is None:
             continue
-        turn = scene.camera_turn[i].T
-        guess = _with(scene, (turn @ pose[0], turn @ (pose[1] - scene.camera_t_m[i])))
+        guess = _with(scene, scene.camera_from_scene[i].inverse() @ camera_from_board)
         found, error_px = _fitted(guess, seen)
         # one camera alone may take the mirror image of a board that it sees small
         if error_px < best_px:
@@ -147,8 +144,7 @@ def with_board(room: SolvedRoom, index: int, views: Mapping[str, BoardView]) -> 
     both = room.bundle.scene
     scene = replace(
         both,
-        board_turn=np.concatenate([both.board_turn, best.board_turn]),
-        board_t_m=np.concatenate([both.board_t_m, best.board_t_m]),
+        scene_from_board=concatenate(both.scene_from_board, best.scene_from_board),
         path=np.concatenate([both.path, best.path]),
     )
     merged = Observations(
@@ -166,23 +162,23 @@ def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, Bo
     return {index: views[name]} if name in views else {}
 
 
-def _with(scene: ReprojectionProblem, pose: tuple[Floats, Floats]) -> ReprojectionProblem:
+def _with(scene: ReprojectionProblem, scene_from_board: RigidTransform) -> ReprojectionProblem:
     """The same cameras and this position alone."""
     return replace(
         scene,
-        board_turn=pose[0][None],
-        board_t_m=pose[1][None],
-        delay=np.zeros(len(scene.lens)),
-        path=np.zeros((1, 2, 6)),
+        scene_from_board=stack([scene_from_board]),
+        delay=np.zeros(len(scene.delay)),
+        path=np.zeros((1, 2, POSE)),
     )
 
 
 def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[ReprojectionProblem, float]:
     """Its one position fitted, and the root mean square error [px]."""
-    still = np.zeros((len(scene.lens), LENS)), np.zeros((len(scene.lens), POSE))
+    cameras = len(scene.delay)
+    still = np.zeros((cameras, INTRINSICS)), np.zeros((cameras, POSE))
 
     def stepped(x: Floats) -> ReprojectionProblem:
-        return moved(scene, *still, x[None], np.zeros(len(scene.lens)))
+        return stepped_problem(scene, *still, x[None], np.zeros(cameras))
 
     solution = scipy.optimize.least_squares(
         lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01

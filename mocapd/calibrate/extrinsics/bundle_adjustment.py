@@ -14,16 +14,16 @@ import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_motion import paths
-from mocapd.calibrate.extrinsics.reprojection import (
-    LENS,
+from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
     ReprojectionProblem,
     jacobians,
-    moved,
     residuals_px,
+    stepped_problem,
 )
 from mocapd.calibrate.intrinsics.intrinsics_priors import LensPriors
+from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.types import Floats, Ints
 
 # of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
@@ -68,27 +68,27 @@ class _Problem:
 
     @property
     def columns(self) -> int:
-        """Lenses, cameras but the first, boards, delays but the first."""
-        cameras, boards = len(self.scene.lens), len(self.scene.board_turn)
-        return cameras * LENS + (cameras - 1) * (POSE + 1) + boards * POSE
+        """Intrinsics, cameras but the first, boards, delays but the first."""
+        cameras, boards = len(self.scene.delay), len(self.scene.path)
+        return cameras * INTRINSICS + (cameras - 1) * (POSE + 1) + boards * POSE
 
     def steps(self, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Lens (C,9), cameras (C,6), boards (V,6) and delay (C,) of a vector of parameters."""
-        cameras = len(self.scene.lens)
-        ends = np.cumsum([cameras * LENS, (cameras - 1) * POSE, len(self.scene.board_turn) * POSE])
-        lens, poses, boards, delay = np.split(x, ends)
+        """Intrinsics (C,9), cameras (C,6), boards (V,6) and delay (C,) of a vector of parameters."""
+        cameras, boards = len(self.scene.delay), len(self.scene.path)
+        ends = np.cumsum([cameras * INTRINSICS, (cameras - 1) * POSE, boards * POSE])
+        intrinsics, poses, board_poses, delay = np.split(x, ends)
         poses = np.concatenate([np.zeros(POSE), poses]).reshape(-1, POSE)
         return (
-            lens.reshape(-1, LENS),
+            intrinsics.reshape(-1, INTRINSICS),
             poses,
-            boards.reshape(-1, POSE),
+            board_poses.reshape(-1, POSE),
             np.concatenate([np.zeros(1), delay]),
         )
 
     def error(self, x: Floats) -> Floats:
         """(2N + priors + C - 1,)."""
-        scene = moved(self.scene, *self.steps(x))
-        priors = self.params.priors.residuals(scene.lens, self.size_px)
+        scene = stepped_problem(self.scene, *self.steps(x))
+        priors = self.params.priors.residuals(scene.intrinsics, self.size_px)
         return np.concatenate(
             [
                 residuals_px(scene, self.seen).ravel() / self.params.corner_px,
@@ -99,8 +99,8 @@ class _Problem:
 
     def slope(self, x: Floats) -> scipy.sparse.csr_matrix:
         """d error by x."""
-        lens, cameras, boards, delay = self.steps(x)
-        scene = moved(self.scene, lens, cameras, boards, delay)
+        intrinsics, cameras, boards, delay = self.steps(x)
+        scene = stepped_problem(self.scene, intrinsics, cameras, boards, delay)
         values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
         columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
         rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
@@ -109,12 +109,12 @@ class _Problem:
         corners = scipy.sparse.csr_matrix(
             (values[free], (rows[free], columns[free])), shape=(2 * len(values), self.columns)
         )
-        blocks = self.params.priors.slope(scene.lens, self.size_px)
+        blocks = self.params.priors.slope(scene.intrinsics, self.size_px)
         count = len(delay) - 1
         own = scipy.sparse.block_diag(
             [
                 *blocks,
-                scipy.sparse.csr_matrix((0, self.columns - len(blocks) * LENS - count)),
+                scipy.sparse.csr_matrix((0, self.columns - len(blocks) * INTRINSICS - count)),
                 scipy.sparse.identity(count) / self.params.delay_frames,
             ]
         )
@@ -124,10 +124,10 @@ class _Problem:
         """(N, 9+6+6+1): what each observation depends on; -1: stays as it is."""
         place: Floats = np.arange(1, self.columns + 1, dtype=float)
         parts = [part.astype(np.int64) - 1 for part in self.steps(place)]
-        lens, cameras, boards, delay = parts
+        intrinsics, cameras, boards, delay = parts
         camera, view = self.seen.camera, self.seen.view
         return np.concatenate(
-            [lens[camera], cameras[camera], boards[view], delay[camera, None]], axis=1
+            [intrinsics[camera], cameras[camera], boards[view], delay[camera, None]], axis=1
         )
 
 
@@ -138,7 +138,7 @@ def adjust(
     size_px: Floats,
     params: BundleParams | None = None,
 ) -> Bundle:
-    """The scene that fits the observations best: lenses, cameras, boards and delays.
+    """The scene that fits the observations best: intrinsics, cameras, boards and delays.
 
     `indices` (V,): the frame of each board position; `size_px` (C,2): of the pictures. First
     robustly and as if all cameras exposed at once, then with their delays, at last without the
@@ -199,7 +199,7 @@ def _solved(problem: _Problem, robust: bool) -> ReprojectionProblem:
         ftol=1e-5,
         max_nfev=problem.params.evaluations,
     )
-    return moved(problem.scene, *problem.steps(step(solution.x)))
+    return stepped_problem(problem.scene, *problem.steps(step(solution.x)))
 
 
 def _lower(normal: Floats) -> Floats:
@@ -223,11 +223,11 @@ def _lower(normal: Floats) -> Floats:
 def _focal_deviation(problem: _Problem) -> Floats:
     """(C,) from the curvature of the sum of squares at the solution."""
     J = problem.slope(np.zeros(problem.columns))
-    cameras = len(problem.scene.lens)
+    cameras = len(problem.scene.delay)
     wanted = np.zeros((problem.columns, cameras))
-    wanted[LENS * np.arange(cameras), np.arange(cameras)] = 1.0
+    wanted[INTRINSICS * np.arange(cameras), np.arange(cameras)] = 1.0
     normal = (J.T @ J + 1e-12 * scipy.sparse.identity(problem.columns)).tocsc()
     covariance = scipy.sparse.linalg.spsolve(normal, wanted)
-    variance = np.asarray(covariance)[LENS * np.arange(cameras), np.arange(cameras)]
-    deviation: Floats = np.sqrt(variance) / problem.scene.lens[:, 0]
+    variance = np.asarray(covariance)[INTRINSICS * np.arange(cameras), np.arange(cameras)]
+    deviation: Floats = np.sqrt(variance) / problem.scene.intrinsics[:, 0]
     return deviation

@@ -1,4 +1,4 @@
-"""From a folder of recordings of a board to a rig: lenses, room, and what was refused on the way."""
+"""From a folder of recordings of a board to a rig: intrinsics, extrinsics, and what was refused on the way."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence

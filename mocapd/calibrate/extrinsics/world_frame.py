@@ -1,13 +1,16 @@
-"""The cameras' places in the world: floor, up, front; and how well the room agrees with itself."""
+"""The world frame of the extrinsics: floor, up, front; and how well the cameras agree with each other."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import Observations, ReprojectionProblem
+from mocapd.calibrate.extrinsics.board_reprojection import Observations, ReprojectionProblem
 from mocapd.errors import ConfigError
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.alignment import align_points, nearest_rotation
+from mocapd.geometry.camera_model import normalised
+from mocapd.geometry.reprojection import camera_matrix
+from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats, Rig
 
@@ -16,10 +19,9 @@ _FRONT = 0.2  # length of the mean direction to the cameras, above which there i
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldFrame:
-    """world_from_scene R (3,3), t_m (3,), and what must be said of where it comes from ("": nothing)."""
+    """Where the scene is in the world, and what must be said of where that comes from ("": nothing)."""
 
-    R: Floats
-    t_m: Floats
+    world_from_scene: RigidTransform
     note: str = ""
 
 
@@ -40,34 +42,33 @@ def world_on_floor(
     +Z points from there to the middle of the cameras: that is where a person at rest looks. Raises
     ConfigError when cameras would be under the floor.
     """
-    R, t_m = scene.board_turn[position], scene.board_t_m[position]
-    world = _world(scene, up=-R[:, 2], origin_m=R @ middle_m + t_m)
-    heights_m = (camera_centres(scene) @ world.R.T + world.t_m)[:, 1]
+    scene_from_board = scene.scene_from_board[position]
+    world = _world(scene, -scene_from_board.R[:, 2], scene_from_board.apply(middle_m))
+    heights_m = world.apply(camera_centres(scene))[:, 1]
     if heights_m.min() < 0.0:
         raise ConfigError(
             f"with this floor a camera is {-100 * heights_m.min():.0f} cm under it",
             where,
             "lay the board flat on the floor, printed side up, and give the frame in which it lies",
         )
-    return world
+    return WorldFrame(world)
 
 
 def world_guessed(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
     """A world without a floor: up is what is up in most pictures, the floor under the lowest corner."""
-    up = -scene.camera_turn[:, 1].sum(axis=0)
-    corners = np.einsum("vij,nj->vni", scene.board_turn, board_m) + scene.board_t_m[:, None]
-    corners = corners.reshape(-1, 3)
+    up = -scene.camera_from_scene.R[:, 1].sum(axis=0)
+    corners = scene.scene_from_board[:, None].apply(board_m).reshape(-1, 3)
     world = _world(scene, up, corners.mean(axis=0))
-    lowest_m = float((corners @ world.R.T + world.t_m)[:, 1].min())
+    lowest_m = float(world.apply(corners)[:, 1].min())
     return WorldFrame(
-        world.R,
-        world.t_m - np.array([0.0, lowest_m, 0.0]),
+        RigidTransform(world.R, world.t_m - np.array([0.0, lowest_m, 0.0])),
         "no floor was given: up is guessed from the cameras, the floor is put under the lowest "
         "place of the board; give the frame in which the board lies on the floor (--floor-frame)",
     )
 
 
-def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> WorldFrame:
+def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> RigidTransform:
+    """world_from_scene: up as given, front towards the cameras."""
     y = up / np.linalg.norm(up)
     away = camera_centres(scene) - origin_m
     level = away - np.outer(away @ y, y)
@@ -77,13 +78,12 @@ def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> WorldFra
     z = front if np.linalg.norm(front) > _FRONT else level[0]
     z = z / np.linalg.norm(z)
     R = np.stack([np.cross(y, z), y, z])
-    return WorldFrame(R, -R @ origin_m)
+    return RigidTransform(R, -R @ origin_m)
 
 
 def camera_centres(scene: ReprojectionProblem) -> Floats:
     """(C,3) where the cameras are [m, scene]."""
-    centres: Floats = -np.einsum("cji,cj->ci", scene.camera_turn, scene.camera_t_m)
-    return centres
+    return scene.camera_from_scene.inverse().t_m
 
 
 def rig_in(
@@ -95,21 +95,11 @@ def rig_in(
     """The cameras of the scene as a rig of this world."""
     cameras = []
     for i, (name, size_px) in enumerate(zip(names, sizes_px, strict=True)):
-        fx, fy, cx, cy = scene.lens[i, :4]
-        R = scene.camera_turn[i] @ world.R.T
+        camera_from_scene, row = scene.camera_from_scene[i], scene.intrinsics[i]
         # back onto the rotations, from which a thousand products drift
-        U, _, Vt = np.linalg.svd(R)
-        R = U @ Vt
-        cameras.append(
-            Camera(
-                name,
-                size_px,
-                np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]]),
-                scene.lens[i, 4:].copy(),
-                R,
-                scene.camera_t_m[i] - R @ world.t_m,
-            )
-        )
+        R = nearest_rotation(camera_from_scene.R @ world.world_from_scene.R.T)
+        t_m = camera_from_scene.t_m - R @ world.world_from_scene.t_m
+        cameras.append(Camera(name, size_px, camera_matrix(row), row[4:].copy(), R, t_m))
     return Rig(tuple(cameras))
 
 
@@ -139,9 +129,7 @@ def play_area_error(rig: Rig, seen: Observations) -> PlayAreaError | None:
 
 
 def _from_rigid(board_m: Floats, points_m: Floats) -> Floats:
-    """Distances (n,) after the best turn and shift (Kabsch, Acta Cryst. A32, 1976)."""
-    a, b = board_m - board_m.mean(axis=0), points_m - points_m.mean(axis=0)
-    U, _, Vt = np.linalg.svd(a.T @ b)
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])
-    distances: Floats = np.linalg.norm(a @ U @ flip @ Vt - b, axis=1)
+    """Distances (n,) of the points from a board laid through them."""
+    world_from_board = align_points(points_m, board_m)
+    distances: Floats = np.linalg.norm(world_from_board.apply(board_m) - points_m, axis=1)
     return distances

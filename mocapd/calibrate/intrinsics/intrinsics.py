@@ -1,4 +1,4 @@
-"""A camera's lens from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
+"""A camera's intrinsics and distortion from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.errors import ConfigError
+from mocapd.geometry.reprojection import intrinsics_row, project_rows
+from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Floats
 
 # Which of k1 k2 p1 p2 k3 are solved for, the simplest first: a board that never came near the
@@ -186,26 +188,24 @@ def _best_model(
     return best, error_px
 
 
-def board_pose(
-    view: BoardView, board_m: Floats, K: Floats, dist: Floats
-) -> tuple[Floats, Floats] | None:
-    """camera_from_board R (3,3), t_m (3,) of one view; None where no pose fits."""
+def board_pose(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> RigidTransform | None:
+    """camera_from_board of one view; None where no pose fits."""
     points_m = board_m[view.ids]
     found, rotation, t_m = cv2.solvePnP(points_m, view.corners_px, K, dist, flags=cv2.SOLVEPNP_IPPE)
     if not found:
         return None
     rotation, t_m = cv2.solvePnPRefineLM(points_m, view.corners_px, K, dist, rotation, t_m)
-    return cv2.Rodrigues(rotation)[0].astype(float), t_m.astype(float).ravel()
+    return RigidTransform(cv2.Rodrigues(rotation)[0].astype(float), t_m.astype(float).ravel())
 
 
 def pose_residuals_px(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> Floats:
     """Distances (n,) of the corners from where the lens puts them, with the board's pose fitted."""
-    pose = board_pose(view, board_m, K, dist)
-    if pose is None:
+    camera_from_board = board_pose(view, board_m, K, dist)
+    if camera_from_board is None:
         return np.full(len(view.ids), np.inf)
-    R, t_m = pose
-    seen = cv2.projectPoints(board_m[view.ids], cv2.Rodrigues(R)[0], t_m, K, dist)[0]
-    distances: Floats = np.linalg.norm(seen.reshape(-1, 2) - view.corners_px, axis=1)
+    rows = np.tile(intrinsics_row(K, dist), (len(view.ids), 1))
+    seen = project_rows(rows, camera_from_board.apply(board_m[view.ids]))
+    distances: Floats = np.linalg.norm(seen - view.corners_px, axis=1)
     return distances
 
 

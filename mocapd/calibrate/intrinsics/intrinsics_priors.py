@@ -1,10 +1,10 @@
-"""What a webcam's lens is like before it is measured."""
+"""The prior of a webcam's intrinsics, before they are measured."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.reprojection import LENS
+from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.types import Floats
 
 
@@ -40,13 +40,13 @@ class LensPriors:
 
     def slope(self, lens: Floats, size_px: Floats) -> Floats:
         """d residuals by lens, (C,8,9) or (C,17,9)."""
-        out = np.zeros((len(lens), 8, LENS))
+        out = np.zeros((len(lens), 8, INTRINSICS))
         out[:, 0, 0] = 1.0 / (self.aspect * lens[:, 0])
         out[:, 0, 1] = -1.0 / (self.aspect * lens[:, 1])
         out[:, 1, 2] = out[:, 2, 3] = 1.0 / (self.middle * size_px[:, 0])
         out[:, np.arange(3, 8), np.arange(4, 9)] = 1.0 / np.array(self.dist)
         if self.known is None:
             return out
-        known = np.zeros((len(lens), LENS, LENS))
-        known[:, np.arange(LENS), np.arange(LENS)] = 1.0 / self.known.deviation
+        known = np.zeros((len(lens), INTRINSICS, INTRINSICS))
+        known[:, np.arange(INTRINSICS), np.arange(INTRINSICS)] = 1.0 / self.known.deviation
         return np.concatenate([out, known], axis=1)

@@ -1,4 +1,4 @@
-"""Which live pictures of the board are kept for a lens, and what they lack as yet."""
+"""Which live views of the board the intrinsics are solved from, and what they lack as yet."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import board_pose
 from mocapd.calibrate.intrinsics.views import coverage
+from mocapd.geometry.reprojection import camera_matrix
 from mocapd.types import Floats
 
 _USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to tell slants apart
@@ -140,11 +141,11 @@ def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> F
     one is good enough to tell slants apart.
     """
     focal = _USUAL_FOCAL * size_px[0]
-    K = np.array([[focal, 0.0, size_px[0] / 2], [0.0, focal, size_px[1] / 2], [0.0, 0.0, 1.0]])
+    K = camera_matrix(np.array([focal, focal, size_px[0] / 2, size_px[1] / 2]))
     pose = board_pose(view, board_m, K, np.zeros(5))
     if pose is None:
         return None
     xy = view.corners_px / size_px[0]
     spread = max(float(np.sqrt(xy.var(axis=0).sum())), 1e-6)
-    normal = pose[0][:, 2]
+    normal = pose.R[:, 2]
     return np.array([*xy.mean(axis=0), _SIZE * np.log(spread), *(_TURN * normal[:2])])

@@ -1,4 +1,4 @@
-"""Which pictures of the board a lens is computed from: sharp ones that together fill the picture."""
+"""Which views of the board the intrinsics are solved from: sharp ones that together fill the picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

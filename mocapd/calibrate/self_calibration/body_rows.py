@@ -10,6 +10,9 @@ from mocapd.fit.idmap_term_kernels import ComparedPictures, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
+from mocapd.geometry.rigid_transforms import RigidTransform
+from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Camera, Floats
 
 N_CAMERA = 6  # world motion of a camera: v (3,) [m], then omega (3,) [rad]
@@ -73,17 +76,15 @@ def camera_columns(at_m: Floats) -> Floats:
     Moving the camera is moving the whole body before it: x -> x + omega x x + v. The root's columns
     are g, those of the hips (x - at) x g, so by omega it is x x g = (x - at) x g + at x g.
     """
-    x, y, z = at_m
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     out = np.eye(N_CAMERA)
-    out[3:, :3] = cross
+    out[3:, :3] = cross_matrices(at_m)
     return out
 
 
 def moved_camera(camera: Camera, motion: Floats) -> Camera:
     """The camera after a motion (6,) of the world before it."""
-    turn = rotations.to_matrix(rotations.exp(motion[3:]))
-    return replace(camera, R=camera.R @ turn, t_m=camera.t_m + camera.R @ motion[:3])
+    world_from_moved = RigidTransform(rotations.to_matrix(rotations.exp(motion[3:])), motion[:3])
+    return with_extrinsics(camera, camera_from_world(camera) @ world_from_moved)
 
 
 def mean_camera(cameras: Sequence[Camera]) -> Camera:

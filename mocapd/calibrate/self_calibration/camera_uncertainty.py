@@ -1,10 +1,10 @@
-"""How uncertain a camera's place is, told in degrees and in parts of its distance."""
+"""The uncertainty of a camera's extrinsics, in degrees and in parts of its distance."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.geometry.cameras import centre
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera, Floats
 
 

@@ -1,4 +1,4 @@
-"""Gravity, floor and origin from a person who stands and walks: the world's frame of a rig."""
+"""The world frame from a person who stands and walks: gravity, floor and origin."""
 
 from collections.abc import Sequence
 
@@ -9,8 +9,10 @@ from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment
 from mocapd.errors import ConfigError
+from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
+from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.triangulation import triangulate
-from mocapd.types import Camera, Floats, Rig
+from mocapd.types import Floats, Rig
 
 _LEAN_RAD = 0.1  # a spine further from the usual one is bending, not standing
 _START = 15  # moments of the beginning, in which the person faces forwards
@@ -18,7 +20,9 @@ _NAMES = ("hips", "neck", "leftUpperArm", "rightUpperArm")
 _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 
 
-def upright(rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats) -> Rig:
+def align_with_gravity(
+    rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats
+) -> Rig:
     """The rig in the world of someone who stood and walked in it.
 
     Up is the middle direction of the spine, once moments of bending are left out; the floor is where
@@ -42,9 +46,12 @@ def upright(rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floa
     across = _unit(np.median(body[:_START, 2] - body[:_START, 3], axis=0))  # right to left is +X
     forwards = _unit(np.cross(across, up))
     start = np.median(hips[:_START], axis=0)
-    to_world = np.stack([np.cross(up, forwards), up, forwards])
+    R = np.stack([np.cross(up, forwards), up, forwards])
     origin = start + (floor - start @ up) * up
-    return Rig(tuple(_in_world(camera, to_world, origin) for camera in rig.cameras))
+    scene_from_world = RigidTransform(R, -R @ origin).inverse()
+    return Rig(
+        tuple(with_extrinsics(c, camera_from_world(c) @ scene_from_world) for c in rig.cameras)
+    )
 
 
 def _bodies(rig: Rig, moments: Sequence[Moment]) -> Floats:
@@ -68,11 +75,3 @@ def _bodies(rig: Rig, moments: Sequence[Moment]) -> Floats:
 def _unit(v: Floats) -> Floats:
     out: Floats = v / np.linalg.norm(v)
     return out
-
-
-def _in_world(camera: Camera, to_world: Floats, origin: Floats) -> Camera:
-    """x_camera = R x + t with x = to_world^T x_world + origin."""
-    R: Floats = camera.R @ to_world.T
-    return Camera(
-        camera.name, camera.size_px, camera.K, camera.dist, R, camera.t_m + camera.R @ origin
-    )

@@ -1,17 +1,17 @@
-"""Where the cameras stand about: each next to one that saw the same bodies."""
+"""Initial extrinsics from the wearer: each camera placed next to one that saw the same bodies."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, unplaced
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.errors import ConfigError
+from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.types import Camera
 
 
-def first_placing(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
+def initial_extrinsics(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
     """The first camera where a lone webcam would stand, the others by the bodies seen in common.
 
     Cameras that share nothing with the first are chained through others. Raises ConfigError naming
@@ -46,8 +46,8 @@ def first_placing(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[C
             np.concatenate([s.joints_m[MARKS] for s in second]),
             weights.ravel(),
         )
-        old = placed[known]
-        placed[new.name] = replace(new, R=pose.R @ old.R, t_m=pose.R @ old.t_m + pose.t_m)
+        known_from_world = camera_from_world(placed[known])
+        placed[new.name] = with_extrinsics(new, pose.second_from_first @ known_from_world)
     return [placed[camera.name] for camera in alone]
 
 

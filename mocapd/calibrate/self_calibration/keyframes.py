@@ -1,4 +1,4 @@
-"""Which moments of a recording are worth solving a room from, and where a body starts in it."""
+"""Which observations of a recording are worth solving extrinsics from, and where a body starts in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import View
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import from_camera
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
@@ -80,7 +81,7 @@ def starts(
     out = []
     for i in seen:
         sighting, camera = keyframe.sightings[i], cameras[i]
-        joints = (sighting.joints_m - camera.t_m) @ camera.R
+        joints = from_camera(camera, sighting.joints_m)
         offset = points - joints[MARKS]
         known = np.isfinite(offset).all(axis=1)
         shift = np.median(offset[known], axis=0) if known.any() else np.zeros(3)
@@ -105,7 +106,5 @@ def _velocity(keyframe: Keyframe, camera: Camera, model: BodyModel) -> Floats:
     if before is None:
         return np.zeros(model.n_pose)
     dt_s = max(seconds(now.t_ns - before.t_ns), 1e-3)
-    a, b = (
-        ((s.joints_m[0] - camera.t_m) @ camera.R, _local(s, camera, model)) for s in (now, before)
-    )
+    a, b = ((from_camera(camera, s.joints_m[0]), _local(s, camera, model)) for s in (now, before))
     return step_between(model, a, b) / dt_s

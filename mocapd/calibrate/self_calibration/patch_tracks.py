@@ -1,14 +1,15 @@
-"""The wearer as each camera sees them alone: body, classified patches and marks, before any room is known."""
+"""The wearer as each camera sees them alone: body, classified patches and marks, before any extrinsics are known."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -89,28 +90,30 @@ class PatchTracks:
         self._trackers = [
             ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
         ]
+        self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.moments: list[Moment] = []
 
     def add(self, frames: FrameSet) -> Moment:
         """Follow one frame set: who saw the wearer, and how."""
         seen: dict[str, PatchSighting] = {}
-        for tracker in self._trackers:
+        for i, tracker in enumerate(self._trackers):
             mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
             if not mine:
                 continue
             t_ns = frames.t_ns if len(tracker.rig.cameras) > 1 else next(iter(mine.values())).t_ns
-            track = tracker.step(FrameSet(t_ns, mine))
+            track = tracker.step(FrameSet(t_ns, mine), self._shapes[i])
+            self._shapes[i] = track.shape
             body = track.body
             if body.tracking is not Tracking.LIVE or body.pose is None or body.joints_m is None:
                 continue
             for camera in tracker.rig.cameras:
                 if camera.name not in track.evidence:
                     continue
-                to_this = rotations.from_matrix(camera.R)
+                camera_from_world_xyzw = rotations.from_matrix(camera.R)
                 seen[camera.name] = PatchSighting(
                     mine[camera.name].t_ns,
                     to_camera(camera, body.joints_m),
-                    rotations.multiply(to_this, body.pose.quats_xyzw),
+                    rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
                     body.confidence,
                     track.evidence[camera.name],
                     track.roi_px[camera.name],

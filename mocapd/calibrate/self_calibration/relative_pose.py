@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.errors import ConfigError
+from mocapd.geometry.alignment import align_points
+from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform
 from mocapd.types import Floats
 
 _LEAST_POINTS = 80  # ten whole bodies
@@ -23,17 +25,16 @@ _MOVE = "walk about, turn and move the arms where both cameras see the shirt"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RelativePose:
-    """second_from_first: R (3,3), t_m (3,); inliers (N,) of the points given."""
+    """inliers (N,): which of the points given agree with it."""
 
-    R: Floats
-    t_m: Floats
+    second_from_first: RigidTransform
     inliers: NDArray[np.bool_]
 
 
 def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> RelativePose:
     """From the same points (N,3) of a body in both cameras' frames, with weights (N,) >= 0.
 
-    Rotation and translation of least squares [Umeyama, PAMI 1991], re-weighted by Geman-McClure.
+    Least squares, re-weighted by Geman-McClure.
     Raises ConfigError when the points do not tell: too few, or they do not agree.
     """
     if np.count_nonzero(weights > 0.0) < _LEAST_POINTS:
@@ -44,12 +45,12 @@ def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> Relativ
             _MOVE,
         )
     weight = weights.copy()
-    R, t = np.eye(3), np.zeros(3)
+    second_from_first = IDENTITY
     for _ in range(_ROUNDS):
-        R, t = _rigid(first_m, second_m, weight)
-        r2 = ((first_m @ R.T + t - second_m) ** 2).sum(axis=1)
+        second_from_first = align_points(second_m, first_m, weight)
+        r2 = ((second_from_first.apply(first_m) - second_m) ** 2).sum(axis=1)
         weight = weights * (_SCALE_M**2 / (_SCALE_M**2 + r2)) ** 2
-    away = np.linalg.norm(first_m @ R.T + t - second_m, axis=1)
+    away = np.linalg.norm(second_from_first.apply(first_m) - second_m, axis=1)
     inliers = (weights > 0.0) & (away < _NEAR_M)
     share = np.count_nonzero(inliers) / np.count_nonzero(weights > 0.0)
     if share < _LEAST_SHARE:
@@ -58,13 +59,4 @@ def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> Relativ
             "room",
             "check that each lens belongs to its camera and no picture is mirrored, then " + _MOVE,
         )
-    return RelativePose(R, t, inliers)
-
-
-def _rigid(a: Floats, b: Floats, weight: Floats) -> tuple[Floats, Floats]:
-    """R, t of least squares with b = R a + t."""
-    w = weight / max(weight.sum(), 1e-300)
-    ca, cb = w @ a, w @ b
-    U, _, Vt = np.linalg.svd((b - cb).T @ ((a - ca) * w[:, None]))
-    R: Floats = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
-    return R, cb - R @ ca
+    return RelativePose(second_from_first, inliers)

@@ -14,6 +14,7 @@ from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import N_CAMERA, moved_camera
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import camera_from_world, perspective_jacobians, to_camera
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
@@ -123,10 +124,10 @@ def _seen_rows(
     pairs: RingPairs, xy: Floats, camera: Camera, points: Floats, robust: bool
 ) -> tuple[Floats, Floats, Floats]:
     """Residuals (G,P,2), their derivatives (G,P,2,3) by the points, and weights (G,P)."""
-    at = points @ camera.R.T + camera.t_m
+    at = to_camera(camera, points)
     depth = np.maximum(at[..., 2], 0.2)
     flat = at[..., :2] / depth[..., None]
-    J = (camera.R[:2] - flat[..., None] * camera.R[2]) / depth[..., None, None]
+    J = perspective_jacobians(flat, depth) @ camera.R
     r = xy - flat
     sd = _POINT_SD_M / depth
     weight = pairs.seen / sd**2
@@ -146,5 +147,5 @@ def _start(pairs: RingPairs, first: Camera, second: Camera) -> Floats:
 
 def _motion(before: Camera, after: Camera) -> Floats:
     """(6,): the world motion that makes the one camera the other."""
-    turn = rotations.log(rotations.from_matrix(before.R.T @ after.R))
-    return np.concatenate([before.R.T @ (after.t_m - before.t_m), turn])
+    motion = camera_from_world(before).inverse() @ camera_from_world(after)
+    return np.concatenate([motion.t_m, rotations.log(rotations.from_matrix(motion.R))])

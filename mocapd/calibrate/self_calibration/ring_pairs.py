@@ -10,7 +10,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchSighting
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, SIDES, sleeve_rings
 from mocapd.clock import nanoseconds
-from mocapd.geometry.cameras import to_camera
+from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 

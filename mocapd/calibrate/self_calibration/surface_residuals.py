@@ -1,4 +1,4 @@
-"""A body whose surface may be off from the mean body's by a few centimetres, here and there.
+"""Non-rigid shape residuals: a body whose surface may be off from the mean body's by a few centimetres, here and there.
 
 The factors of `body.shape` cannot make a real body in real cloth. What they miss is of the same
 size in every picture, so that no number of pictures averages it out, and where a camera stands would

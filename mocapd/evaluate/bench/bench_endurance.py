@@ -11,7 +11,7 @@ from mocapd.clock import nanoseconds
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.evaluate.bench.bench_step import BYTES_PER_MB, NS_PER_MS
 from mocapd.pipeline.idle_collection import IdleCollection
-from mocapd.trackers.base import Tracker
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.types import Floats, FrameSet
 
 _SEAM_NS = nanoseconds(1.0 / 30.0)  # between the last set of a round and the first of the next
@@ -36,12 +36,13 @@ class EnduranceFigures:
 
 
 def endure(
-    tracker: Tracker, recording: BenchInput, minutes: float, tell: Callable[[int, int], None]
+    ready: ReadyTracker, recording: BenchInput, minutes: float, tell: Callable[[int, int], None]
 ) -> EnduranceFigures:
     """Run the recording round and round for so many minutes by the clock, as fast as it goes.
 
     Time goes on from round to round. `tell` hears of the seconds that have passed, and of all.
     """
+    tracker, shape = ready.tracker, ready.shape
     step_ns: list[tuple[int, int]] = []  # by the clock, of the processor
     rss: list[tuple[float, float]] = []  # minute, bytes
     process = psutil.Process()
@@ -50,7 +51,7 @@ def endure(
         for chunk in _rounds(recording):
             for one in chunk:
                 cpu_ns, start_ns = time.process_time_ns(), time.perf_counter_ns()
-                tracker.step(one)
+                shape = tracker.step(one, shape).shape
                 wall_ns = time.perf_counter_ns() - start_ns
                 step_ns.append((wall_ns, time.process_time_ns() - cpu_ns))
             garbage.idle(time.monotonic_ns())

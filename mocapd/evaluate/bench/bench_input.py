@@ -22,14 +22,12 @@ CHUNK = 30  # frame sets decoded at a time; of two 640x480 cameras they take 55 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BenchInput:
-    """`sets` begins the recording of `count` sets anew each time, and decodes as it is read; variant: of
-    the tracker."""
+    """`sets` begins the recording of `count` sets anew each time, and decodes as it is read."""
 
     name: str
     known: Calibration
     count: int
     sets: Callable[[], Iterable[FrameSet]]
-    variant: str = "full"
 
     def chunks(self) -> Iterator[list[FrameSet]]:
         """All frame sets, so many at a time that decoding is over before they are used."""
@@ -38,9 +36,7 @@ class BenchInput:
             yield chunk
 
 
-def open_input(
-    source: str, cache_dir: Path, stature_m: float, variant: str, progress: Progress
-) -> BenchInput:
+def open_input(source: str, cache_dir: Path, stature_m: float, progress: Progress) -> BenchInput:
     """A capture folder or `sim:SCENARIO`, whose film is rendered when it is not in the cache.
 
     `stature_m` [m] is for folders that do not say. Raises InputError, ConfigError or
@@ -49,11 +45,11 @@ def open_input(
     if source.startswith(simulation.SIM):
         film = simulation.open_film(source, cache_dir, progress)
         known = simulation.from_scenario(film.setup)
-        return BenchInput(source, known, _film_length(film), lambda: _film_sets(film), variant)
+        return BenchInput(source, known, _film_length(film), lambda: _film_sets(film))
     folder = load_folder(Path(source))
     known = from_capture(folder).assuming(stature_m)
     count = max(camera.frames for camera in folder.cameras)
-    return BenchInput(folder.path.name, known, count, lambda: frame_sets(folder), variant)
+    return BenchInput(folder.path.name, known, count, lambda: frame_sets(folder))
 
 
 def _film_sets(film: Film) -> Iterator[FrameSet]:

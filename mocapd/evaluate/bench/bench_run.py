@@ -1,17 +1,17 @@
 """Benchmarks of one recording: which trackers, built how, and what was found."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from mocapd.errors import ConfigError
 from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
 from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
-from mocapd.session.tracker_setup import Progress, cached, ready_tracker
-from mocapd.trackers.base import Tracker
+from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
 from mocapd.trackers.registry import TRACKERS
 from mocapd.trackers.tracking_state import TrackingStateParams
 
@@ -29,28 +29,30 @@ class BenchResults:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bench:
-    """`tracker`: its name; None: every tracker that the recording suits."""
+    """`tracker`: its name; None: every tracker that the recording suits; sections: the trackers' own of the
+    configuration, by name."""
 
     recording: BenchInput
     tracker: str | None
     cache_dir: Path
     tracking: TrackingStateParams
+    sections: Mapping[str, Any]
     progress: Progress
 
     def steps(self) -> BenchResults:
         """Time every step of the whole recording. Raises ConfigError for what a tracker lacks."""
         found = BenchResults(self.recording.name)
-        for name, tracker in self._trackers(found):
+        for name, ready in self._trackers(found):
             tell = partial(self.progress, f"timing {name}")
-            found.steps[name] = bench_tracker(tracker, self.recording, tell)
+            found.steps[name] = bench_tracker(ready, self.recording, tell)
         return found
 
     def endurance(self, minutes: float) -> BenchResults:
         """Run each tracker for so long [min]. Raises ConfigError for what a tracker lacks."""
         found = BenchResults(self.recording.name)
-        for name, tracker in self._trackers(found):
+        for name, ready in self._trackers(found):
             tell = partial(self.progress, f"running {name}, seconds")
-            found.endurance[name] = endure(tracker, self.recording, minutes, tell)
+            found.endurance[name] = endure(ready, self.recording, minutes, tell)
         return found
 
     def live(
@@ -64,9 +66,9 @@ class Bench:
         """
         found = BenchResults(self.recording.name)
         rig = self.recording.known.rig
-        for name, tracker in self._trackers(found):
+        for name, ready in self._trackers(found):
             for one in next(self.recording.chunks()):
-                tracker.step(one)
+                ready.tracker.step(one, ready.shape)
             self.progress(f"running the daemon with {name} for {duration_s:.0f} s", 0, 1)
             found.live[name] = bench_live(
                 (*command, "--tracker", name),
@@ -76,17 +78,15 @@ class Bench:
             )
         return found
 
-    def _trackers(self, found: BenchResults) -> Iterator[tuple[str, Tracker]]:
+    def _trackers(self, found: BenchResults) -> Iterator[tuple[str, ReadyTracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
             resources = cached(self.cache_dir, self.progress, self.tracking)
             try:
-                tracker = ready_tracker(
-                    name, self.recording.known, resources, self.recording.variant
-                )
+                ready = ready_tracker(name, self.recording.known, resources, self.sections[name])
             except ConfigError as error:
                 if self.tracker:
                     raise
                 found.skipped[name] = str(error)
                 continue
-            yield name, tracker
+            yield name, ready

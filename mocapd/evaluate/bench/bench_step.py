@@ -3,26 +3,20 @@
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 import psutil
 
+from mocapd.body.shape import BodyShape
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.pipeline.idle_collection import IdleCollection
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.trackers.base import Tracker
 from mocapd.types import FrameSet
 
 REST = "rest"  # what is left of a step after its last named stage
 NS_PER_MS = 1e6
 BYTES_PER_MB = 1e6
-
-
-@runtime_checkable
-class Probed(Protocol):
-    """A tracker that says when a stage of its step ends, by calling `probe` with its name."""
-
-    probe: Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,21 +76,22 @@ class StageClock:
 
 
 def bench_tracker(
-    tracker: Tracker, recording: BenchInput, tell: Callable[[int, int], None]
+    ready: ReadyTracker, recording: BenchInput, tell: Callable[[int, int], None]
 ) -> StepFigures:
     """Run it through the recording twice and time the second run; `tell` hears of sets done, in all.
 
     The first run compiles what is not compiled yet and touches all memory; in between the tracker
     is reset, so that the second finds the person anew.
     """
+    tracker, shape = ready.tracker, ready.shape
     done = 0
     for chunk in recording.chunks():
         for one in chunk:
-            tracker.step(one)
+            shape = tracker.step(one, shape).shape
         done += len(chunk)
         tell(done, 2 * recording.count)
     tracker.reset()
-    samples = _Samples()
+    samples = _Samples(ready.shape)
     with IdleCollection() as garbage:
         for chunk in recording.chunks():
             samples.add(tracker, chunk)
@@ -109,7 +104,8 @@ def bench_tracker(
 class _Samples:
     """What each step took."""
 
-    def __init__(self) -> None:
+    def __init__(self, shape: BodyShape) -> None:
+        self._shape = shape
         self._wall_ns: list[int] = []
         self._cpu_ns: list[int] = []
         self._stages: list[dict[str, int]] = []
@@ -118,17 +114,17 @@ class _Samples:
 
     def add(self, tracker: Tracker, sets: Iterable[FrameSet]) -> None:
         clock = StageClock()
-        if isinstance(tracker, Probed):
-            tracker.probe = clock.mark
+        tracker.probe = clock.mark
         for one in sets:
             cpu_ns = time.process_time_ns()
             start_ns = time.perf_counter_ns()
             clock.start()
-            track = tracker.step(one)
+            track = tracker.step(one, self._shape)
             clock.mark(REST)
             self._wall_ns.append(time.perf_counter_ns() - start_ns)
             self._cpu_ns.append(time.process_time_ns() - cpu_ns)
             self._stages.append(clock.taken())
+            self._shape = track.shape
             self._tracked += track.body.pose is not None
         self._rss_bytes = max(self._rss_bytes, psutil.Process().memory_info().rss)
 

@@ -11,7 +11,7 @@ from mocapd.body.model import BodyModel, build_model
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_descriptor_kernels
 from mocapd.shirt.pose_database.idmap_crop_kernels import unpack
 from mocapd.shirt.pose_database.idmap_index import (
@@ -157,7 +157,7 @@ def content_hash(params: DatabaseParams) -> str:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rendered:
+class RenderedPoses:
     """Packed id maps (N, PACKED) of poses, with root_m (N,3) and side_rad (N,) of each."""
 
     packed_maps: Bytes
@@ -171,10 +171,10 @@ def render(
     params: DatabaseParams,
     progress: Progress,
     map_chunks: MapChunks = map,
-) -> Rendered:
+) -> RenderedPoses:
     """Id maps of poses; `map_chunks` may be the `map` of a thread pool, as the kernel frees the lock."""
     n = len(poses)
-    out = Rendered(
+    out = RenderedPoses(
         np.zeros((n, PACKED), np.uint8), np.zeros((n, 3), np.float32), np.zeros(n, np.float32)
     )
     is_shirt = np.zeros(len(model.vertices_m), dtype=bool)

@@ -43,11 +43,11 @@ _BLOCK = 1 << 20
 
 
 class _UnusableError(Exception):
-    """Why a file cannot be used; becomes the `reason` of Loaded."""
+    """Why a file cannot be used; becomes the `reason` of LoadedDatabase."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Loaded:
+class LoadedDatabase:
     """The database, and how it came: `built` anew because of `reason` ("" when read from the file).
 
     `warning` is a line for the user, or "": the cache could not be written, so the next start builds
@@ -66,7 +66,7 @@ def load_or_build(
     progress: Progress = lambda _: None,
     map_chunks: MapChunks = map,
     must_cache: bool = False,
-) -> Loaded:
+) -> LoadedDatabase:
     """The database of `params` from `cache_dir`; built and written there when it is missing or stale.
 
     progress(0..1) is called while building only. Raises CannotCreateError when the cache cannot be
@@ -76,13 +76,13 @@ def load_or_build(
     path = cache_dir / FILE_NAME
     wanted = content_hash(params)
     try:
-        return Loaded(_read(path, wanted), built=False)
+        return LoadedDatabase(_read(path, wanted), built=False)
     except _UnusableError:
         if must_cache:
             _check_writable(cache_dir)
     with _alone(cache_dir):
         try:
-            return Loaded(_read(path, wanted), built=False)  # by whom we waited for
+            return LoadedDatabase(_read(path, wanted), built=False)  # by whom we waited for
         except _UnusableError as error:
             reason = str(error)
         database = build_database(params, progress, map_chunks)
@@ -91,9 +91,9 @@ def load_or_build(
         except CannotCreateError as error:
             if must_cache:
                 raise
-            return Loaded(database, built=True, reason=reason, warning=str(error))
+            return LoadedDatabase(database, built=True, reason=reason, warning=str(error))
         # mapped pages can be given back to the system, the built arrays cannot
-        return Loaded(_read(path, wanted), built=True, reason=reason)
+        return LoadedDatabase(_read(path, wanted), built=True, reason=reason)
 
 
 @contextmanager

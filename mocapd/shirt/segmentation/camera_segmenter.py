@@ -59,7 +59,7 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class ShirtCandidate:
     """A place where a shirt may be: the region, its ids (h,w), and the light they were read in."""
 
     roi: Roi
@@ -254,12 +254,12 @@ class CameraSegmenter:
 
     # --- without a pose ---
 
-    def find(self, sizes: Ints) -> Found | None:
+    def find(self, sizes: Ints) -> ShirtCandidate | None:
         """Where the shirt's colours are together, under each known light; None when nowhere enough."""
         p, memory = self.params, self.memory
         model = self.model.tolerating(p.shading_sd, p.cloth_sd)
         w, h = self.size
-        best: Found | None = None
+        best: ShirtCandidate | None = None
         lights = [W * gain for gain in _GAINS for W in memory.references]
         for W in lights:
             self._tables.refill(model, W, p.first_threshold)
@@ -279,7 +279,9 @@ class CameraSegmenter:
                     max(0, x0 - grow) & ~1, max(0, y0 - grow) & ~1,
                     min(w, x1 + grow), min(h, y1 + grow),
                 )  # fmt: skip
-                best = Found(roi, ids[roi[1] : roi[3], roi[0] : roi[2]].copy(), W, evenness)
+                best = ShirtCandidate(
+                    roi, ids[roi[1] : roi[3], roi[0] : roi[2]].copy(), W, evenness
+                )
         return best
 
     def relight(self, W: Floats) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mocapd.body.shirt import SLEEVE_PATCHES, standard_shirt
+from mocapd.body.shirt_patches import SLEEVE_PATCHES, standard_shirt
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import Roi

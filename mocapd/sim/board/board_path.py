@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, rays
+from mocapd.geometry.camera_model import centre, rays
 from mocapd.sim.board.board_picture import PrintedBoard
 from mocapd.types import Camera, Floats
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.geometry.cameras import normalised, project
+from mocapd.geometry.camera_model import normalised, project
 from mocapd.sim.board.board_kernels import PixelRays, shade_sheet
 from mocapd.types import Bytes, Camera, Floats
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.body.surface import HEAD, LEGS, SHIRT, TROUSERS, Surface
 from mocapd.body.surface_building import build_surface

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.geometry.cameras import rays
+from mocapd.geometry.camera_model import rays
 from mocapd.sim.scenery.furniture import Primitives
 from mocapd.sim.scenery.lamps import Lamps
 from mocapd.sim.scenery.room_kernels import cast_room

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.solver import Fit
 from mocapd.trackers.tracking_state import FADE_S

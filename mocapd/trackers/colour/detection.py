@@ -8,11 +8,11 @@ import numpy as np
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import centre, normalised, rays
+from mocapd.geometry.camera_model import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_id_map
-from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, Found
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.types import Camera, Floats
 
 WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales
@@ -25,7 +25,7 @@ class ShirtSighting:
     """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
 
     index: int  # of the camera
-    found: Found
+    found: ShirtCandidate
     centre_px: Floats  # full resolution
     side_px: float
     poses: np.ndarray
@@ -77,7 +77,7 @@ def hypotheses(
     for s in sightings:
         camera = cameras[s.index]
         view = camera_from_view(camera, s.centre_px)
-        to_world = rotations.from_matrix(camera.R.T)
+        world_from_camera_xyzw = rotations.from_matrix(camera.R.T)
         for i in range(len(s.poses)):
             one, distance = s.poses[i : i + 1], s.distances[i : i + 1]
             side_rad = s.side_px / camera.K[0, 0]
@@ -90,7 +90,7 @@ def hypotheses(
             root = camera.R.T @ (rotations.rotate(view, in_view) - camera.t_m)
             local = database.local_xyzw[one[0]].astype(float)
             turned = rotations.multiply(view, database.camera_from_root_xyzw[one[0]].astype(float))
-            local[0] = rotations.canonical(rotations.multiply(to_world, turned))
+            local[0] = rotations.canonical(rotations.multiply(world_from_camera_xyzw, turned))
             out.append(MotionState(root, local, np.zeros(n_pose), factors, information))
     return out
 

@@ -1,14 +1,14 @@
 """The colour tracker's step machine: predict, classify, fit, judge, learn; or look for the shirt anew."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import build_model, shape_of
+from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shape import skeleton_of
-from mocapd.body.skeleton import N_JOINTS
+from mocapd.body.shape import BodyShape
+from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
@@ -16,7 +16,8 @@ from mocapd.fit.limb_search import ArmSearch, confirmed, is_uncertain
 from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
-    measured_information,
+    known_of,
+    learned,
     moved,
     step_between,
 )
@@ -25,21 +26,21 @@ from mocapd.geometry import rotations
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
+from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
 from mocapd.types import (
     BodyState,
     Floats,
     FrameSet,
     Pose,
     Rig,
-    Skeleton,
-    Track,
     Tracking,
 )
 
+_TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
 
 
@@ -52,6 +53,15 @@ class _Known:
     fit: Fit
     taught_s: float  # seconds of good tracking that the body shape was learned from
     cameras: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Wearer:
+    """The proportions as handed in, in the tracker's space."""
+
+    factors: Floats
+    information: Floats
+    taught_s: float
 
 
 class ColourTracker:
@@ -68,12 +78,8 @@ class ColourTracker:
         database: PoseDatabase,
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
-        factors: Floats | None = None,
     ) -> None:
-        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent.
-
-        factors (n_shape,): the wearer's proportions as measured; None: nothing is known of them.
-        """
+        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent."""
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
         model = build_model(stature_m)
@@ -83,8 +89,7 @@ class ColourTracker:
         self._arm_columns = {side: model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self._fitter, p.limbs)
         self._tracking = TrackingState(tracking)
-        self._measured = factors
-        self.probe: Callable[[str], None] = _silent
+        self.probe: Probe = unprobed
         self._rehearse()
         self.reset()
 
@@ -102,46 +107,40 @@ class ColourTracker:
         )
         self._arms.rehearse(state, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
 
-    @property
-    def skeleton(self) -> Skeleton:
-        """The wearer's skeleton as estimated so far."""
-        factors = self._known.state.factors if self._known else self._factors
-        return skeleton_of(shape_of(self._fitter.model, factors))
-
-    def reset(self) -> None:
-        """Forget pose, proportions, light and background."""
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget pose, light and background. near: a body to be looked for where it is, before everywhere."""
         self._segmenters.reset()
-        self._tracking.reset()
+        self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Known | None = None
-        measured, model = self._measured, self._fitter.model
-        self._factors: Floats = np.ones(model.n_shape) if measured is None else measured.copy()
-        self._information: Floats = (
-            initial_information(model.space)
-            if measured is None
-            else measured_information(model.space)
-        )
-        self._taught_s = 0.0
+        self._near = near
         self._next_search_ns = 0
         self._turn = 0
         self._redraw = True
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         self._turn += 1
         present = self._segmenters.look(frames)
         self.probe("picture")
+        require_stature(shape, self._fitter.model.stature_m)
+        wearer = _Wearer(*known_of(shape, self._fitter.model.space), shape.taught_s)
         known = self._known
         if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
             known = None  # too old to predict from
         views: list[View] = []
         if known is not None and present:
-            known, views = self._follow(known, present, frames)
+            known, views = self._follow(_with(known, wearer), present, frames)
+        elif self._near is not None and present:
+            known, views = self._take_over(self._near, wearer, present, frames)
+            self._near = None
+            if known is None:
+                self._tracking.reset()
         if (
             present
             and frames.t_ns >= self._next_search_ns
             and self._is_uncertain(known, frames.t_ns)
         ):
-            known, views = self._search(known, views, present, frames)
+            known, views = self._search(known, wearer, views, present, frames)
             self.probe("detect")
         evidence = known is not None and known.t_ns == frames.t_ns
         tracking = self._tracking.step(frames.t_ns, evidence)
@@ -149,13 +148,12 @@ class ColourTracker:
             known = None
         self._known = known
         if known is not None:
-            self._factors, self._information = known.state.factors, known.state.information
-            self._taught_s = known.taught_s
+            shape = learned(shape, known.state.factors, known.state.information, known.taught_s)
         if known is not None and evidence:
             self._segmenters.learn_with(known.state, known.fit, views, self._redraw)
         self._segmenters.learn_background(present, nobody=known is None)
         self.probe("learn")
-        return self._track(tracking, frames, views)
+        return self._track(tracking, frames, views, shape)
 
     # --- stages ---
 
@@ -207,6 +205,26 @@ class ColourTracker:
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
+    def _take_over(
+        self, near: BodyState, wearer: _Wearer, present: dict[int, float], frames: FrameSet
+    ) -> tuple[_Known | None, list[View]]:
+        """Begin from another tracker's body, if the pictures confirm it."""
+        p, pose = self.params, near.pose
+        if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
+            return None, []
+        local = local_from_global(standard_skeleton(self._fitter.model.stature_m), pose.quats_xyzw)
+        still = np.zeros(self._fitter.model.n_pose)
+        there = MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
+        views = self._segmenters.views(there, present)
+        if not views:
+            return None, []
+        fit = self._fitter.fit(there, views, _TAKEN_OVER_S, p.fit.iterations, learn_shape=False)
+        fit, _ = self._arms.improve(fit, views, _TAKEN_OVER_S, self._turn, learn_shape=False)
+        if not self._acceptable(fit):
+            return None, []
+        names = tuple(self.rig.cameras[v.index].name for v in views)
+        return _Known(frames.t_ns, fit.state, fit, wearer.taught_s, names), views
+
     def _is_uncertain(self, known: _Known | None, t_ns: int) -> bool:
         """Whether to look for the wearer anew: nobody is known, or what is known agrees badly."""
         if known is None or known.t_ns != t_ns:
@@ -216,6 +234,7 @@ class ColourTracker:
     def _search(
         self,
         known: _Known | None,
+        wearer: _Wearer,
         views: list[View],
         present: dict[int, float],
         frames: FrameSet,
@@ -226,19 +245,19 @@ class ColourTracker:
         self._next_search_ns = frames.t_ns + nanoseconds(pause_s)
         before = [segmenter.memory.appearance for segmenter in self._segmenters.each]
         views = [replace(v, ids=v.ids.copy(), pixel_weight=v.pixel_weight.copy()) for v in views]
-        found = self._found(present)
+        found = self._found(wearer, present)
         if found is not None:
             fit, seen = found
             held = known.fit if known is not None and known.t_ns == frames.t_ns else None
             if held is None or fit.match > held.match + p.uncertain_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
-                return _Known(frames.t_ns, fit.state, fit, self._taught_s, names), seen
+                return _Known(frames.t_ns, fit.state, fit, wearer.taught_s, names), seen
         for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
             segmenter.memory.appearance = appearance
         return known, views
 
-    def _found(self, present: dict[int, float]) -> tuple[Fit, list[View]] | None:
+    def _found(self, wearer: _Wearer, present: dict[int, float]) -> tuple[Fit, list[View]] | None:
         """An acceptable fit from the pose database, and the views it was fitted to."""
         p = self.params
         sightings = [
@@ -251,8 +270,8 @@ class ColourTracker:
             sightings,
             self.rig.cameras,
             self._database,
-            self._factors,
-            self._information,
+            wearer.factors,
+            wearer.information,
             self._fitter.model.n_pose,
         )
         flat = [
@@ -287,13 +306,12 @@ class ColourTracker:
 
     # --- result ---
 
-    def _track(self, tracking: Tracking, frames: FrameSet, views: list[View]) -> Track:
+    def _track(
+        self, tracking: Tracking, frames: FrameSet, views: list[View], shape: BodyShape
+    ) -> Track:
         known = self._known
         if tracking is Tracking.LOST or known is None:
-            nobody = BodyState(
-                frames.t_ns, Tracking.LOST, self.name, None, None, np.zeros(N_JOINTS)
-            )
-            return Track(nobody)
+            return Track(lost_body(frames.t_ns, self.name), shape)
         state = known.state
         away_s = seconds(frames.t_ns - known.t_ns)
         if away_s > 0.0:  # coasting: it moves on for a moment, then stays
@@ -314,10 +332,14 @@ class ColourTracker:
         )
         return Track(
             body,
+            shape,
+            known.fit.explained * faded(away_s),
             evidence={self.rig.cameras[v.index].name: v.ids.copy() for v in views},
             roi_px={self.rig.cameras[v.index].name: self._segmenters.roi_px(v) for v in views},
         )
 
 
-def _silent(stage: str) -> None:
-    """No stopwatch."""
+def _with(known: _Known, wearer: _Wearer) -> _Known:
+    """What is carried on, of a wearer as known to whoever steps the tracker."""
+    state = replace(known.state, factors=wearer.factors, information=wearer.information)
+    return replace(known, state=state, taught_s=wearer.taught_s)

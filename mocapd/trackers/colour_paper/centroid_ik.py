@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import difference, retract
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.trackers.colour_paper.covariances import Covariances
 from mocapd.trackers.colour_paper.paper_drawing import (
     Grid,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.trackers.colour_paper.patch_kernels import rendered_patches
 from mocapd.types import Camera, Floats, Ints

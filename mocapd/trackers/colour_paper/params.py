@@ -42,10 +42,15 @@ class Params:
     min_samples: int = 150  # coloured samples of a camera
     max_distance_px2: float = 30.0  # of the nearest id map
     min_agreement: float = 0.35  # share of rendered samples that are classified alike
-    coast_s: float = 0.25
 
 
-def tolerant(params: Params) -> Params:
+def published(baseline: bool = False, tolerant: bool = False) -> Params:
+    """The paper's method or its baseline; tolerant: see below."""
+    params = Params(pose_prior=not baseline, adaptive_white_balance=not baseline)
+    return tolerating(params) if tolerant else params
+
+
+def tolerating(params: Params) -> Params:
     """The same with wider colours and thresholds to match: finds half as many shirt pixels again."""
     return replace(
         params,

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.geometry import rotations
-from mocapd.geometry.cameras import normalised
+from mocapd.geometry.camera_model import normalised
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_window
 from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS

@@ -1,15 +1,31 @@
 """The tracker of [Wang 2011], as the paper describes it; every pose starts anew from the database."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.body.shirt import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
-from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.skeleton import (
+    INDEX,
+    N_JOINTS,
+    joint_positions,
+    local_from_global,
+    standard_skeleton,
+)
+from mocapd.clock import seconds
 from mocapd.geometry import rotations
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.trackers.base import (
+    Probe,
+    Track,
+    lost_body,
+    require_stature,
+    unprobed,
+)
 from mocapd.trackers.colour_paper.centroid_ik import CentroidSolver, Target
 from mocapd.trackers.colour_paper.covariances import load_covariances
 from mocapd.trackers.colour_paper.paper_drawing import PatchRenderer, Posture, draw, posture
@@ -17,7 +33,8 @@ from mocapd.trackers.colour_paper.paper_segmenter import PaperSegmenter, Sight
 from mocapd.trackers.colour_paper.params import Params
 from mocapd.trackers.colour_paper.patch_kernels import classified_patches
 from mocapd.trackers.colour_paper.placement import blended_local, constraints, guess, place
-from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Skeleton, Track, Tracking
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
+from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Tracking
 from mocapd.vision.distance_maps import DistanceMaps
 from mocapd.vision.raster_kernels import label_triangles
 
@@ -35,7 +52,13 @@ _WELL_SEEN = 40.0  # samples of a joint's patches, best camera
 
 
 class PaperTracker:
-    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.trackers.base for the promises."""
+    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.trackers.base for the promises.
+
+    It knows nothing of the wearer's proportions and learns none: what it finds with the mean body's is
+    told of the body that it is handed.
+    """
+
+    name = "colour_paper"
 
     def __init__(
         self,
@@ -45,13 +68,14 @@ class PaperTracker:
         white_balance: Mapping[str, Floats],
         database: PoseDatabase,
         params: Params | None = None,
+        tracking: TrackingStateParams | None = None,
     ) -> None:
         """white_balance: W (3,3) per camera name, from the user's strokes; identity where missing."""
         self.params = params or Params()
-        self.name = "colour-paper" if self.params.pose_prior else "colour-baseline"
+        self.probe: Probe = unprobed
         self._database = database
         self._model = build_model(stature_m)
-        self._skeleton = standard_skeleton(stature_m)
+        self._tracking = TrackingState(tracking)
         self._solver = CentroidSolver(self._model, load_covariances(), self.params.iterations)
         self._segmenters = {
             camera.name: PaperSegmenter(
@@ -61,49 +85,91 @@ class PaperTracker:
         }
         self.reset()
 
-    @property
-    def skeleton(self) -> Skeleton:
-        """The mean skeleton of the stature; this tracker learns no proportions."""
-        return self._skeleton
-
-    def reset(self) -> None:
-        """Forget everything learned since construction."""
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget everything learned since construction. near: the pose that the first one is held to."""
         for segmenter in self._segmenters.values():
             segmenter.reset()
         self._last: Posture | None = None
         self._last_t_ns = 0
         self._last_state: BodyState | None = None
+        self._tracking.reset()
+        if near is not None and near.pose is not None:
+            local = local_from_global(
+                standard_skeleton(self._model.stature_m), near.pose.quats_xyzw
+            )
+            self._last = posture(self._model, near.pose.root_m, local)
+            self._last_t_ns, self._last_state = near.t_ns, near
+            self._tracking.reset(near.t_ns)
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set."""
+        require_stature(shape, self._model.stature_m)
         sights: dict[str, Sight] = {}
         for name, segmenter in self._segmenters.items():
             if name in frames.frames:
                 sight = segmenter.look(frames.frames[name].pixels)
                 if sight is not None:
                     sights[name] = sight
+        self.probe("classify")
         body, agreement, seen, refined = self._pose(frames, sights)
-        if body is None or agreement < self.params.min_agreement:
-            return Track(self._without(frames.t_ns), *self._evidence(sights))
-        for name, drawing in seen.items():
-            self._segmenters[name].learn(
-                frames.frames[name].pixels,
-                sights[name].grid,
-                drawing,
-                self._model.colour,
-                refined[name],
+        self.probe("pose")
+        evidence = body is not None and agreement >= self.params.min_agreement
+        tracking = self._tracking.step(frames.t_ns, evidence)
+        if body is not None and evidence:
+            for name, drawing in seen.items():
+                self._segmenters[name].learn(
+                    frames.frames[name].pixels,
+                    sights[name].grid,
+                    drawing,
+                    self._model.colour,
+                    refined[name],
+                )
+            self.probe("learn")
+            self._last, self._last_t_ns = body, frames.t_ns
+            self._last_state = BodyState(
+                t_ns=frames.t_ns,
+                tracking=Tracking.LIVE,
+                tracker=self.name,
+                pose=Pose(body.root_m, rotations.canonical(body.turned_xyzw)),
+                joints_m=body.joints_m,
+                confidence=_confidence(list(seen.values()), agreement),
+                cameras=tuple(seen),
             )
-        self._last, self._last_t_ns = body, frames.t_ns
-        self._last_state = BodyState(
-            t_ns=frames.t_ns,
-            tracking=Tracking.LIVE,
+        if tracking is Tracking.LOST:
+            if not evidence:
+                self._forget_body()
+            return Track(lost_body(frames.t_ns, self.name), shape, 0.0, *_evidence(sights))
+        return self._track(tracking, frames.t_ns, shape, agreement, sights)
+
+    def _track(
+        self,
+        tracking: Tracking,
+        t_ns: int,
+        shape: BodyShape,
+        agreement: float,
+        sights: Mapping[str, Sight],
+    ) -> Track:
+        """The last pose, of the wearer's own shape; it stays for a moment without evidence."""
+        last = self._last_state
+        assert last is not None
+        assert last.pose is not None
+        left = faded(seconds(t_ns - last.t_ns))
+        live = tracking is Tracking.LIVE
+        body = replace(
+            last,
+            t_ns=t_ns,
+            tracking=tracking,
             tracker=self.name,
-            pose=Pose(body.root_m, rotations.canonical(body.turned_xyzw)),
-            joints_m=body.joints_m,
-            confidence=_confidence(list(seen.values()), agreement),
-            cameras=tuple(seen),
+            joints_m=joint_positions(skeleton_of(shape), last.pose),
+            confidence=last.confidence * left,
+            cameras=last.cameras if live else (),
         )
-        return Track(self._last_state, *self._evidence(sights))
+        return Track(body, shape, min(1.0, agreement) if live else 0.0, *_evidence(sights))
+
+    def _forget_body(self) -> None:
+        self._last = self._last_state = None
+        for segmenter in self._segmenters.values():
+            segmenter.forget_body()
 
     def _pose(
         self, frames: FrameSet, sights: Mapping[str, Sight]
@@ -160,30 +226,15 @@ class PaperTracker:
         wanted[0] = False
         return Target(segmenter.camera, grid, grid.to_pixels(centroid), wanted), ids
 
-    def _without(self, t_ns: int) -> BodyState:
-        """No pose in this frame: the last one for a moment, then lost."""
-        last = self._last_state
-        if last is not None and last.pose is not None:
-            age_s = (t_ns - last.t_ns) * 1e-9
-            if age_s <= self.params.coast_s:
-                fading = last.confidence * max(0.0, 1.0 - age_s / self.params.coast_s)
-                return BodyState(
-                    t_ns, Tracking.COASTING, self.name, last.pose, last.joints_m, fading
-                )
-        self._last = self._last_state = None
-        for segmenter in self._segmenters.values():
-            segmenter.forget_body()
-        return BodyState(t_ns, Tracking.LOST, self.name, None, None, np.zeros(N_JOINTS))
 
-    @staticmethod
-    def _evidence(
-        sights: Mapping[str, Sight],
-    ) -> tuple[dict[str, Bytes], dict[str, tuple[int, int, int, int]]]:
-        regions = {}
-        for name, sight in sights.items():
-            g = sight.grid
-            regions[name] = (g.x0, g.y0, g.x0 + g.width * g.stride, g.y0 + g.height * g.stride)
-        return {name: sight.ids for name, sight in sights.items()}, regions
+def _evidence(
+    sights: Mapping[str, Sight],
+) -> tuple[dict[str, Bytes], dict[str, tuple[int, int, int, int]]]:
+    regions = {}
+    for name, sight in sights.items():
+        g = sight.grid
+        regions[name] = (g.x0, g.y0, g.x0 + g.width * g.stride, g.y0 + g.height * g.stride)
+    return {name: sight.ids for name, sight in sights.items()}, regions
 
 
 def _agreement(drawing: PatchRenderer, colour: Bytes, ids: Bytes) -> tuple[int, int]:

@@ -20,7 +20,7 @@ import numpy as np
 from mocapd.body.model import BodyModel, build_model, shaped
 from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
-from mocapd.body.shirt import N_LABELS
+from mocapd.body.shirt_patches import N_LABELS
 from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build

@@ -9,8 +9,9 @@ from mocapd.calibrate.board.board_detection import BoardDetector, NotSeen, Reaso
 from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.types import Frame
-from mocapd.wizard.board.board_watch import Look
-from mocapd.wizard.step import Context, Problem, Tell
+from mocapd.wizard.board.board_look import Look
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Problem, Tell
 
 _BLIND_NS = 2_000_000_000  # without the board, before it is asked
 _PAUSE_NS = 1_500_000_000  # between two askings

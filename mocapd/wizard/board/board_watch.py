@@ -1,14 +1,12 @@
 """The board in the cameras' newest pictures: looked for in a few of them with every tick."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
-import numpy as np
-
-from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
+from mocapd.calibrate.board.board_detection import BoardDetector
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Floats, Frame
+from mocapd.wizard.board.board_look import BoardObservation, Look, motion_px
 from mocapd.wizard.recent_frames import RecentFrames
 from mocapd.wizard.step import Shape
 
@@ -16,35 +14,7 @@ from mocapd.wizard.step import Shape
 # which the board's motion would be followed; in between are those of pictures that are of no moment.
 INDEX_STEP = 100
 _AT_ONCE = 2  # pictures searched in one tick
-_REMEMBERED_NS = 700_000_000  # after which the board's last place tells nothing of its motion
 _SHOWN_NS = 400_000_000  # how long corners stay drawn when the board is not found again
-_FRAME_NS = 1e9 / 30.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Seen:
-    """The board in one picture; `motion_px`: of its corners since the look before [px per 1/30 s],
-    infinite when it was not seen then."""
-
-    view: BoardView
-    t_ns: int
-    motion_px: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Look:
-    """One instant: cameras that had a picture, and the board in those that saw it."""
-
-    index: int
-    t_ns: int
-    frames: Mapping[str, Frame]
-    seen: Mapping[str, Seen]
-
-    @property
-    def spread_ns(self) -> int:
-        """Between the first and the last of the pictures with the board [ns]."""
-        times = [one.t_ns for one in self.seen.values()]
-        return max(times) - min(times) if times else 0
 
 
 class BoardWatch:
@@ -54,13 +24,13 @@ class BoardWatch:
         self, hub: FrameHub, names: Iterable[str], spec: BoardSpec, first_index: int = 0
     ) -> None:
         self.names = tuple(names)
-        self.newest: dict[str, Seen] = {}  # each camera's last sight of the board
+        self.newest: dict[str, BoardObservation] = {}  # each camera's last sight of the board
         self._hub, self._recent = hub, RecentFrames()
         self._detector = BoardDetector(spec)
         self._index = first_index
         self._frames: dict[str, Frame] = {}
         self._left: list[str] = []  # cameras of this instant not searched yet
-        self._seen: dict[str, Seen] = {}
+        self._seen: dict[str, BoardObservation] = {}
 
     @property
     def spec(self) -> BoardSpec:
@@ -117,20 +87,10 @@ class BoardWatch:
     def _search(self, frame: Frame) -> None:
         view = self._detector.find(frame.pixels, self._index)
         if view is not None:
-            motion_px = _motion_px(self.newest.get(frame.camera), view, frame.t_ns)
-            self._seen[frame.camera] = Seen(view, frame.t_ns, motion_px)
+            moved_px = motion_px(self.newest.get(frame.camera), view, frame.t_ns)
+            self._seen[frame.camera] = BoardObservation(view, frame.t_ns, moved_px)
 
 
 def points_of(pixels: Floats) -> tuple[tuple[float, float], ...]:
     """(n,2) for a Shape."""
     return tuple((round(float(x), 1), round(float(y), 1)) for x, y in pixels)
-
-
-def _motion_px(before: Seen | None, view: BoardView, t_ns: int) -> float:
-    if before is None or not 0 < t_ns - before.t_ns <= _REMEMBERED_NS:
-        return float("inf")
-    _, then, now = np.intersect1d(before.view.ids, view.ids, return_indices=True)
-    if not len(now):
-        return float("inf")
-    shift = np.linalg.norm(view.corners_px[now] - before.view.corners_px[then], axis=1)
-    return float(np.median(shift)) * _FRAME_NS / (t_ns - before.t_ns)

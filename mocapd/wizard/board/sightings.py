@@ -1,4 +1,4 @@
-"""Moments at which several cameras saw the board at rest: what a room is solved from."""
+"""Sightings: several cameras saw the board at rest at one instant, from which extrinsics are solved."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.types import Floats
-from mocapd.wizard.board.board_watch import Look, Seen
+from mocapd.wizard.board.board_look import BoardObservation, Look
 
 Views = Mapping[str, Mapping[int, BoardView]]
 
@@ -72,7 +72,7 @@ class Moments:
         """Whether all cameras hang together by such pairs."""
         return len(self.largest_group(fewest)) == len(self._views)
 
-    def still(self, name: str, seen: Seen) -> bool:
+    def still(self, name: str, seen: BoardObservation) -> bool:
         """Whether the board is at rest in this camera."""
         return seen.motion_px <= self._params.most_motion * self._sizes_px[name][0]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mocapd.body.model import build_model
-from mocapd.body.shape import BodyShape
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
 from mocapd.clock import monotonic_ns, nanoseconds
@@ -14,8 +14,8 @@ from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.session.tracker_setup import cached, ready_tracker
-from mocapd.trackers.base import Tracker
+from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
+from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
 from mocapd.wizard.body.measured_body import body_picture
@@ -29,7 +29,7 @@ _TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
 _PATIENCE_S = 40.0  # in which the wearer must have been seen enough
 
 
-MakeTracker = Callable[[Draft, Path, Tell], Tracker]
+MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,10 +66,10 @@ def measure(
     """
     assert draft.rig is not None
     assert draft.stature_m is not None
-    tracker = make_tracker(draft, cache_dir, tell)
+    ready = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
     moments = BodyMoments(model, draft.rig.cameras, params)
-    if not _watch(hub, draft.rig, tracker, moments, watched, tell):
+    if not _watch(hub, draft.rig, ready, moments, watched, tell):
         return None
     tell("working out the proportions", SEEN)
     fit = fit_shape(moments.moments, model, draft.rig.cameras)
@@ -86,15 +86,16 @@ def measure(
     )
 
 
-def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
+def measuring_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> ReadyTracker:
     """The draft's own, warm, and without what was measured before; takes seconds."""
     tell("loading the tracker", 0.0)
-    known = calibration_of(replace(draft, factors=None)).assuming(TrackerSection().stature_m)
+    usual = TrackerSection()
+    known = calibration_of(replace(draft, factors=None)).assuming(usual.stature_m)
     resources = cached(
         cache_dir, lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total)
     )
     return ready_tracker(
-        "colour",
+        shirt_tracker(usual.name),
         known,
         resources,
         rehearsal=lambda done, total: tell(
@@ -106,12 +107,13 @@ def colour_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> Tracker:
 def _watch(
     hub: FrameHub,
     rig: Rig,
-    tracker: Tracker,
+    ready: ReadyTracker,
     moments: BodyMoments,
     watched: Watched,
     tell: Tell,
 ) -> bool:
     """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
+    tracker, shape = ready.tracker, ready.shape
     collector = FrameCollector(rig.names)
     entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
@@ -129,8 +131,9 @@ def _watch(
             frames = collector.get(_TIMEOUT_S)
             if frames is None:
                 continue
-            track = tracker.step(frames)
-            watched.body = track.body, tracker.skeleton
+            track = tracker.step(frames, shape)
+            shape = track.shape
+            watched.body = track.body, skeleton_of(shape)
             seen = moments.add(track, frames)
             tell(_asked(seen, moments), READY + (SEEN - READY) * moments.share)
         return True

@@ -9,7 +9,8 @@ from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment, moment_of
 from mocapd.clock import nanoseconds
-from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Track, Tracking
+from mocapd.trackers.base import Track
+from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Tracking
 
 _SURE = 0.4  # mean confidence of the arms' joints in a moment that counts
 _SIDES = [

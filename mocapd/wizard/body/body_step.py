@@ -16,22 +16,14 @@ from mocapd.wizard.body.body_measuring import (
     MakeTracker,
     Measured,
     Watched,
-    colour_tracker,
     measure,
+    measuring_tracker,
 )
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
 from mocapd.wizard.commands import BODY, Command, MeasureBody, SkipBody, Stature
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    Shape,
-    StepName,
-    StepState,
-    StepView,
-)
+from mocapd.wizard.context import Context
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView
 
 
 class BodyStep:
@@ -40,7 +32,7 @@ class BodyStep:
     name = StepName.BODY
     verbs = BODY
 
-    def __init__(self, context: Context, make_tracker: MakeTracker = colour_tracker) -> None:
+    def __init__(self, context: Context, make_tracker: MakeTracker = measuring_tracker) -> None:
         self._context, self._make_tracker = context, make_tracker
         self._watched: Watched | None = None  # while a job measures
         self._measured: Measured | None = None

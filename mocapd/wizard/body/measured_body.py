@@ -11,7 +11,7 @@ from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment
 from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
-from mocapd.geometry.cameras import project
+from mocapd.geometry.camera_model import project
 from mocapd.types import Bytes, Camera, Pose
 
 _OUTLINE_BGR, _BONE_BGR, _UNDER_BGR = (138, 240, 93), (255, 216, 79), (0, 0, 0)

@@ -33,8 +33,9 @@ from mocapd.wizard.commands import (
     OfCamera,
     TakeIn,
 )
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Context, Json, Problem, StepName, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Problem, StepName, StepState, StepView, Tell
 
 _LIST_EVERY_NS = 4 * NS_PER_S
 _LIGHT_EVERY_NS = NS_PER_S // 2

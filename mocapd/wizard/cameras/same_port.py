@@ -10,8 +10,9 @@ from mocapd.calibration.calibration_file import calibration_path, rewrite_source
 from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs
+from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.step import Context, Problem, Step, StepState, StepView, T
+from mocapd.wizard.step import Problem, StepState, StepView, T
 from mocapd.wizard.wizard import MakeStep
 
 

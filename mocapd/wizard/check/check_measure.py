@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.body.shape import FACTORS, mean_shape, skeleton_of
+from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
 from mocapd.clock import nanoseconds, seconds
@@ -15,9 +15,9 @@ from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import Fitter, View
-from mocapd.geometry.cameras import to_camera
-from mocapd.trackers.base import Tracker
-from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Track, Tracking
+from mocapd.geometry.camera_model import to_camera
+from mocapd.trackers.base import Track, Tracker
+from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 
 EVERY = 4  # frames: one in so many is measured
 _RADIUS_PX = 12  # work px within which a colour is looked for
@@ -69,20 +69,15 @@ class TrackingMeasures:
 class MeasuredTracker:
     """Steps another tracker, and measures every fourth frame of it; a Tracker itself.
 
-    factors (7,): the wearer's proportions as known before, None for the mean body's.
+    known: the wearer's shape before anything is learned.
     """
 
     def __init__(
-        self,
-        tracker: Tracker,
-        rig: Rig,
-        stature_m: float,
-        factors: Floats | None,
-        into: TrackingMeasures,
+        self, tracker: Tracker, rig: Rig, known: BodyShape, into: TrackingMeasures
     ) -> None:
-        self.name = tracker.name
+        self.name, self.probe = tracker.name, tracker.probe
         self._tracker, self._rig, self._into = tracker, rig, into
-        self._known = np.ones(len(FACTORS)) if factors is None else factors
+        self._known, stature_m = known.factors, known.stature_m
         self._mean = skeleton_of(mean_shape(stature_m))
         params = FitParams()
         self._work = image_scales(rig.cameras, params.work_width_px)
@@ -92,22 +87,18 @@ class MeasuredTracker:
         self._last: tuple[int, Floats, Floats] | None = None
         self._turn = 0
 
-    @property
-    def skeleton(self) -> Skeleton:
+    def reset(self, near: BodyState | None = None) -> None:
         """See Tracker."""
-        return self._tracker.skeleton
-
-    def reset(self) -> None:
-        """See Tracker."""
-        self._tracker.reset()
+        self._tracker.reset(near)
         self._last = None
 
-    def step(self, frames: FrameSet) -> Track:
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker."""
-        track = self._tracker.step(frames)
+        self._tracker.probe = self.probe
+        track = self._tracker.step(frames, shape)
         body = track.body
         if body.tracking is Tracking.LIVE and body.pose is not None and track.evidence:
-            local = local_from_global(self.skeleton, body.pose.quats_xyzw)
+            local = local_from_global(self._mean, body.pose.quats_xyzw)
             self._turn += 1
             if self._turn % EVERY == 0:
                 self._into.add(self._measured(body, local, track, frames))
@@ -117,7 +108,7 @@ class MeasuredTracker:
     def _measured(self, body: BodyState, local: Floats, track: Track, frames: FrameSet) -> Measure:
         assert body.pose is not None
         assert body.joints_m is not None
-        lengths = _lengths(self.skeleton) / _lengths(self._mean)
+        lengths = _lengths(skeleton_of(track.shape)) / _lengths(self._mean)
         factors = self._known.copy()
         factors[1:4] = np.clip(lengths, 0.5, 2.0)
         model = self._fitter.model

@@ -26,18 +26,12 @@ from mocapd.wizard.check.check_verdict import (
     verdict_json,
 )
 from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_lenses
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
-from mocapd.wizard.step import (
-    Context,
-    Problem,
-    Scene,
-    StepName,
-    StepState,
-    StepView,
-)
+from mocapd.wizard.step import Problem, Scene, StepName, StepState, StepView
 
 MOVING_S = 5.0
 SEEK_S = 12.0  # without anybody found, after which the reasons are told

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibration.record import Calibration
 from mocapd.config.sections import TrackerSection
 from mocapd.pipeline.bundler import CameraCounts
@@ -13,7 +14,9 @@ from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.session.tracker_setup import cached, ready_tracker
-from mocapd.trackers.base import Tracker, stature_m
+from mocapd.trackers.base import Tracker
+from mocapd.trackers.known import known_shape
+from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
@@ -35,6 +38,7 @@ class Prepared:
     """A tracker that is warm, its cameras, and where it leaves what it measures."""
 
     tracker: Tracker
+    shape: BodyShape
     rig: Rig
     measures: TrackingMeasures
 
@@ -53,20 +57,20 @@ def prepare(
 
     progress("loading the pose database", 0, 1)
     measures = TrackingMeasures()
-    tracker = ready_tracker(
-        "colour",
+    name = shirt_tracker(section.name)
+    shape = known_shape(known)
+    ready = ready_tracker(
+        name,
         known,
         cached(cache_dir, progress, section),
-        section.variant,
+        section.sections[name],
         rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
-        watched=lambda one: MeasuredTracker(
-            one, rig, stature_m(known), known.wearer.shape_factors, measures
-        ),
+        watched=lambda one: MeasuredTracker(one, rig, shape, measures),
     )
     measures.taken()
-    return Prepared(tracker, rig, measures)
+    return Prepared(ready.tracker, ready.shape, rig, measures)
 
 
 class CheckTracking:
@@ -83,9 +87,10 @@ class CheckTracking:
         self.rig = prepared.rig
         self._hub, self._prepared, self._shown = hub, prepared, shown
         self._collector = FrameCollector(prepared.rig.names)
-        tracker = prepared.tracker
-        smoother = Smoother(smoothing, tracker.skeleton)
-        self._loop = PipelineLoop(self._collector, tracker, smoother, shown.bodies, died)
+        smoother = Smoother(smoothing, skeleton_of(prepared.shape))
+        self._loop = PipelineLoop(
+            self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died
+        )
         self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
         self._loop.start()
         shown.loop = self._loop

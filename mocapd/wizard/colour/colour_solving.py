@@ -15,8 +15,8 @@ from mocapd.calibrate.colours.lookalikes import (
 )
 from mocapd.calibrate.colours.stroke_check import StrokeProblem, check_strokes
 from mocapd.shirt.colour.colour_model import MIN_PIXELS, ColourModel
+from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.colour.strokes import COLOURS, stroke_means
-from mocapd.trackers.colour.build import colour_model
 from mocapd.types import Bytes, Floats, LabelledPicture
 from mocapd.wizard.colour.stroke_images import encode_seen
 

@@ -7,50 +7,24 @@ colour has strokes: no two printers and dyes agree.
 import math
 import secrets
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from mocapd.body.shirt import standard_shirt
+from mocapd.body.shirt_patches import standard_shirt
 from mocapd.boundary.numbers import brief
-from mocapd.calibrate.colours.stroke_check import StrokeProblem
 from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
-from mocapd.types import Bytes, LabelledPicture
+from mocapd.types import LabelledPicture
+from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
 from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn, Solution, solve
-from mocapd.wizard.colour.freezing import Countdown, Frozen
-from mocapd.wizard.colour.proposing import LoadDatabase, pose_database, propose
-from mocapd.wizard.colour.stroke_images import decode_strokes, encode_picture, encode_strokes
+from mocapd.wizard.colour.still_pictures import Countdown, Frozen
+from mocapd.wizard.colour.stroke_images import decode_strokes
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
 from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
+from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftColours
-from mocapd.wizard.step import (
-    Context,
-    Json,
-    Problem,
-    Scene,
-    Shape,
-    StepName,
-    StepState,
-    StepView,
-    Tell,
-)
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView, Tell
 
 _COUNTDOWN_S = 3.0
-_SERVICE = "mocapd"  # who drew proposed strokes
-
-
-@dataclass(slots=True, eq=False)
-class _Canvas:
-    """One camera's picture as the page has it; `serial` grows with every change of the strokes."""
-
-    drawn: Drawn
-    jpeg: bytes
-    png: bytes
-    by: str = _SERVICE
-    serial: int = 0
-
-    def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
-        """These are the strokes now."""
-        self.drawn = Drawn(replace(self.drawn.picture, labels=strokes), shirt)
-        self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
 
 
 class ColourStep:
@@ -65,7 +39,7 @@ class ColourStep:
         self._take = 0  # of pictures
         self._countdown: Countdown | None = None
         self._now_ns = 0
-        self._canvases: dict[str, _Canvas] = {}
+        self._canvases: dict[str, Canvas] = {}
         self._solution, self._solutions = Solution({}, False, ()), 0
         self._personal = True
         self._troubles: tuple[Problem, ...] = ()
@@ -81,7 +55,7 @@ class ColourStep:
         self._context.scene(Scene.T_POSE)
         if draft.colours:
             self._personal = draft.personal
-            self._canvases = {name: _canvas(one.picture) for name, one in draft.colours.items()}
+            self._canvases = {name: canvas_of(one.picture) for name, one in draft.colours.items()}
             self._to_solve = True
 
     def tick(self, now_ns: int) -> None:
@@ -114,8 +88,7 @@ class ColourStep:
                 self._to_propose = True
             case Strokes():
                 canvas = self._canvas_of(command.camera)
-                h, w = canvas.drawn.picture.pixels.shape[:2]
-                strokes = decode_strokes(command.png_base64, (w, h), command.camera)
+                strokes = decode_strokes(command.png_base64, canvas.size_px, command.camera)
                 canvas.draw(strokes, canvas.drawn.shirt, command.by)
                 self._to_solve = True
             case Personal():
@@ -136,7 +109,7 @@ class ColourStep:
         """New pictures: old strokes are of no use, and the light may be another."""
         self._take += 1
         self._canvases = {
-            name: _canvas(LabelledPicture(one.pixels, one.pixels[..., 0] * 0))
+            name: canvas_of(LabelledPicture(one.pixels, one.pixels[..., 0] * 0))
             for name, one in frozen.frames.items()
         }
         self._solution = Solution({}, False, ())
@@ -171,7 +144,7 @@ class ColourStep:
         for name, one in found.items():
             canvas = self._canvases[name]
             if isinstance(one, Proposal) and canvas.serial == serials[name]:
-                canvas.draw(one.strokes, one.shirt, _SERVICE)
+                canvas.draw(one.strokes, one.shirt, SERVICE)
         failed = [one for one in found.values() if isinstance(one, InputError)]
         self._troubles = tuple({str(error): Problem.of(error) for error in failed}.values())
         self._to_solve = True
@@ -198,7 +171,7 @@ class ColourStep:
         }
         context.draft = replace(context.draft, colours=colours, personal=self._solution.personal)
 
-    def _canvas_of(self, camera: str) -> _Canvas:
+    def _canvas_of(self, camera: str) -> Canvas:
         if camera not in self._canvases:
             raise InputError(f"no picture of {brief(camera)}", "colour", "take the pictures first")
         return self._canvases[camera]
@@ -214,10 +187,11 @@ class ColourStep:
         overlays: dict[str, tuple[Shape, ...]] = {}
         for name, canvas in self._canvases.items():
             solved = self._solution.cameras.get(name)
-            cameras[name] = self._camera_details(name, canvas, solved, pictures)
+            base = f"colour-{self._id}-{self._take}-{name}"
+            cameras[name] = canvas.details(base, solved, self._solutions, pictures)
             if solved is not None:
-                problems += [_problem(one, name) for one in solved.problems]
-                overlays[name] = _outlines(solved)
+                problems += problems_of(solved, name)
+                overlays[name] = outlines(solved)
         shirt = standard_shirt()
         details: dict[str, Json] = {
             "phase": "countdown" if self._countdown else "frozen" if self._canvases else "aim",
@@ -237,39 +211,6 @@ class ColourStep:
         return StepView(
             state, sentence, progress, tuple(problems), overlays, details, pictures
         )  # fmt: skip
-
-    def _camera_details(
-        self,
-        name: str,
-        canvas: _Canvas,
-        solved: CameraSolution | None,
-        pictures: dict[str, bytes],
-    ) -> Json:
-        """Also puts the camera's pictures where the page finds them."""
-        base = f"colour-{self._id}-{self._take}-{name}"
-        h, w = canvas.drawn.picture.pixels.shape[:2]
-        picture, strokes = f"{base}.jpg", f"{base}-strokes-{canvas.serial}.png"
-        pictures[picture], pictures[strokes] = canvas.jpeg, canvas.png
-        seen = None
-        if solved is not None and solved.seen is not None:
-            # the bytes also change with the other cameras' strokes: the wearer's colours are common
-            seen = f"{base}-seen-{self._solutions}.png"
-            pictures[seen] = solved.seen
-        return {
-            "size": [w, h],
-            "picture": picture,
-            "strokes": strokes,
-            "by": canvas.by,
-            "seen": seen,
-            "ok": solved is not None and solved.W is not None,
-            "marks": []
-            if solved is None
-            else [list(p) for one in solved.problems for p in one.at_px],
-            "alike": []
-            if solved is None
-            else [{"name": one.name, "at": one.polygon_px.tolist()} for one in solved.alike],
-            "note": "" if solved is None else solved.note,
-        }
 
     def _left_s(self) -> int:
         return math.ceil(self._countdown.left_s(self._now_ns)) if self._countdown else 0
@@ -328,24 +269,6 @@ def _solved(
 ) -> Solution:
     tell("reading the light from the strokes", 0.5)
     return solve(drawn, personal, before)
-
-
-def _canvas(picture: LabelledPicture) -> _Canvas:
-    return _Canvas(Drawn(picture), encode_picture(picture.pixels), encode_strokes(picture.labels))
-
-
-def _problem(one: StrokeProblem, camera: str) -> Problem:
-    return Problem(one.what, camera, one.fix)
-
-
-def _outlines(solved: CameraSolution) -> tuple[Shape, ...]:
-    """What has the shirt's colours beside the wearer, outlined and named."""
-    shapes: list[Shape] = []
-    for one in solved.alike:
-        corners = tuple((float(x), float(y)) for x, y in one.polygon_px)
-        shapes.append(Shape("polygon", corners, "hint"))
-        shapes.append(Shape("text", corners[:1], "hint", one.name))
-    return tuple(shapes)
 
 
 def _listed(names: list[str]) -> str:

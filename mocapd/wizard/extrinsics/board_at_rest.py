@@ -10,7 +10,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
-from mocapd.wizard.board.board_watch import Look, Seen
+from mocapd.wizard.board.board_look import BoardObservation, Look
 
 LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
 _SAME_PX = 2.0  # corners this near are of the board at rest
@@ -26,7 +26,7 @@ class BoardAtRest:
 
     def __init__(self) -> None:
         self._looks: list[Look] = []
-        self._seen: dict[str, list[Seen]] = {}
+        self._seen: dict[str, list[BoardObservation]] = {}
 
     @property
     def since_ns(self) -> int:
@@ -59,7 +59,7 @@ class BoardAtRest:
         index = self._looks[-1].index
         return {name: _mean([seen.view for seen in own], index) for name, own in self._seen.items()}
 
-    def _moved(self, name: str, seen: Seen) -> bool:
+    def _moved(self, name: str, seen: BoardObservation) -> bool:
         before = self._seen.get(name)
         if not before:
             return False
@@ -83,12 +83,12 @@ def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
     """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
     scene = room.bundle.scene
     lying = with_board(room, -1, views).bundle.scene
-    R, t_m = lying.board_turn[-1], lying.board_t_m[-1]
-    up = -R[:, 2]
-    upright = -scene.camera_turn[:, 1].sum(axis=0)
-    level = float(up @ upright) / float(np.linalg.norm(upright)) > np.cos(_LEVEL_RAD)
-    rolls = np.abs(np.arcsin(np.clip(scene.camera_turn[:, 0] @ up, -1.0, 1.0)))
-    height_m = float((R @ centre_m(room.spec) + t_m) @ up)
+    scene_from_board, camera_axes = lying.scene_from_board[-1], scene.camera_from_scene.R
+    up = -scene_from_board.R[:, 2]
+    cameras_up = -camera_axes[:, 1].sum(axis=0)
+    level = float(up @ cameras_up) / float(np.linalg.norm(cameras_up)) > np.cos(_LEVEL_RAD)
+    rolls = np.abs(np.arcsin(np.clip(camera_axes[:, 0] @ up, -1.0, 1.0)))
+    height_m = float(scene_from_board.apply(centre_m(room.spec)) @ up)
     above = float((camera_centres(scene) @ up).min()) - height_m > _ABOVE_M
     return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
 
@@ -97,7 +97,6 @@ def _lowest_m(room: SolvedRoom, up: Floats) -> float:
     """The height under which the board is lower than wherever it was held."""
     if not room.indices:
         return float("inf")
-    scene = room.bundle.scene
-    middles = scene.board_turn @ centre_m(room.spec) + scene.board_t_m
+    middles = room.bundle.scene.scene_from_board.apply(centre_m(room.spec))
     # not the very lowest: some may be wrong
     return float(np.percentile(middles @ up, 20)) - _UNDER_M

@@ -1,0 +1,139 @@
+"""Pose and light of a body in still pictures, each refined by the other, in the work pictures of one rig.
+
+The fitted body tells which patch a pixel is of, so the white balance is solved from the patches; in
+that light the picture is classified anew and the body fitted again, until neither gains.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.fit.body_drawing import IdMapRenderer, image_scales
+from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
+from mocapd.geometry.camera_model import to_camera
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.strokes import COLOURS
+from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
+from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
+from mocapd.trackers.colour.params import Params
+from mocapd.types import Camera
+
+# turns in a row that may be no better: with one camera pose and light then drift off together
+IDLE_TURNS = 2
+LOOSE_S = 0.1
+_NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reading:
+    """A picture read in one light: the fitted body, the view it was fitted to, what the colours look
+    like, the agreement 0..1 (the share of the rendered shirt that the picture confirms, less what it
+    shows elsewhere), and how many of the colours are confirmed."""
+
+    light: str
+    fit: Fit
+    view: View
+    appearance: Appearance
+    agreement: float
+    colours: int
+
+    @property
+    def score(self) -> float:
+        """What readings are compared by. From every side a whole shirt shows all of its colours, so
+        that few of them, however well they agree, are a bookshelf."""
+        return self.agreement * self.colours / COLOURS
+
+
+class LightRefinement:
+    """The body's fitter and a segmenter a camera; keeps buffers, and each segmenter its light."""
+
+    def __init__(
+        self, cameras: Sequence[Camera], model: ColourModel, stature_m: float, params: Params
+    ) -> None:
+        self._params, self._model = params, model
+        scales = image_scales(cameras, params.fit.work_width_px)
+        self.fitter = Fitter(build_model(stature_m), tuple(cameras), scales, params.fit)
+        self.segmenters = [
+            CameraSegmenter(c, f, model, np.eye(3), params.segmentation)
+            for c, f in zip(cameras, scales, strict=True)
+        ]
+        self._arms = ArmSearch(self.fitter, params.limbs)
+        self._precision = shade_precision(model)
+
+    def drawing(self, index: int) -> IdMapRenderer:
+        """What draws a reading's body into camera `index`."""
+        return self.fitter.drawings[index]
+
+    def follow(
+        self, index: int, light: str, fit: Fit, start: Appearance, turns: range
+    ) -> Reading | None:
+        """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
+        self.segmenters[index].memory.appearance = start
+        best: Reading | None = None
+        idle = 0
+        for turn in turns:
+            view = self.classify(index, fit)
+            if view is None or idle == IDLE_TURNS:
+                break
+            idle += 1
+            fit = self.fit(fit.state, [view], turn)
+            appearance = self.segmenters[index].memory.appearance
+            agreement, colours = fit.explained, fit.confirmed_colours()
+            reading = Reading(light, fit, view, appearance, agreement, colours)
+            if best is None or reading.score > best.score:
+                best, idle = reading, 0
+            self.relight(index, fit.state, view)
+        return best
+
+    def fit(self, state: MotionState, views: list[View], turn: int) -> Fit:
+        """The body in these views, its arms searched for."""
+        fit = self.fitter.fit(state, views, LOOSE_S, self._params.fit.iterations, learn_shape=False)
+        return self._arms.improve(fit, views, LOOSE_S, turn, learn_shape=False)[0]
+
+    def classify(self, index: int, fit: Fit) -> View | None:
+        """The picture's colours, given where the body was; None when it left the picture."""
+        drawing = self.drawing(index)
+        if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
+            return None
+        roi = drawing.region(fit.state, 0.0, self._params.segmentation.uncertain_margin_px)
+        if roi is None:
+            return None
+        predicted = drawing.render(fit.state, 0.0, roi)
+        # no arm is called uncertain: looked for far away, its colours are found in the room, whose
+        # background is not known yet
+        ids, pixel_weight = self.segmenters[index].classify(
+            predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
+        )
+        return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
+
+    def relight(self, index: int, state: MotionState, view: View) -> None:
+        """Read on in the light that the fitted body's patches ask for."""
+        segmenter = self.segmenters[index]
+        rendered = self.drawing(index).render(state, 0.0, view.roi)
+        sums = np.zeros((10, 4))
+        colour_statistics(
+            segmenter.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums
+        )
+        n = sums[:, 0]
+        means = sums[:, 3:0:-1] / np.maximum(n, 1.0)[:, None]
+        before = segmenter.memory.appearance.W
+        W = solve_white_balance(means, self._model.mean, n, before, precision=self._precision)
+        segmenter.memory.appearance = Appearance(W, sums)
+
+    def judged_alone(self, reading: Reading) -> Reading:
+        """The reading judged by its own camera alone."""
+        view = reading.view
+        rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
+        n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]
+        same = np.bincount(rendered[rendered == view.ids], minlength=COLOURS + 1)[1:]
+        return replace(
+            reading,
+            agreement=float(same.sum() / max(n.sum(), 1)),
+            colours=int(np.count_nonzero(confirmed_parts(same, n))),
+        )

@@ -1,0 +1,121 @@
+"""Where the board's corners fall in the pictures, and how that changes with intrinsics and poses.
+
+One row per observation: camera c saw corner p of the board in view v. The scene's frame is the first
+camera's.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.geometry.reprojection import project_rows, projection_jacobians
+from mocapd.geometry.rigid_transforms import RigidTransform
+from mocapd.geometry.rotation_matrices import cross_matrices, exp_matrices, left_jacobians
+from mocapd.types import Floats, Ints
+
+POSE = 6  # a step of a pose: left rotation vector [rad], shift [m]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observations:
+    """N corners seen: camera (N,), view (N,), point_m (N,3) in the board's frame, pixels (N,2)."""
+
+    camera: Ints
+    view: Ints
+    point_m: Floats
+    pixels: Floats
+
+    def of(self, keep: NDArray[np.bool_]) -> "Observations":
+        """Those of a mask (N,)."""
+        return Observations(
+            self.camera[keep], self.view[keep], self.point_m[keep], self.pixels[keep]
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReprojectionProblem:
+    """C cameras and V board positions.
+
+    intrinsics (C,9); camera_from_scene (C,); scene_from_board (V,); delay (C,): how much later a camera
+    exposes than the first, in frames; path (V,2,6): how the board moves on from each position, see
+    `board_motion.paths`.
+    """
+
+    intrinsics: Floats
+    camera_from_scene: RigidTransform
+    scene_from_board: RigidTransform
+    delay: Floats
+    path: Floats
+
+
+def stepped_problem(
+    scene: ReprojectionProblem, intrinsics: Floats, cameras: Floats, boards: Floats, delay: Floats
+) -> ReprojectionProblem:
+    """The scene with steps added: intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,)."""
+    return ReprojectionProblem(
+        scene.intrinsics + intrinsics,
+        _stepped(scene.camera_from_scene, cameras),
+        _stepped(scene.scene_from_board, boards),
+        scene.delay + delay,
+        scene.path,
+    )
+
+
+def _stepped(poses: RigidTransform, steps: Floats) -> RigidTransform:
+    """Rotation and translation each with its own part of the steps (N,6)."""
+    return RigidTransform(exp_matrices(steps[:, :3]) @ poses.R, poses.t_m + steps[:, 3:])
+
+
+def residuals_px(scene: ReprojectionProblem, seen: Observations) -> Floats:
+    """(N,2): projected minus observed."""
+    arm_m, origin_m, _ = _on_its_way(scene, seen)
+    points_m = scene.camera_from_scene[seen.camera].apply(arm_m + origin_m)
+    return project_rows(scene.intrinsics[seen.camera], points_m) - seen.pixels
+
+
+def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats, Floats, Floats]:
+    """Of the corners, where the board is when their camera exposes.
+
+    From the board's origin to the corner (N,3) [m], that origin (N,3) [m], and the rotation (N,3,3)
+    since the position's own instant; in the scene.
+    """
+    delay = scene.delay[seen.camera, None]
+    path = scene.path[seen.view]
+    way = delay * path[:, 0] + delay**2 * path[:, 1]
+    since = exp_matrices(way[:, :3])
+    scene_from_board = scene.scene_from_board[seen.view]
+    at_rest_m = scene_from_board.rotate(seen.point_m)
+    return (
+        np.einsum("nij,nj->ni", since, at_rest_m),
+        scene_from_board.t_m + way[:, 3:],
+        since,
+    )
+
+
+def jacobians(
+    scene: ReprojectionProblem, seen: Observations, cameras: Floats, boards: Floats
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """d residual by intrinsics (N,2,9), the camera's step (N,2,6), the board's (N,2,6), delay (N,2,1).
+
+    `scene` already has the steps `cameras` (C,6) and `boards` (V,6).
+    """
+    arm_m, origin_m, since = _on_its_way(scene, seen)
+    camera_from_scene = scene.camera_from_scene[seen.camera]
+    turned_m = camera_from_scene.rotate(arm_m + origin_m)
+    by_intrinsics, by_point = projection_jacobians(
+        scene.intrinsics[seen.camera], turned_m + camera_from_scene.t_m
+    )
+    spin = left_jacobians(cameras[:, :3])[seen.camera]
+    by_camera = np.concatenate([-by_point @ cross_matrices(turned_m) @ spin, by_point], axis=2)
+    by_scene = by_point @ camera_from_scene.R
+    spin = left_jacobians(boards[:, :3])[seen.view]
+    at_rest_m = scene.scene_from_board[seen.view].rotate(seen.point_m)
+    by_turn = -by_scene @ since @ cross_matrices(at_rest_m) @ spin
+    by_board = np.concatenate([by_turn, by_scene], axis=2)
+    path, delay = scene.path[seen.view], scene.delay[seen.camera, None]
+    speed = path[:, 0] + 2.0 * delay * path[:, 1]
+    way = delay * path[:, 0] + delay**2 * path[:, 1]
+    turning = np.einsum("nij,nj->ni", left_jacobians(way[:, :3]), speed[:, :3])
+    velocity = np.cross(turning, arm_m) + speed[:, 3:]
+    return by_intrinsics, by_camera, by_board, by_scene @ velocity[..., None]

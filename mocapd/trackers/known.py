@@ -1,0 +1,34 @@
+"""What a tracker takes from the calibration: rig, stature, proportions; and the errors when it lacks them."""
+
+from mocapd.body.shape import BodyShape, mean_shape, measured_shape
+from mocapd.calibration.record import Calibration
+from mocapd.errors import ConfigError
+from mocapd.types import Rig
+
+
+def stature_m(calibration: Calibration) -> float:
+    """The wearer's height [m]. Raises ConfigError where it is not known."""
+    if calibration.wearer.stature_m is None:
+        raise ConfigError(
+            "the wearer's height is not known", "tracker.stature_m", "give it in metres"
+        )
+    return calibration.wearer.stature_m
+
+
+def known_shape(calibration: Calibration) -> BodyShape:
+    """The wearer's proportions as measured, else the mean body's. Raises ConfigError without a stature."""
+    factors = calibration.wearer.shape_factors
+    if factors is None:
+        return mean_shape(stature_m(calibration))
+    return measured_shape(stature_m(calibration), factors.copy())
+
+
+def known_rig(calibration: Calibration) -> Rig:
+    """The calibrated cameras. Raises ConfigError without."""
+    if calibration.rig is None:
+        raise ConfigError(
+            "the cameras are not calibrated",
+            "rig",
+            "calibrate them, or give a rig file (rig = ..., or --rig)",
+        )
+    return calibration.rig

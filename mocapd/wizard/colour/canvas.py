@@ -1,0 +1,82 @@
+"""One camera's picture with its strokes, as the page has it: drawn on, and shown with what was solved from it."""
+
+from dataclasses import dataclass, replace
+
+from mocapd.types import Bytes, LabelledPicture
+from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn
+from mocapd.wizard.colour.stroke_images import encode_picture, encode_strokes
+from mocapd.wizard.step import Json, Problem, Shape
+
+SERVICE = "mocapd"  # who drew proposed strokes
+
+
+@dataclass(slots=True, eq=False)
+class Canvas:
+    """One camera's picture as the page has it; `serial` grows with every change of the strokes."""
+
+    drawn: Drawn
+    jpeg: bytes
+    png: bytes
+    by: str = SERVICE
+    serial: int = 0
+
+    def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
+        """These are the strokes now."""
+        self.drawn = Drawn(replace(self.drawn.picture, labels=strokes), shirt)
+        self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width and height of the picture."""
+        height, width = self.drawn.picture.pixels.shape[:2]
+        return width, height
+
+    def details(
+        self, base: str, solved: CameraSolution | None, solutions: int, pictures: dict[str, bytes]
+    ) -> Json:
+        """What the page is told of it; puts the camera's pictures, called `base`..., where it finds them.
+
+        solutions: how many there were so far.
+        """
+        picture, strokes = f"{base}.jpg", f"{base}-strokes-{self.serial}.png"
+        pictures[picture], pictures[strokes] = self.jpeg, self.png
+        seen = None
+        if solved is not None and solved.seen is not None:
+            # the bytes also change with the other cameras' strokes: the wearer's colours are common
+            seen = f"{base}-seen-{solutions}.png"
+            pictures[seen] = solved.seen
+        return {
+            "size": list(self.size_px),
+            "picture": picture,
+            "strokes": strokes,
+            "by": self.by,
+            "seen": seen,
+            "ok": solved is not None and solved.W is not None,
+            "marks": []
+            if solved is None
+            else [list(p) for one in solved.problems for p in one.at_px],
+            "alike": []
+            if solved is None
+            else [{"name": one.name, "at": one.polygon_px.tolist()} for one in solved.alike],
+            "note": "" if solved is None else solved.note,
+        }
+
+
+def canvas_of(picture: LabelledPicture) -> Canvas:
+    """A canvas with these strokes on it."""
+    return Canvas(Drawn(picture), encode_picture(picture.pixels), encode_strokes(picture.labels))
+
+
+def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:
+    """What is wrong with the strokes of a camera."""
+    return [Problem(one.what, camera, one.fix) for one in solved.problems]
+
+
+def outlines(solved: CameraSolution) -> tuple[Shape, ...]:
+    """What has the shirt's colours beside the wearer, outlined and named."""
+    shapes: list[Shape] = []
+    for one in solved.alike:
+        corners = tuple((float(x), float(y)) for x, y in one.polygon_px)
+        shapes.append(Shape("polygon", corners, "hint"))
+        shapes.append(Shape("text", corners[:1], "hint", one.name))
+    return tuple(shapes)

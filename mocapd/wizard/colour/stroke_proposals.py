@@ -1,0 +1,95 @@
+"""Strokes proposed on the frozen pictures with what the setup knows by now: rig, lenses, stature."""
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M
+from mocapd.calibrate.colours.stroke_proposal import (
+    Proposal,
+    propose_strokes,
+    propose_strokes_together,
+)
+from mocapd.errors import InputError
+from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.shirt.colour.from_pictures import colour_model
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.pose_database.database_file import load_or_build
+from mocapd.types import Bytes, Camera
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.step import Tell
+
+_THREADS = 2  # the kernels let others run beside them
+_LOOKING = "looking for the shirt in any light"
+_LOADED = 0.1  # share of the work when the database is there
+
+
+LoadDatabase = Callable[[Path, Tell], PoseDatabase]
+
+
+def pose_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
+    """From the cache, or made, which takes a minute or two."""
+    tell("loading the pose database", 0.0)
+    with ThreadPoolExecutor(_THREADS) as pool:
+        return load_or_build(
+            cache_dir,
+            progress=lambda share: tell("making the pose database, once only", _LOADED * share),
+            map_chunks=pool.map,
+        ).database
+
+
+def propose(
+    pictures: Mapping[str, Bytes],
+    draft: Draft,
+    cache_dir: Path,
+    tell: Tell,
+    load: LoadDatabase = pose_database,
+) -> dict[str, Proposal | InputError]:
+    """By camera: strokes, or why there are none. Raises nothing but the database's CannotCreateError."""
+    database = load(cache_dir, tell)
+    model = colour_model(())
+    stature_m = draft.stature_m if draft.stature_m is not None else MEAN_STATURE_M
+    tell(_LOOKING, _LOADED)
+    rig = draft.rig
+    if rig is not None and len(pictures) > 1 and set(pictures) <= set(rig.names):
+        try:
+            with ThreadPoolExecutor(_THREADS) as pool:
+                found = propose_strokes_together(
+                    pictures, rig, model, database, stature_m,
+                    lambda share: tell(_LOOKING, _LOADED + (1.0 - _LOADED) * share), pool.map,
+                )  # fmt: skip
+        except InputError as error:
+            return dict.fromkeys(pictures, error)
+        return {name: found.get(name) or _nobody(name) for name in pictures}
+    done: list[str] = []
+
+    def alone(name: str) -> Proposal | InputError:
+        try:
+            return propose_strokes(pictures[name], _camera(name, draft), model, database, stature_m)
+        except InputError as error:
+            return error
+        finally:
+            done.append(name)
+            tell(_LOOKING, _LOADED + (1.0 - _LOADED) * len(done) / len(pictures))
+
+    with ThreadPoolExecutor(_THREADS) as pool:
+        return dict(zip(pictures, pool.map(alone, pictures), strict=True))
+
+
+def _nobody(camera: str) -> InputError:
+    return InputError(
+        "no shirt was found under any light",
+        camera,
+        "stand where this camera sees the whole upper body, or draw the strokes by hand",
+    )
+
+
+def _camera(name: str, draft: Draft) -> Camera | None:
+    """The camera with its lens, its place guessed; None when its lens is not known."""
+    if draft.rig is not None and name in draft.rig.names:
+        return draft.rig.cameras[draft.rig.names.index(name)]
+    lens = draft.lenses.get(name)
+    if lens is None:
+        return None
+    usual = nominal_rig(name, lens.size_px).cameras[0]
+    return Camera(name, lens.size_px, lens.K, lens.dist, usual.R, usual.t_m)

@@ -1,0 +1,114 @@
+"""The extrinsics from the sightings of the steps Lens and Room: what the step Room's job does."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.extrinsics.board_extrinsics import (
+    BoardExtrinsicsParams,
+    ContradictionError,
+    PlacedRoom,
+    SolvedRoom,
+    placed,
+    solve_room,
+)
+from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
+from mocapd.calibrate.intrinsics.intrinsics_priors import KnownLenses, LensPriors
+from mocapd.calibrate.intrinsics.views import Choice, chosen_views
+from mocapd.calibration.board_spec import BoardSpec
+from mocapd.geometry.reprojection import intrinsics_row
+from mocapd.wizard.board.sightings import Views
+from mocapd.wizard.draft import DraftCamera
+
+# positions are never of neighbouring frames, so no motion is followed: one round is enough
+PARAMS = BoardExtrinsicsParams(bundle=BundleParams(rounds=1))
+_ALONE = Choice(most=12)  # pictures of one camera alone, for its lens
+_OWN_VIEWS = 8  # with fewer pictures its lens is taken as it was measured before
+_MOST_REFUSED = 0.15  # of the corners; above, the cameras have been moved between the steps
+# Deviations of a lens that was measured before: of the middle [picture widths] and of k1 k2 p1 p2 k3.
+_MIDDLE = 0.004
+_DIST = (0.02, 0.05, 0.001, 0.001, 0.05)
+
+
+def solve_live(
+    cameras: Sequence[DraftCamera],
+    lenses: Mapping[str, Intrinsics],
+    spec: BoardSpec,
+    views: Views,
+    earlier: frozenset[int],
+) -> tuple[SolvedRoom, PlacedRoom]:
+    """The room, and where it is placed as long as no floor is known.
+
+    `earlier`: indices of moments from the lens step. If the room does not fit with them, the cameras
+    may have been moved since, and it is solved without. Raises ConfigError.
+    """
+    try:
+        found = _solved(cameras, lenses, spec, views)
+        if not earlier or _refused(found[0]) <= _MOST_REFUSED:
+            return found
+    except ContradictionError:
+        if not earlier:
+            raise
+    return _solved(cameras, lenses, spec, _apart(views, earlier))
+
+
+def _solved(
+    cameras: Sequence[DraftCamera], lenses: Mapping[str, Intrinsics], spec: BoardSpec, views: Views
+) -> tuple[SolvedRoom, PlacedRoom]:
+    names = [camera.id for camera in cameras]
+    sizes_px = [camera.size_px for camera in cameras]
+    chosen = {camera.id: _chosen(camera, views) for camera in cameras}
+    known = _known([lenses[name] for name in names], [_alone(name, views) for name in names])
+    bundle = replace(PARAMS.bundle, priors=LensPriors(known=known))
+    room = solve_room(names, sizes_px, lenses, chosen, spec, replace(PARAMS, bundle=bundle))
+    return room, placed(room, None, "", PARAMS)
+
+
+def _alone(name: str, views: Views) -> list[BoardView]:
+    """This camera's views that no other shares."""
+    others = {i for other, own in views.items() if other != name for i in own}
+    return [view for index, view in views[name].items() if index not in others]
+
+
+def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
+    """All that are shared, and the best of those alone."""
+    alone = _alone(camera.id, views)
+    kept = {view.index for view in chosen_views(alone, camera.size_px, _ALONE)}
+    dropped = {view.index for view in alone} - kept
+    return {index: view for index, view in views[camera.id].items() if index not in dropped}
+
+
+def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownLenses:
+    """Lenses without pictures of their own stay near what was measured."""
+    rows = np.stack([intrinsics_row(lens.K, lens.dist) for lens in lenses])
+    deviation = np.full(rows.shape, np.inf)
+    for i, (lens, views) in enumerate(zip(lenses, alone, strict=True)):
+        if len(views) >= _OWN_VIEWS:
+            continue
+        focal = max(lens.focal_deviation if np.isfinite(lens.focal_deviation) else 0.005, 0.001)
+        deviation[i, :2] = focal * rows[i, :2]
+        deviation[i, 2:4] = _MIDDLE * lens.size_px[0]
+        deviation[i, 4:] = _DIST
+    return KnownLenses(rows, deviation)
+
+
+def _refused(room: SolvedRoom) -> float:
+    return 1.0 - float(np.mean(room.bundle.used))
+
+
+def _apart(views: Views, earlier: frozenset[int]) -> dict[str, dict[int, BoardView]]:
+    """The same views, those of earlier moments each as of one camera alone."""
+    free = 1 + max((index for own in views.values() for index in own), default=0)
+    out: dict[str, dict[int, BoardView]] = {}
+    for name, own in views.items():
+        out[name] = {}
+        for index, view in own.items():
+            if index in earlier:
+                free += 2
+                out[name][free] = replace(view, index=free)
+            else:
+                out[name][index] = view
+    return out

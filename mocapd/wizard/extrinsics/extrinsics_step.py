@@ -1,0 +1,99 @@
+"""The step Room: where the cameras stand, with the board or from the wearer alone.
+
+Its commands are `commands.ROOM` and the method's own.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Protocol
+
+from mocapd.errors import InputError, MocapdError
+from mocapd.wizard.commands import ROOM, Command, Method, Verbs
+from mocapd.wizard.context import Context
+from mocapd.wizard.extrinsics.extrinsics_with_board import BoardRoom
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
+from mocapd.wizard.step import StepName, StepView
+
+
+class RoomMethod(Protocol):
+    """A way to find the room: as a Step, which see, but for the name."""
+
+    @property
+    def verbs(self) -> Verbs: ...
+    def enter(self) -> None: ...
+    def tick(self, now_ns: int) -> None: ...
+    def command(self, command: Command) -> None: ...
+    def job_failed(self, error: MocapdError) -> None: ...
+    def view(self) -> StepView: ...
+    def leave(self) -> None: ...
+
+
+METHODS: Mapping[str, Callable[[Context], RoomMethod]] = MappingProxyType(
+    {"board": BoardRoom, "wearer": WearerRoom}
+)
+
+
+class RoomStep:
+    """Hands everything on to the method that was chosen; the board's to begin with."""
+
+    name = StepName.ROOM
+
+    def __init__(self, context: Context) -> None:
+        """Raises InputError when lenses are missing."""
+        missing = [
+            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.lenses
+        ]
+        if missing or not context.draft.cameras:
+            raise InputError(
+                f"the lens of {', '.join(missing)} is not known" if missing else "no cameras",
+                "room",
+                "do the step Lens first",
+            )
+        self._context = context
+        self._method_name = "board"
+        self._method: RoomMethod = METHODS["board"](context)
+
+    def enter(self) -> None:
+        """See Step."""
+        self._method.enter()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._method.tick(now_ns)
+
+    @property
+    def verbs(self) -> Verbs:
+        """See Step."""
+        return {**self._method.verbs, **ROOM}
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        if isinstance(command, Method):
+            self._choose("wearer" if command.wearer else command.method)
+        else:
+            self._method.command(command)
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        self._method.job_failed(error)
+
+    def view(self) -> StepView:
+        """See Step."""
+        view = self._method.view()
+        details = {**view.details, "method": self._method_name, "methods": list(METHODS)}
+        return replace(view, details=details)
+
+    def leave(self) -> None:
+        """See Step."""
+        self._method.leave()
+
+    def _choose(self, name: str) -> None:
+        if name == self._method_name:
+            return
+        if self._context.job is not None:
+            raise InputError("something is being worked out", "room", "wait a moment")
+        made = METHODS[name](self._context)
+        self._method.leave()
+        self._method_name, self._method = name, made
+        made.enter()

@@ -1,0 +1,324 @@
+"""The room with the board: held where cameras see it together, then laid on the floor.
+
+Its commands are `commands.BOARD_ROOM`.
+"""
+
+from dataclasses import replace
+from enum import StrEnum
+from itertools import combinations
+
+from mocapd.calibrate.extrinsics.board_extrinsics import (
+    ContradictionError,
+    PlacedRoom,
+    SolvedRoom,
+    lone_camera,
+    placed,
+    with_board,
+)
+from mocapd.errors import ConfigError, InputError, MocapdError
+from mocapd.wizard.board.board_advice import BoardAdvice
+from mocapd.wizard.board.board_form import usual_board
+from mocapd.wizard.board.board_look import Look
+from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
+from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
+from mocapd.wizard.context import Context
+from mocapd.wizard.draft import RoomQuality
+from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
+from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
+from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
+from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
+from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
+
+_PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
+
+
+class RoomPhase(StrEnum):
+    """How far it has come."""
+
+    COLLECT = "collect"
+    FLOOR = "floor"
+    DONE = "done"
+
+
+class BoardRoom:
+    """See the head of this file. The draft is changed when the floor is known or skipped."""
+
+    verbs = BOARD_ROOM
+
+    def __init__(self, context: Context) -> None:
+        draft = context.draft
+        self._context = context
+        self._cameras = draft.cameras
+        self._spec = draft.board or usual_board()
+        self._seen = self._begin_anew()
+        known = {index for own in draft.board_views.values() for index in own}
+        self._earlier = frozenset(known)
+        first = INDEX_STEP * (max(known, default=0) // INDEX_STEP + 1)
+        self._watch = BoardWatch(
+            context.hub, [camera.id for camera in self._cameras], self._spec, first
+        )
+        self._advice = BoardAdvice(context, lambda _spec: None)
+        self._rest = BoardAtRest()
+        self._stage = RoomPhase.COLLECT
+        self._asked = False  # by hand, to solve with what there is
+        self._solving = False
+        self._now_ns = 0
+        self._begun_ns: int | None = None
+        self._refusal: Problem | None = None
+        self._room: SolvedRoom | None = None
+        self._made: PlacedRoom | None = None
+        self._plan: Json = None
+
+    # -- as a Step -------------------------------------------------------------------------------
+
+    def enter(self) -> None:
+        """See Step."""
+        self._watch.start()
+        if len(self._cameras) == 1:
+            one = self._cameras[0]
+            lens = self._context.draft.lenses[one.id]
+            self._room = lone_camera(one.id, one.size_px, lens, self._spec)
+            self._to_floor()
+        else:
+            self._context.scene(Scene.ROOM)
+
+    def leave(self) -> None:
+        """See Step."""
+        self._watch.stop()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._now_ns = now_ns
+        self._begun_ns = now_ns if self._begun_ns is None else self._begun_ns
+        if self._stage is RoomPhase.DONE:
+            return
+        look = self._watch.look()
+        if look is not None:
+            self._advice.take(look)
+            if self._stage is RoomPhase.COLLECT:
+                self._seen.offer(look)
+            else:
+                self._watch_floor(look)
+            self._advice.ask(now_ns, look.frames, self._spec)
+        if (
+            self._stage is RoomPhase.COLLECT
+            and self._context.job is None
+            and (self._asked or self._seen.due)
+        ):
+            self._solve()
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Floor():
+                self._floor_by_hand()
+            case SkipFloor():
+                self._skip_floor()
+            case Solve():
+                if self._stage is not RoomPhase.COLLECT or not self._seen.solvable:
+                    raise InputError(
+                        "there is nothing to solve yet",
+                        "room",
+                        "show the board to pairs of cameras",
+                    )
+                self._asked = True
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        if not self._solving:
+            return
+        self._solving = False
+        self._refusal = Problem.of(error)
+        if isinstance(error, ContradictionError):
+            # nothing tells which of them are wrong
+            self._seen = self._begin_anew()
+
+    def view(self) -> StepView:
+        """See Step."""
+        state = StepState.WAITING
+        if self._stage is RoomPhase.DONE:
+            state = StepState.DONE
+        elif self._solving:
+            state = StepState.WORKING
+        elif self._refusal is not None:
+            state = StepState.FAILED
+        overlays = self._watch.shapes(self._now_ns, self._seen.still_px())
+        return StepView(
+            state,
+            self._sentence(),
+            self._progress(),
+            self._problems(),
+            {} if self._stage is RoomPhase.DONE else overlays,
+            self._details(),
+        )
+
+    # -- sightings -------------------------------------------------------------------------------
+
+    def _begin_anew(self) -> BoardCollection:
+        """With those of the step Lens only."""
+        return BoardCollection(self._cameras, self._spec, self._context.draft.board_views)
+
+    def _solve(self) -> None:
+        self._seen.try_now()
+        self._asked, self._solving = False, True
+        views, earlier = self._seen.views, self._earlier
+        cameras, spec, lenses = self._cameras, self._spec, dict(self._context.draft.lenses)
+
+        def job(tell: Tell) -> tuple[SolvedRoom, PlacedRoom]:
+            tell("the room", 0.0)
+            return solve_live(cameras, lenses, spec, views, earlier)
+
+        def done(found: tuple[SolvedRoom, PlacedRoom]) -> None:
+            self._solving = False
+            self._room, self._made = found
+            self._plan = plan_of(*found)
+            self._to_floor()
+
+        self._context.start_job(job, done)
+
+    # -- floor -----------------------------------------------------------------------------------
+
+    def _to_floor(self) -> None:
+        self._stage, self._refusal = RoomPhase.FLOOR, None
+        self._rest.forget()
+        self._context.scene(Scene.FLOOR)
+
+    def _watch_floor(self, look: Look) -> None:
+        still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
+        self._rest.take(look, still)
+        if self._room is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
+            return
+        try:
+            if looks_like_floor(self._room, self._rest.views()):
+                self._lay_down()
+        except ConfigError as error:
+            self._refusal = Problem.of(error)
+            self._rest.forget()
+
+    def _floor_by_hand(self) -> None:
+        if self._room is None:
+            raise InputError(
+                "the cameras' places are not known yet", "room", "hold the board before the cameras"
+            )
+        if not self._rest.seen:
+            raise InputError(
+                "no camera sees the board lie still",
+                "the floor",
+                "lay it on the floor, printed side up, where a camera sees all of it",
+            )
+        try:
+            self._lay_down()
+        except ConfigError as error:
+            self._rest.forget()
+            raise InputError(error.what, error.where, error.fix) from None
+
+    def _lay_down(self) -> None:
+        """Raises ConfigError when the floor is none."""
+        assert self._room is not None
+        views = self._rest.views()
+        index = next(iter(views.values())).index
+        room = with_board(self._room, index, views)
+        self._finish(room, placed(room, index, "the floor", PARAMS), floor_known=True)
+
+    def _skip_floor(self) -> None:
+        if self._room is None or self._made is None:
+            raise InputError(
+                "the cameras' places are not known yet",
+                "room",
+                "lay the board on the floor"
+                if len(self._cameras) == 1
+                else "hold the board before the cameras",
+            )
+        self._finish(self._room, self._made, floor_known=False)
+
+    def _finish(self, room: SolvedRoom, made: PlacedRoom, floor_known: bool) -> None:
+        self._stage, self._refusal = RoomPhase.DONE, None
+        self._room, self._made, self._plan = room, made, plan_of(room, made)
+        area = made.play_area
+        self._context.draft = replace(
+            self._context.draft,
+            board=self._spec,
+            board_views=self._seen.views,
+            rig=made.rig,
+            floor_known=floor_known,
+            room=RoomQuality(
+                "board",
+                made.rms_px,
+                {name: fit.rms_px for name, fit in made.cameras.items()},
+                float("nan") if area is None else area.median_cm,
+            ),
+        )
+        self._context.scene(Scene.EMPTY)
+
+    # -- what is told ----------------------------------------------------------------------------
+
+    def _sentence(self) -> str:
+        if self._stage is RoomPhase.DONE:
+            return "The room is known. Go on to the colours."
+        if self._stage is RoomPhase.FLOOR:
+            if self._rest.seen:
+                return "Leave the board where it lies."
+            return (
+                "Lay the board on the floor, printed side up, in the middle of where players stand."
+            )
+        if self._solving:
+            return "Working out where the cameras stand. You can go on showing the board."
+        apart = self._seen.apart()
+        if apart and len(self._cameras) > 2:
+            name = apart[0].label or apart[0].id
+            return f"Hold the board where {name} and another camera see it; keep it still for a moment."
+        return "Hold the board where the cameras see it together, here and there; keep it still each time."
+
+    def _progress(self) -> float:
+        if self._stage is RoomPhase.DONE:
+            return 1.0
+        if self._stage is RoomPhase.FLOOR:
+            return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
+        return 0.7 * self._seen.progress
+
+    def _problems(self) -> tuple[Problem, ...]:
+        told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
+        if self._stage is RoomPhase.DONE:
+            if not self._context.draft.floor_known:
+                told.append(
+                    Problem(
+                        "the floor is guessed: up from the cameras, height from the board's lowest place",
+                        "the floor",
+                        "begin again and lay the board on the floor for a true one",
+                    )
+                )
+            return tuple(told)
+        told += [self._refusal] if self._refusal is not None else []
+        patient = self._begun_ns is None or self._now_ns - self._begun_ns < _PATIENCE_NS
+        if self._stage is RoomPhase.COLLECT and not patient:
+            told += [
+                Problem(
+                    "it never sees the board at the same moment as another camera",
+                    camera.label or camera.id,
+                    "hold the board still where it and another camera see it, or turn them together",
+                )
+                for camera in self._seen.lonely()
+            ]
+        # on the floor one camera that sees the board is enough
+        wanted = {camera.id: self._stage is RoomPhase.COLLECT for camera in self._cameras}
+        return (*told, *self._advice.problems(self._now_ns, wanted))
+
+    def _details(self) -> dict[str, Json]:
+        return {
+            "stage": self._stage.value,
+            "solving": self._solving,
+            "names": {camera.id: camera.label or camera.id for camera in self._cameras},
+            "moments": self._seen.count,
+            "enough": ENOUGH,
+            "pairs": [
+                {"a": a.id, "b": b.id, "shared": self._seen.shared(a, b)}
+                for a, b in combinations(self._cameras, 2)
+            ],
+            "at_rest": self._rest.seen,
+            "can_solve": self._stage is RoomPhase.COLLECT and self._seen.solvable,
+            "can_skip_floor": self._stage is RoomPhase.FLOOR and self._made is not None,
+            "floor_known": self._stage is RoomPhase.DONE and self._context.draft.floor_known,
+            "quality": None if self._made is None else quality_of(self._made),
+            "plan": self._plan,
+        }

@@ -1,0 +1,241 @@
+"""The room without a board: the wearer in the shirt walks about for 20 to 30 s.
+
+Its commands are `commands.WEARER_ROOM`.
+
+It needs lenses, colours and stature. A room that is there already, of cameras that were bumped since, is
+where the search begins.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.errors import InputError, MocapdError
+from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
+from mocapd.wizard.commands import WEARER_ROOM, Command, StartWalk, StopWalk
+from mocapd.wizard.context import Context
+from mocapd.wizard.draft import RoomQuality
+from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
+from mocapd.wizard.extrinsics.walk_coverage import WalkParams
+from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerFound, walk_and_solve
+from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, StepView
+
+_SHOWN_PLACES = 12  # of the wearer's way, in the picture of the room
+
+
+class WearerRoom:
+    """See the head of this file. The draft is changed when the room is found."""
+
+    name = StepName.ROOM
+    verbs = WEARER_ROOM
+
+    def __init__(
+        self,
+        context: Context,
+        load: LoadDatabase = pose_database,
+        params: WalkParams | None = None,
+    ) -> None:
+        self._context, self._load = context, load
+        self._params = params if params is not None else WalkParams()
+        self._walk: Walk | None = None  # while a job runs
+        self._walk_next = False
+        self._refusal: Problem | None = None
+        self._found: WearerFound | None = None
+
+    # -- as a Step -------------------------------------------------------------------------------
+
+    def enter(self) -> None:
+        """See Step."""
+        self._context.scene(Scene.MOVING)
+
+    def leave(self) -> None:
+        """The job ends for itself."""
+        self._stop()
+
+    def tick(self, now_ns: int) -> None:
+        """Start the job that waits."""
+        del now_ns
+        if self._walk_next and self._context.job is None:
+            self._walk_next = False
+            self._start()
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case StartWalk():
+                missing = self._missing()
+                if missing is not None:
+                    raise InputError(missing.what, missing.where, missing.fix)
+                self._stop()
+                self._walk_next = True
+            case StopWalk():
+                self._stop()
+
+    def job_failed(self, error: MocapdError) -> None:
+        """It can be begun again; the room that was there stays."""
+        self._walk = None
+        self._refusal = Problem.of(error)
+
+    # -- work ------------------------------------------------------------------------------------
+
+    def _start(self) -> None:
+        context, walk = self._context, Walk()
+        self._walk, self._refusal = walk, None
+        hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
+        load, params = self._load, self._params
+
+        def done(found: WearerFound | None) -> None:
+            if walk is not self._walk:
+                return
+            self._walk = None
+            if found is not None:
+                self._take(found)
+
+        context.start_job(
+            lambda tell: walk_and_solve(hub, draft, cache_dir, walk, tell, load, params), done
+        )
+
+    def _take(self, found: WearerFound) -> None:
+        self._found = found
+        residuals = np.array(list(found.report.residual_px.values()))
+        self._context.draft = replace(
+            self._context.draft,
+            rig=found.rig,
+            floor_known=True,
+            room=RoomQuality(
+                "wearer",
+                float(np.sqrt(np.mean(residuals**2))),
+                dict(found.report.residual_px),
+                math.nan,
+            ),
+        )
+
+    def _stop(self) -> None:
+        if self._walk is not None:
+            self._walk.stop.set()
+            self._walk = None
+        self._walk_next = False
+
+    def _missing(self) -> Problem | None:
+        """What must be known first."""
+        draft = self._context.draft
+        if len(draft.cameras) < 2:
+            return Problem("one camera makes no room", "room", "use the board, for the floor")
+        plain = [c.label or c.id for c in draft.cameras if c.id not in draft.colours]
+        if plain:
+            return Problem(
+                f"the colours of {', '.join(plain)} are not known",
+                "colour",
+                "do the step Colours first, then come back",
+            )
+        if draft.stature_m is None:
+            return Problem(
+                "the wearer's stature is not known",
+                "body",
+                "type it in the step Body first, then come back",
+            )
+        return None
+
+    # -- what is told ----------------------------------------------------------------------------
+
+    def view(self) -> StepView:
+        """See Step."""
+        state, sentence, progress = self._told()
+        return StepView(state, sentence, progress, self._problems(), {}, self._details())
+
+    @property
+    def _busy(self) -> bool:
+        return self._walk is not None or self._walk_next
+
+    def _told(self) -> tuple[StepState, str, float]:
+        """State, sentence and progress."""
+        missing = self._missing()
+        if missing is not None:
+            return StepState.WAITING, f"{missing.fix[0].upper()}{missing.fix[1:]}.", 0.0
+        if self._busy:
+            what, share = self._context.job or ("", 0.0)
+            if share >= SEEN:
+                return (
+                    StepState.WORKING,
+                    "Working out where the cameras stand. You can rest.",
+                    share,
+                )
+            return StepState.WORKING, f"{what or 'Getting ready'}.", share
+        if self._refusal is not None:
+            return StepState.FAILED, "Press “Start” to try again, or use the board.", 0.0
+        if self._found is not None:
+            return StepState.DONE, f"The room is known{self._uncertainty()}. Go on.", 1.0
+        return (
+            StepState.WAITING,
+            "Press “Start”, then walk about in the shirt for half a minute: turn, and move the arms.",
+            0.0,
+        )
+
+    def _uncertainty(self) -> str:
+        """How well, twice the standard deviations of the camera that is known worst."""
+        assert self._found is not None
+        uncertainties = self._found.report.uncertainties.values()
+        turn_deg = 2.0 * max(one.rotation_deg for one in uncertainties)
+        percent = 2.0 * max(one.distance_percent for one in uncertainties)
+        return f" to about {turn_deg:.0f}° and {percent:.0f} %"
+
+    def _problems(self) -> tuple[Problem, ...]:
+        told = list(stopped_cameras(self._context, [c.id for c in self._context.draft.cameras]))
+        missing = self._missing()
+        told += [missing] if missing is not None else []
+        told += [self._refusal] if self._refusal is not None else []
+        if self._found is not None and not self._busy and self._refusal is None:
+            told.append(
+                Problem(
+                    "a room without a board is coarser than one with it",
+                    "room",
+                    "use the board when positions matter to the centimetre",
+                )
+            )
+        return tuple(told)
+
+    def _details(self) -> dict[str, Json]:
+        found, draft = self._found, self._context.draft
+        quality: dict[str, Json] | None = None
+        plan: Json = None
+        if found is not None and draft.room is not None:
+            report = found.report
+            quality = {
+                "rms_px": round(draft.room.rms_px, 3),
+                "play_area_cm": None,
+                "cameras": {
+                    name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()
+                },
+                "rotation_deg": {
+                    name: round(one.rotation_deg, 2) for name, one in report.uncertainties.items()
+                },
+                "distance_percent": {
+                    name: round(one.distance_percent, 2)
+                    for name, one in report.uncertainties.items()
+                },
+                "match": round(report.match, 3),
+            }
+            step = max(1, len(found.walked_m) // _SHOWN_PLACES)
+            plan = {
+                **plan_of_cameras(found.rig),
+                "boards_m": np.round(found.walked_m[::step], 3).tolist(),
+            }
+        return {
+            "stage": "done" if found is not None else "collect",
+            "solving": self._busy,
+            "names": {camera.id: camera.label or camera.id for camera in draft.cameras},
+            "seen_s": {} if self._walk is None else dict(self._walk.seen_s),
+            "floor_known": found is not None,
+            "quality": quality,
+            "plan": plan,
+            "actions": self._actions(),
+        }
+
+    def _actions(self) -> list[Json]:
+        if self._busy:
+            return [{"verb": "stop", "text": "Stop"}]
+        if self._missing() is not None:
+            return []
+        return [{"verb": "walk", "text": "Start again" if self._found is not None else "Start"}]

@@ -1,0 +1,139 @@
+"""The job of the room without a board: the wearer is followed in every camera alone, then the room is solved."""
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from mocapd.calibrate.self_calibration.joint_solver import RoomReport
+from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, unplaced
+from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibration.record import ShirtColours
+from mocapd.clock import monotonic_ns, nanoseconds
+from mocapd.errors import InputError
+from mocapd.geometry.camera_model import from_camera
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
+from mocapd.types import Camera, Floats, Rig
+from mocapd.wizard.colour.stroke_proposals import LoadDatabase
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.extrinsics.walk_coverage import Coverage, WalkParams
+from mocapd.wizard.only_cameras import OnlyCameras
+from mocapd.wizard.saving import calibration_of
+from mocapd.wizard.step import Tell
+
+READY, SEEN = 0.1, 0.85  # shares of the job: the trackers are ready, enough is seen
+_TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WearerFound:
+    """The room, how good it is, and where the wearer walked (N,3) [m]."""
+
+    rig: Rig
+    report: RoomReport
+    walked_m: Floats
+
+
+@dataclass(slots=True, eq=False)
+class Walk:
+    """Between the job and the step: what was seen so far, and an early end."""
+
+    seen_s: Mapping[str, float] = field(default_factory=dict)
+    stop: threading.Event = field(default_factory=threading.Event)
+
+
+def walk_and_solve(
+    hub: FrameHub,
+    draft: Draft,
+    cache_dir: Path,
+    walk: Walk,
+    tell: Tell,
+    load: LoadDatabase,
+    params: WalkParams,
+    clock: Callable[[], int] = monotonic_ns,
+) -> WearerFound | None:
+    """The room of a draft whose lenses, colours and stature are known; None when stopped.
+
+    Raises InputError when too little was seen, ConfigError when what was seen does not agree.
+    """
+    assert draft.stature_m is not None
+    lenses = lenses_of(draft)
+    placed = replace(draft, rig=Rig(unplaced(lenses)), factors=None)
+    shirt = calibration_of(placed).shirt or ShirtColours()
+    colours = colour_model(shirt.model)
+    W = {
+        name: white_balance_of(picture, colours, plain=False)
+        for name, picture in shirt.white_balance.items()
+    }
+    database = load(cache_dir, lambda what, share: tell(what, READY * share))
+    tracks = PatchTracks(lenses, draft.stature_m, colours, W, database)
+    if not _follow(
+        hub, tracks, Coverage([c.name for c in lenses], params), walk, tell, params, clock
+    ):
+        return None
+    tell("working out where the cameras stand", SEEN)
+    near = draft.rig
+    if near is not None and set(near.names) != {camera.name for camera in lenses}:
+        near = None
+    rig, report = room_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
+    first = rig.cameras[0]
+    walked = [
+        from_camera(first, m[first.name].joints_m[0]) for m in tracks.moments if first.name in m
+    ]
+    return WearerFound(rig, report, np.array(walked).reshape(-1, 3))
+
+
+def lenses_of(draft: Draft) -> list[Camera]:
+    """The draft's cameras with their lenses; they stand anywhere."""
+    out = []
+    for camera in draft.cameras:
+        lens = draft.lenses[camera.id]
+        out.append(Camera(camera.id, camera.size_px, lens.K, lens.dist, np.eye(3), np.zeros(3)))
+    return out
+
+
+def _follow(
+    hub: FrameHub,
+    tracks: PatchTracks,
+    coverage: Coverage,
+    walk: Walk,
+    tell: Tell,
+    params: WalkParams,
+    clock: Callable[[], int],
+) -> bool:
+    """Follow the hub's frames until enough is seen; False when stopped. Raises InputError."""
+    names = frozenset(camera.name for camera in tracks.cameras)
+    collector = FrameCollector([camera.name for camera in tracks.cameras])
+    entry = OnlyCameras(collector, names)
+    give_up_ns = clock() + nanoseconds(params.patience_s)
+    hub.join(entry)
+    try:
+        while coverage.share < 1.0:
+            if walk.stop.is_set():
+                return False
+            if clock() > give_up_ns:
+                raise _too_little(coverage)
+            frames = collector.get(_TIMEOUT_S)
+            if frames is None:
+                continue
+            coverage.add(tracks.add(frames), frames.t_ns)
+            walk.seen_s = dict(coverage.seen_s)
+            tell(coverage.advice, READY + (SEEN - READY) * coverage.share)
+        return True
+    finally:
+        hub.leave(entry)
+
+
+def _too_little(coverage: Coverage) -> InputError:
+    least = min(coverage.seen_s, key=lambda name: coverage.seen_s[name])
+    return InputError(
+        f"two cameras together saw the wearer for {coverage.good_s:.0f} s only",
+        f"camera {least!r}, which saw least"
+        if coverage.seen_s[least] < coverage.good_s + 5.0
+        else "room",
+        "check the colours, walk where all cameras see the whole shirt, and begin again",
+    )

@@ -1,0 +1,289 @@
+"""The step Intrinsics: the board is shown to every camera, whose lens is solved as soon as enough was seen.
+
+Its commands are `commands.LENS`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.boundary.numbers import brief
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
+from mocapd.calibrate.intrinsics.view_picking import PickedViews
+from mocapd.calibration.board_spec import BoardSpec, corners_m
+from mocapd.errors import ConfigError, InputError, MocapdError
+from mocapd.wizard.board.board_advice import BoardAdvice
+from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
+from mocapd.wizard.board.board_look import Look
+from mocapd.wizard.board.board_watch import BoardWatch
+from mocapd.wizard.board.sightings import Moments
+from mocapd.wizard.camera_trouble import stopped_cameras
+from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
+from mocapd.wizard.context import Context
+from mocapd.wizard.intrinsics.intrinsics_views import LensCamera, LensOffer
+from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
+from mocapd.wizard.step import Problem, Scene, Shape, StepName, StepState, StepView, Tell
+
+_SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
+
+
+class LensStep:
+    """Collects pictures of the board, of all cameras at once, and solves lens after lens."""
+
+    name = StepName.LENS
+    verbs = LENS
+
+    def __init__(self, context: Context) -> None:
+        """Raises InputError without cameras."""
+        cameras = context.draft.cameras
+        if not cameras:
+            raise InputError("no camera has been chosen", "lens", "do the step Cameras first")
+        self._context = context
+        self._spec = context.draft.board or usual_board()
+        self._watch = BoardWatch(context.hub, [camera.id for camera in cameras], self._spec)
+        self._advice = BoardAdvice(context, self._found_variant)
+        self._note = ""
+        self._now_ns = 0
+        self._round = 0
+        self._solving: LensCamera | None = None
+        self._damaged: tuple[Problem, ...] = ()
+        self._begin()
+        self._offer()
+
+    # -- Step ------------------------------------------------------------------------------------
+
+    def enter(self) -> None:
+        """See Step."""
+        self._watch.start()
+        self._context.scene(Scene.LENS)
+
+    def leave(self) -> None:
+        """See Step."""
+        self._watch.stop()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self._now_ns = now_ns
+        if self._done():
+            return
+        look = self._watch.look()
+        if look is not None:
+            self._take(look, now_ns)
+        if self._context.job is None:
+            self._solve_next()
+
+    def command(self, command: Command) -> None:
+        """See Step."""
+        match command:
+            case Board():
+                self._change_board(board_of(command, self._spec))
+            case Ruler():
+                self._change_board(scaled_board(self._spec, command.mm))
+            case UseSaved(camera=None):
+                self._use_saved(list(self._cameras.values()))
+            case UseSaved(camera=str(camera)):
+                self._use_saved([self._named(camera)])
+            case MeasureLens():
+                self._named(command.camera).use(None)
+            case Finish():
+                self._finish()
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        one, self._solving = self._solving, None
+        if one is not None:
+            one.refuse(error, len(one.picked.views))
+
+    def view(self) -> StepView:
+        """See Step."""
+        cameras = self._cameras.values()
+        state = StepState.DONE if self._done() else StepState.WAITING
+        if state is StepState.WAITING and any(one.refusal and not one.lens for one in cameras):
+            state = StepState.FAILED
+        return StepView(
+            state,
+            self._sentence(),
+            float(np.mean([one.progress() for one in cameras])),
+            self._problems(),
+            self._overlays(),
+            {
+                "board": form_of(self._spec),
+                "note": self._note,
+                "cameras": {id_: one.details() for id_, one in self._cameras.items()},
+                "finishable": all(one.by_hand() is not None for one in cameras),
+                "solving": self._solving.name if self._solving is not None else None,
+            },
+        )
+
+    # -- collecting ------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        """Collect from nothing."""
+        board_m = corners_m(self._spec)
+        cameras = self._context.draft.cameras
+        self._cameras = {
+            one.id: LensCamera(one, PickedViews(one.size_px, board_m)) for one in cameras
+        }
+        self._moments = Moments({one.id: one.size_px for one in cameras}, board_m)
+        self._round += 1  # a job of the round before is not listened to
+
+    def _take(self, look: Look, now_ns: int) -> None:
+        self._advice.take(look)
+        together = self._moments.offer(look)
+        for id_, seen in look.seen.items():
+            one = self._cameras[id_]
+            if one.lens is not None or not one.picked.offer(seen.view, seen.motion_px):
+                continue
+            if not (together and self._moments.still(id_, seen)):
+                one.picked.views[-1] = self._moments.add_alone(id_, seen.view)
+        wanted = {id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].lens}
+        self._advice.ask(now_ns, wanted, self._spec)
+
+    def _found_variant(self, spec: BoardSpec) -> None:
+        ink = "light on dark" if spec.inverted else "dark on light"
+        layout = ", of the layout before OpenCV 4.6" if spec.legacy else ""
+        self._change_board(spec)
+        self._note = f"The board in the pictures is {ink}{layout}; it was set so."
+
+    def _change_board(self, spec: BoardSpec) -> None:
+        if spec == self._spec:
+            return
+        old, self._spec, self._note = self._spec, spec, ""
+        if not same_print(old, spec):
+            offers = {id_: (one.offered, one.taken) for id_, one in self._cameras.items()}
+            self._begin()
+            for id_, (offered, taken) in offers.items():
+                self._cameras[id_].offered = offered
+                self._cameras[id_].use(taken)
+        # otherwise corners stay where they are, and a lens does not mind the scale of the board
+        self._watch.change(spec)
+        self._advice.forget()
+        self._write_when_done()
+
+    # -- solving ---------------------------------------------------------------------------------
+
+    def _solve_next(self) -> None:
+        due = [one for one in self._cameras.values() if one.due()]
+        if not due:
+            return
+        one = max(due, key=lambda camera: camera.picked.progress())
+        count, board_m, begun_in = len(one.picked.views), corners_m(self._spec), self._round
+        views = tuple(one.picked.views)
+        self._solving = one
+
+        def job(tell: Tell) -> Intrinsics:
+            tell(f"the lens of {one.name}", 0.0)
+            return one.solve(views, board_m)
+
+        def done(lens: Intrinsics) -> None:
+            self._solving = None
+            if begun_in == self._round and one.lens is None:
+                one.take(lens, count)
+                self._write_when_done()
+
+        self._context.start_job(job, done)
+
+    def _finish(self) -> None:
+        for one in self._cameras.values():
+            if one.by_hand() is None:
+                raise InputError(
+                    "its lens is not known well enough yet", one.name, "show it the board on"
+                )
+        for one in self._cameras.values():
+            one.lens = one.by_hand()
+        self._write_when_done()
+
+    def _done(self) -> bool:
+        return all(one.lens is not None for one in self._cameras.values())
+
+    def _write_when_done(self) -> None:
+        if not self._done():
+            return
+        draft = self._context.draft
+        earlier = draft.board_views if draft.board and same_print(draft.board, self._spec) else {}
+        of_draft = {
+            id_ for id_, one in self._cameras.items() if one.taken and not one.taken.from_file
+        }
+        saved = {id_ for id_, one in self._cameras.items() if one.taken and one.taken.from_file}
+        self._context.draft = replace(
+            draft,
+            board=self._spec,
+            board_views={
+                id_: earlier.get(id_, {}) if id_ in of_draft else own
+                for id_, own in self._moments.views.items()
+            },
+            lenses={id_: one.lens for id_, one in self._cameras.items() if one.lens is not None},
+            lens_saved=frozenset(saved | (draft.lens_saved & of_draft)),
+        )
+
+    # -- lenses of before ------------------------------------------------------------------------
+
+    def _offer(self) -> None:
+        """A lens of this setup, else one of the file of lenses."""
+        saved: tuple[SavedLens, ...] = ()
+        try:
+            saved = read_lenses(self._context.state_dir)
+        except ConfigError as error:
+            self._damaged = (Problem.of(error),)
+        for id_, one in self._cameras.items():
+            lens = self._context.draft.lenses.get(id_)
+            found = lens_for(one.camera, saved)
+            if lens is not None and lens.size_px == one.camera.size_px:
+                one.offered = LensOffer(lens, "", from_file=False)
+            elif found is not None:
+                one.offered = LensOffer(found.lens(), f"{found.when:%Y-%m-%d}", from_file=True)
+
+    def _use_saved(self, cameras: Sequence[LensCamera]) -> None:
+        offered = [one for one in cameras if one.offered is not None]
+        if not offered:
+            raise InputError("no lens of before is known", cameras[0].name, "show it the board")
+        for one in offered:
+            one.use(one.offered)
+        self._write_when_done()
+
+    def _named(self, camera: str) -> LensCamera:
+        if camera not in self._cameras:
+            raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
+        return self._cameras[camera]
+
+    # -- what is told ----------------------------------------------------------------------------
+
+    def _sentence(self) -> str:
+        if self._done():
+            return "All lenses are known. Go on to the room."
+        left = {id_: one for id_, one in self._cameras.items() if one.lens is None}
+        seen = {
+            id_: seen
+            for id_, seen in self._watch.newest.items()
+            if id_ in left and self._now_ns - seen.t_ns <= _SEEN_NS
+        }
+        if not seen:
+            if not any(one.picked.views for one in left.values()):
+                return (
+                    "Show the board to the cameras, so near that it fills a third of the picture."
+                )
+            # of those left, the one that is nearest to its end
+            return max(left.values(), key=lambda one: one.picked.progress()).sentence()
+        one = max((left[id_] for id_ in seen), key=lambda one: one.picked.progress())
+        if all(not left[id_].picked.still(at.motion_px) for id_, at in seen.items()):
+            return "Hold the board still for a moment."
+        return one.sentence()
+
+    def _overlays(self) -> dict[str, tuple[Shape, ...]]:
+        if self._done():
+            return {}
+        corners = self._watch.shapes(self._now_ns, self._moments.still_px())
+        return {
+            id_: (*(one.cells() if one.lens is None else ()), *corners.get(id_, ()))
+            for id_, one in self._cameras.items()
+        }
+
+    def _problems(self) -> tuple[Problem, ...]:
+        left = {id_: one.lens is None for id_, one in self._cameras.items()}
+        stopped = stopped_cameras(self._context, self._cameras)
+        refused = tuple(
+            one.refusal for one in self._cameras.values() if one.refusal and not one.lens
+        )
+        advice = () if self._done() else self._advice.problems(self._now_ns, left)
+        return (*self._damaged, *stopped, *refused, *advice)

@@ -1,0 +1,181 @@
+"""One camera in the lens step: its pictures of the board, its lens, and what is said of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
+from mocapd.calibrate.intrinsics.views import GRID, Choice, chosen_views
+from mocapd.errors import MocapdError
+from mocapd.types import Floats
+from mocapd.wizard.draft import DraftCamera
+from mocapd.wizard.step import Json, Problem, Shape
+
+_LIMITS = LensLimits(focal_deviation=0.05)
+_CHOICE = Choice(most=24)
+_FIRST_TRY = 10  # pictures, whatever they lack: a refusal then says what
+_NEXT_TRY = 4  # pictures more
+_ROWS = ("upper", "middle", "lower")
+_COLUMNS = ("left", "middle", "right")
+
+
+@dataclass(frozen=True, slots=True)
+class GoodLens:
+    """When a lens ends the collecting, and when a person may end it by hand.
+
+    held_out: error in parts of the picture's width; focal_deviation: of the focal length, of itself.
+    """
+
+    held_out: float = 1.0 / 640
+    focal_deviation: float = 0.005
+    covered: float = 0.5
+    patience: int = 24  # pictures, after which twice the deviation is good too
+    by_hand: float = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LensOffer:
+    """A lens of before. when: the day it was measured, "" in this setup; from_file: of another setup."""
+
+    lens: Intrinsics
+    when: str
+    from_file: bool
+
+
+@dataclass(slots=True, eq=False)
+class LensCamera:
+    """What is known of one camera so far."""
+
+    camera: DraftCamera
+    picked: PickedViews
+    offered: LensOffer | None = None
+    taken: LensOffer | None = None  # the one that was offered, when the person took it
+    lens: Intrinsics | None = None  # that the step ends with
+    usable: Intrinsics | None = None  # the newest one that is not good enough yet
+    refusal: Problem | None = None
+    tried: int = 0  # pictures at the last try
+    good: GoodLens = field(default_factory=GoodLens)
+
+    @property
+    def name(self) -> str:
+        """What the person calls it."""
+        return self.camera.label or self.camera.id
+
+    def due(self) -> bool:
+        """Whether there are enough new pictures to try."""
+        count = len(self.picked.views)
+        if self.lens is not None:
+            return False
+        return count >= (self.tried + _NEXT_TRY if self.tried else _FIRST_TRY)
+
+    def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
+        """For a job. Raises ConfigError that says what is wrong with the pictures."""
+        chosen = chosen_views(views, self.camera.size_px, _CHOICE)
+        return solve_lens(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
+
+    def take(self, lens: Intrinsics, tried: int) -> None:
+        """The job's lens: good enough to end with, or the best so far."""
+        self.tried, self.refusal, self.usable = tried, None, lens
+        good = self.good
+        deviation = good.focal_deviation * (2.0 if tried >= good.patience else 1.0)
+        if (
+            lens.held_out_px <= good.held_out * self.camera.size_px[0]
+            and lens.focal_deviation <= deviation
+            and self.picked.covered >= good.covered
+        ):
+            self.lens = lens
+
+    def refuse(self, error: MocapdError, tried: int) -> None:
+        """The job found that these pictures give no lens."""
+        self.tried, self.refusal = tried, Problem.of(error)
+
+    def use(self, offered: LensOffer | None) -> None:
+        """The lens of before; None: a new one is measured."""
+        self.taken = offered
+        self.lens = None if offered is None else offered.lens
+        self.refusal = None
+
+    def by_hand(self) -> Intrinsics | None:
+        """The lens that a person may end with now."""
+        if self.lens is not None:
+            return self.lens
+        if self.usable is not None and self.usable.focal_deviation <= self.good.by_hand:
+            return self.usable
+        return None
+
+    def progress(self) -> float:
+        """0..1."""
+        return 1.0 if self.lens is not None else 0.95 * self.picked.progress()
+
+    def sentence(self) -> str:
+        """What to show this camera next."""
+        lack = self.picked.lack()
+        if lack is Lack.SIDEWAYS:
+            return f"{self.name}: turn the board's left or right edge towards the camera."
+        if lack is Lack.UPWARDS:
+            return f"{self.name}: tilt the board's upper or lower edge towards the camera."
+        if lack is Lack.PLACES:
+            row, column = self.picked.emptiest()
+            where = f"{_ROWS[row]} {_COLUMNS[column]}".replace("middle middle", "middle")
+            return f"{self.name}: hold the board in the {where} of the picture."
+        if self.usable is not None and self.picked.covered >= self.good.covered:
+            return f"{self.name}: show the board nearer, and tilted more."
+        return (
+            f"Show the board to {self.name}: here and there, tilted, still for a moment each time."
+        )
+
+    def cells(self) -> tuple[Shape, ...]:
+        """The coverage map over the picture."""
+        width, height = self.camera.size_px
+        across, down = width / GRID[0], height / GRID[1]
+        shapes = []
+        for (row, column), count in _counted(self.picked):
+            x, y = column * across - 0.5, row * down - 0.5
+            at = ((x, y), (x + across, y), (x + across, y + down), (x, y + down))
+            level = 1 + (count > 2) + (count > 5)
+            shapes.append(Shape("polygon", at, f"cell-{level}"))
+        return tuple(shapes)
+
+    def details(self) -> dict[str, Json]:
+        """For the page."""
+        told: dict[str, Json] = {
+            "name": self.name,
+            "views": len(self.picked.views),
+            "covered": round(self.picked.covered, 3),
+            "coverage": self.picked.counts.tolist(),
+            "progress": round(self.progress(), 3),
+            "lens": _figures(self.lens) if self.lens is not None else None,
+            "so_far": _figures(self.usable) if self.usable is not None else None,
+            "taken": self.taken is not None,
+            "offered": None,
+        }
+        if self.offered is not None:
+            told["offered"] = {**_figures(self.offered.lens), "when": self.offered.when}
+        return told
+
+
+def _counted(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
+    rows, columns = picked.counts.shape
+    return [
+        ((row, column), int(picked.counts[row, column]))
+        for row in range(rows)
+        for column in range(columns)
+        if picked.counts[row, column]
+    ]
+
+
+def _figures(lens: Intrinsics) -> dict[str, Json]:
+    return {
+        "rms_px": _rounded(lens.rms_px, 3),
+        "held_out_px": _rounded(lens.held_out_px, 3),
+        "focal_percent": _rounded(100.0 * lens.focal_deviation, 2),
+        "focal_px": _rounded(float(lens.K[0, 0]), 1),
+        "views": len(lens.views),
+        "thrown_out": len(lens.thrown_out),
+    }
+
+
+def _rounded(value: float, digits: int) -> float | None:
+    """None for NaN, which JSON has not."""
+    return round(float(value), digits) if value == value else None

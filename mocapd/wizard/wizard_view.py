@@ -1,0 +1,49 @@
+"""What the page may see of the wizard: a snapshot of its step, and which steps are done."""
+
+from dataclasses import dataclass, replace
+
+from mocapd.wizard.draft import Draft
+from mocapd.wizard.kept_setup import KeptSetup
+from mocapd.wizard.step import Json, Problem, StepName, StepState, StepView
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WizardView:
+    """A snapshot: `serial` grows with every change; steps: those there are; done: the steps whose result
+    is in the draft; refused: why the last command was not taken, None when it was."""
+
+    serial: int
+    step: StepName
+    done: frozenset[StepName]
+    view: StepView
+    refused: Problem | None
+    saved: bool
+    ended: bool
+    steps: tuple[StepName, ...] = tuple(StepName)
+
+
+def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
+    """The steps whose result is in the draft; saved: it was, since the start."""
+    ids = {camera.id for camera in draft.cameras}
+    results = {
+        StepName.CAMERAS: bool(ids),
+        StepName.LENS: bool(ids) and ids <= draft.lenses.keys(),
+        StepName.ROOM: draft.rig is not None and ids == set(draft.rig.names),
+        StepName.COLOUR: bool(ids) and ids <= draft.colours.keys(),
+        StepName.BODY: draft.stature_m is not None,
+        StepName.CHECK: saved,
+    }
+    return frozenset(name for name, is_done in results.items() if is_done)
+
+
+def with_offer(view: StepView, offer: KeptSetup) -> StepView:
+    """Nobody goes on before the choice is made."""
+    kept: Json = {
+        "when": offer.when.isoformat(),
+        "done": [name.value for name in StepName if name in offer.done],
+    }
+    view = replace(view, details={**view.details, "kept": kept})
+    if view.state is not StepState.DONE:
+        return view
+    sentence = "Say below whether to go on with the setup that is kept, or begin anew."
+    return replace(view, state=StepState.WAITING, sentence=sentence)

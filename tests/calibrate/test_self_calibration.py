@@ -1,0 +1,184 @@
+"""The room from a drawn body: what every camera would see of known poses gives the cameras back."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.model import build_model
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
+from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
+from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibrate.self_calibration.surface_residuals import free_body
+from mocapd.clock import nanoseconds
+from mocapd.errors import ConfigError
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import centre, to_camera
+from mocapd.types import Camera, Floats, Rig
+from tests.geometry.rigs import looking_at
+
+STATURE_M = 1.75
+MODEL = build_model(STATURE_M)
+CAMERAS = tuple(
+    looking_at(name, np.array(eye_m), np.array([0.0, 1.1, 0.0]), roll_rad=0.02)
+    for name, eye_m in (("left", (-1.4, 1.4, 2.3)), ("right", (1.5, 1.3, 2.2)))
+)
+FITTER = Fitter(MODEL, CAMERAS, [2, 2], FitParams())
+
+
+def walking(i: int) -> MotionState:
+    """Someone who steps about, turns a little and moves the arms."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    a = 0.4 * i
+    local[0] = rotations.exp(np.array([0.0, 0.6 * np.sin(0.3 * i), 0.0]))
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        local[INDEX[side + "UpperArm"]] = rotations.exp(
+            np.array([0.0, -sign * 0.5 * (1 + np.sin(a)), -sign * 0.5 * (1 + np.cos(1.3 * a))])
+        )
+        local[INDEX[side + "LowerArm"]] = rotations.exp(
+            np.array([0.0, -sign * 0.5 * (1 + np.sin(1.7 * a)), 0.0])
+        )
+    root = np.array([0.3 * np.sin(0.5 * i), 0.93, 0.3 * np.cos(0.37 * i) - 0.3])
+    return MotionState(
+        root,
+        local,
+        np.zeros(MODEL.n_pose),
+        np.ones(MODEL.n_shape),
+        initial_information(MODEL.space),
+    )
+
+
+def moments(
+    n: int = 16, fitter: Fitter = FITTER, factors: Floats | None = None
+) -> list[dict[str, PatchSighting]]:
+    """Both cameras' sightings; each judges depth wrongly by a few percent, as a lone camera does."""
+    rng = np.random.default_rng(0)
+    out = []
+    for i in range(n):
+        state = walking(i) if factors is None else replace(walking(i), factors=factors)
+        moment: dict[str, PatchSighting] = {}
+        joints, quats = fitter.joints(state)
+        for camera, drawing in zip(CAMERAS, fitter.drawings, strict=True):
+            roi = drawing.region(state, 0.0, 24)
+            assert roi is not None
+            ids = drawing.render(state, 0.0, roi).copy()
+            turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
+            wrong = rotations.exp(rng.normal(0.0, 0.03, 3))
+            seen = to_camera(camera, joints) * (1.0 + rng.normal(0.0, 0.03))
+            moment[camera.name] = PatchSighting(
+                nanoseconds(0.3 * i), seen, rotations.multiply(wrong, turned), np.ones(N_JOINTS),
+                ids, (2 * roi[0], 2 * roi[1], 2 * roi[2], 2 * roi[3]),
+            )  # fmt: skip
+        out.append(moment)
+    return out
+
+
+def lenses() -> list[Camera]:
+    """The cameras with their places forgotten."""
+    return [replace(c, R=np.eye(3), t_m=np.zeros(3)) for c in CAMERAS]
+
+
+def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
+    rig, report = room_from_body(
+        moments(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
+    )
+    true = CAMERAS[1].R @ CAMERAS[0].R.T
+    found = rig.cameras[1].R @ rig.cameras[0].R.T
+    angle = rotations.angle_rad(rotations.from_matrix(found), rotations.from_matrix(true))
+    assert np.degrees(angle) < 1.0
+    wanted_m = np.linalg.norm(centre(CAMERAS[1]) - centre(CAMERAS[0]))
+    assert report.distance_m["right"] == pytest.approx(wanted_m, rel=0.02)
+    assert report.frames >= 12
+    assert report.match > 0.9
+    assert max(report.residual_px.values()) < 4.0
+    for camera, placed in zip(CAMERAS, rig.cameras, strict=True):
+        # gravity from how one stands, the floor from the hips' height
+        tilt = np.degrees(np.arccos(np.clip(camera.R[:, 1] @ placed.R[:, 1], -1.0, 1.0)))
+        assert tilt < 3.0
+        assert centre(placed)[1] == pytest.approx(centre(camera)[1], abs=0.12)
+
+
+def rotation_deg(rig: Rig) -> float:
+    """How far the second camera is turned against the first, less how far it truly is."""
+    turned = [b.R @ a.R.T for a, b in (rig.cameras, CAMERAS)]
+    return float(np.degrees(rotations.angle_rad(*(rotations.from_matrix(R) for R in turned))))
+
+
+def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
+    """A body that is centimetres off everywhere, as none of the shape's factors makes it."""
+    free = free_body(MODEL, 0.02)
+    rng = np.random.default_rng(3)
+    factors = np.ones(len(free.sd))
+    factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
+    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
+    short = SelfCalibrationParams(
+        rounds=14, averaged=4, surface_uncertainty=1e-3
+    )  # the surface alone, no rings
+    stiff = replace(short, off_sd_m=1e-4)
+    free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
+    stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, stiff)
+    ringed_rig, report = room_from_body(
+        seen, lenses(), STATURE_M, replace(stiff, surface_uncertainty=2.0)
+    )
+    assert rotation_deg(free_rig) < 2.0
+    assert rotation_deg(free_rig) < 0.7 * rotation_deg(stiff_rig)
+    assert rotation_deg(ringed_rig) < 1.0
+    assert rotation_deg(ringed_rig) < 3.0 * report.uncertainties["right"].rotation_deg
+
+
+def test_the_surface_is_off_alike_on_both_sides() -> None:
+    """What moves a point of the left side moves one of the right side by the mirrored way."""
+    free = free_body(MODEL, 0.02)
+    ways = free.model.d_vertices[MODEL.n_shape :]
+    mirror = np.array([-1.0, 1.0, 1.0])
+    at = MODEL.vertices_m
+    apart_m = np.linalg.norm(at[:, None] * mirror - at[None], axis=2)
+    twin = apart_m.argmin(axis=1)
+    # points in the plane of symmetry are their own twins; those of both tubes' ends have several
+    sure = (apart_m.min(axis=1) < 1e-9) & ((apart_m < 1e-9).sum(axis=1) == 1)
+    assert sure.mean() > 0.8
+    sure &= np.abs(at[:, 0]) > 1e-6
+    np.testing.assert_allclose(ways[:, twin[sure]], ways[:, sure] * mirror, atol=1e-9)
+
+
+def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
+    """A small motion of the camera and the same motion of root and hips draw the same picture."""
+    state = walking(3)
+    roi = FITTER.drawings[1].region(state, 0.0, 24)
+    assert roi is not None
+    ids = FITTER.drawings[1].render(state, 0.0, roi).copy()
+    view = View(1, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0)
+    motion = np.array([0.03, -0.02, 0.05, 0.004, 0.01, -0.006])
+    turn = rotations.exp(motion[3:])
+    moved_root = rotations.rotate(turn, state.root_m) + motion[:3]
+    local = state.local_xyzw.copy()
+    local[0] = rotations.multiply(turn, local[0])
+    by_body = (
+        FITTER.drawings[1]
+        .render(replace(state, root_m=moved_root, local_xyzw=local), 0.0, roi)
+        .copy()
+    )
+    cameras = (CAMERAS[0], moved_camera(CAMERAS[1], motion))
+    fitter = Fitter(MODEL, cameras, [2, 2], FitParams())
+    assert np.mean(fitter.drawings[1].render(state, 0.0, roi) != by_body) < 1e-3
+    rows = RowGatherer(fitter, 10).gather(state, view)
+    # the step that the columns ask for leads back, to first order
+    T = camera_columns(rows.at_m)
+    step = np.linalg.solve(T @ rows.H[:6, :6] @ T.T + 1e-3 * np.eye(6), T @ rows.b[:6])
+    back = moved_camera(cameras[1], step.astype(np.float64))
+    before = np.linalg.norm(
+        cameras[1].R @ state.root_m + cameras[1].t_m - to_camera(CAMERAS[1], state.root_m)
+    )
+    after = np.linalg.norm(to_camera(back, state.root_m) - to_camera(CAMERAS[1], state.root_m))
+    assert after < 0.6 * before
+
+
+def test_a_camera_that_never_saw_the_wearer_is_named() -> None:
+    alone = [{"left": m["left"]} for m in moments(4)]
+    with pytest.raises(ConfigError, match="'right'"):
+        room_from_body(alone, lenses(), STATURE_M)

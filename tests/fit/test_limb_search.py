@@ -1,0 +1,263 @@
+"""Other poses of an uncertain arm: candidates, their scores, and the arm that is found again."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.arrays import camera_arrays
+from mocapd.body.joint_limits import swing_twist
+from mocapd.body.model import shaped
+from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.limb_search import (
+    ArmSearch,
+    arm_library,
+    arm_of,
+    best_arm_poses,
+    candidates,
+    confirmed,
+    is_uncertain,
+)
+from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import project, rays
+from mocapd.types import Floats
+from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
+
+NO_CLOUD, NO_LIBRARY = np.empty((0, 6)), np.empty((0, 3, 4))
+BONES = ("Shoulder", "UpperArm", "LowerArm")
+
+
+def arm_joints(by: Fitter, state: MotionState, side: str) -> Floats:
+    """Shoulder, elbow and wrist (3,3) [m]."""
+    return by.joints(state)[0][[INDEX[side + b] for b in ("UpperArm", "LowerArm", "Hand")]]
+
+
+def with_arm(state: MotionState, side: str, local: Floats) -> MotionState:
+    out = state.local_xyzw.copy()
+    out[[INDEX[side + bone] for bone in BONES]] = local
+    return replace(state, local_xyzw=out)
+
+
+def swapped(state: MotionState, side: str, other: MotionState) -> MotionState:
+    """The state with one arm of another."""
+    return with_arm(state, side, other.local_xyzw[[INDEX[side + bone] for bone in BONES]])
+
+
+# --- candidates ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_candidates_hold_the_mirror_images_in_depth(side: str) -> None:
+    """The two poses of a segment that project alike: a bone turned over in the plane that its end
+    and the ray span. At the camera's distance perspective leaves a few pixels of difference."""
+    by, state = fitter(1), standing("forward", "forward")
+    arm, views = arm_of(MODEL, side), views_of(by, state)
+    found = candidates(by, state, arm, views, NO_CLOUD, NO_LIBRARY)
+    assert len(found) == 4
+    camera = by.drawings[0].camera
+    here = arm_joints(by, state, side)
+    np.testing.assert_allclose(
+        found[0], state.local_xyzw[[INDEX[side + bone] for bone in BONES]], atol=1e-12
+    )
+    _, ray = rays(camera, project(camera, here[1]))
+    bones, depth_m = np.diff(here, axis=0), []
+    for local, flips in zip(found[1:], ((0, 1), (1, 0), (1, 1)), strict=True):
+        there = arm_joints(by, with_arm(state, side, local), side)
+        for bone, before, flip in zip(np.diff(there, axis=0), bones, flips, strict=True):
+            wanted = before - 2 * flip * (before @ ray) * ray
+            np.testing.assert_allclose(bone, wanted, atol=1e-9)
+        apart = np.linalg.norm(project(camera, there) - project(camera, here), axis=1)
+        depth_m.append(float(np.abs((there - here) @ ray).max()))
+        across = np.linalg.norm((there - here) - ((there - here) @ ray)[:, None] * ray, axis=1)
+        assert across.max() < 1e-9  # and the same picture, but for perspective
+        assert apart.max() < 60.0
+    assert max(depth_m) > 0.3  # quite another pose
+
+
+def test_every_camera_adds_its_own_mirror_images_and_the_rest_follow() -> None:
+    by, state = fitter(2), standing()
+    arm, views = arm_of(MODEL, "left"), views_of(by, state)
+    cloud, library = (
+        np.random.default_rng(0).normal(0, 0.5, (5, 6)),
+        arm_library(MODEL.space, 7, "left"),
+    )
+    found = candidates(by, state, arm, views, cloud, library)
+    assert len(found) == 1 + 2 * 3 + 5 + 7
+    np.testing.assert_allclose(np.linalg.norm(found, axis=2), 1.0, atol=1e-9)
+    np.testing.assert_array_equal(found[-7:], library)
+    for tried, turn in zip(found[7:12], cloud, strict=True):
+        np.testing.assert_array_equal(tried[0], found[0, 0])
+        for place, angle in ((1, turn[:3]), (2, turn[3:])):
+            moved = rotations.multiply(tried[place], rotations.inverse(found[0, place]))
+            assert rotations.angle_rad(moved, rotations.exp(angle)) < 1e-9
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_the_library_fills_the_joint_limits(side: str) -> None:
+    library, limits = arm_library(MODEL.space, 500, side), MODEL.space.limits
+    for place in (1, 2):
+        group = MODEL.space.group(side + BONES[place])
+        assert limits.joint[group] == INDEX[side + BONES[place]]
+        angles = swing_twist(library[:, place], int(limits.axis[group]))
+        low, high = limits.lower_rad[group], limits.upper_rad[group]
+        inside = ((angles > low - 1e-6) & (angles < high + 1e-6)).all(axis=1)
+        # a swing to both ends at once is over half a turn, which is a shorter one the other way
+        assert inside.mean() > 0.98
+        angles = angles[inside]
+        # in each direction it comes near both ends
+        assert (angles.min(axis=0) < low + 0.1 * (high - low)).all()
+        assert (angles.max(axis=0) > high - 0.1 * (high - low)).all()
+
+
+# --- scores ----------------------------------------------------------------------------------
+
+
+def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
+    """Area of the samples seen where the picture has their colour, less half of what it denies."""
+    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
+    base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+    nearest = base.zbuffer.copy()
+    corners = shaped(MODEL, state.factors)[0][arm.corners]
+    rest = MODEL.rest_m
+    joints, turned = by.joints(state)
+    score = 0.0
+    for s in range(len(arm.sample)):
+        middle = corners[s].mean(axis=0)
+        normal = 0.5 * np.cross(corners[s, 1] - corners[s, 0], corners[s, 2] - corners[s, 0])
+        point, posed_normal = np.zeros(3), np.zeros(3)
+        for place, weight in zip(arm.link[s], arm.weights[s], strict=True):
+            bone = arm.chain[place]
+            point += weight * (joints[bone] + rotations.rotate(turned[bone], middle - rest[bone]))
+            posed_normal += weight * rotations.rotate(turned[bone], normal)
+        seen_from = camera.R @ point + camera.t_m
+        facing = -float((camera.R @ posed_normal) @ seen_from / np.linalg.norm(seen_from))
+        if facing <= 0.0:
+            continue
+        work = (project(camera, point) + 0.5) / FACTOR - 0.5 - np.array(view.roi[:2])
+        x, y = (int(v) for v in np.round(work))
+        if not (0 <= y < view.ids.shape[0] and 0 <= x < view.ids.shape[1]):
+            continue
+        if seen_from[2] > nearest[y, x] + 0.02:
+            continue
+        have = view.ids[y, x]
+        if have == arm.colour[s]:
+            score += facing
+        elif have:
+            score -= 0.5 * facing
+        else:
+            score -= 0.5 * facing * view.pixel_weight[y, x] / 255.0
+    return score
+
+
+def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Floats) -> Floats:
+    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
+    corners = shaped(MODEL, state.factors)[0][arm.corners]
+    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+    out = np.zeros(len(hypotheses))
+    score_arms(
+        hypotheses,
+        ArmSamples(
+            arm.chain, corners.mean(axis=1), normals / area[:, None], area, arm.colour, arm.link,
+            arm.weights,
+        ),
+        MODEL.parents, base.posed, camera_arrays(camera),
+        FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
+        base.zbuffer, view.ids, view.pixel_weight, out,
+    )  # fmt: skip
+    return out
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_scores_equal_the_naive_twin(side: str) -> None:
+    by, state = fitter(2), standing("guarding", "hand_on_belly")
+    for view in views_of(by, standing("waving", "side_low")):
+        soft = replace(view, pixel_weight=np.full_like(view.pixel_weight, 90))
+        tries = [standing(pose, pose) for pose in ("guarding", "waving", "crossed", "raised")]
+        # the hand keeps straight in a hypothesis, as it does in these poses
+        bones = [INDEX[side + bone] for bone in BONES]
+        hypotheses = np.array([of.local_xyzw[bones] for of in tries])
+        got = scores(by, state, soft, side, hypotheses)
+        wanted = [naive_score(by, swapped(state, side, of), soft, side) for of in tries]
+        np.testing.assert_allclose(got, wanted, rtol=1e-3, atol=1e-6)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("pose", ["goalpost", "forward_low", "hand_on_hip", "raised"])
+def test_the_true_arm_scores_above_the_library(side: str, pose: str) -> None:
+    by, truth = fitter(2), standing(pose, pose)
+    views, library = views_of(by, truth), arm_library(MODEL.space, 400, side)
+    mine = truth.local_xyzw[[INDEX[side + bone] for bone in BONES]]
+    hypotheses = np.concatenate([library, mine[None]])
+    total = sum(scores(by, truth, view, side, hypotheses) for view in views)
+    assert np.argmax(total) == len(library)
+
+
+def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
+    by, truth = fitter(2), standing("goalpost", "side_low")
+    wrong = swapped(truth, "left", standing("hanging", "hanging"))
+    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
+    best = best_arm_poses(by, wrong, arm, views, tries, 3)
+    assert 1 <= len(best) <= 3
+    hand = arm_joints(by, truth, "left")[2]
+    off = [float(np.linalg.norm(arm_joints(by, s, "left")[2] - hand)) for s in best]
+    assert min(off) < 0.25
+    assert min(off) < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
+    for state in best:  # nothing else was moved
+        same = np.delete(state.local_xyzw - wrong.local_xyzw, arm.chain[:3], axis=0)
+        assert not same.any()
+    at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)
+    assert best_arm_poses(by, truth, arm, views, at_truth[:1], 3) == []
+
+
+# --- the search ------------------------------------------------------------------------------
+
+
+def test_an_arm_is_confirmed_where_the_pictures_show_it() -> None:
+    by, truth = fitter(2), standing("t_pose", "t_pose")
+    views = views_of(by, truth)
+    right = by.fit(truth, views, 1 / 30, 1, learn_shape=False)
+    moved = swapped(truth, "left", standing("hanging", "hanging"))
+    wrong = by.fit(moved, views, 1 / 30, 1, learn_shape=False)
+    for side in SIDES:
+        assert confirmed(side, right) > 0.9
+    assert confirmed("left", wrong) < 0.4
+    assert confirmed("right", wrong) > 0.9
+
+
+def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
+    params = LimbSearchParams()
+    by, truth = fitter(2), standing("goalpost", "side_low")
+    views, search = views_of(by, truth), ArmSearch(by, params)
+    wrong = swapped(truth, "left", standing("hanging", "hanging"))
+    # one iteration, so that the fit itself does not find back
+    fit = by.fit(wrong, views, 1 / 30, 1, learn_shape=False)
+    assert is_uncertain("left", fit, params)
+    assert not is_uncertain("right", fit, params)
+    changed: set[str] = set()
+    for turn in range(4):
+        fit, sides = search.improve(fit, views, 1 / 30, turn, learn_shape=False)
+        changed |= set(sides)
+    fit = by.fit(fit.state, views, 1 / 30, 8, learn_shape=False)
+    assert changed == {"left"}
+    assert not is_uncertain("left", fit, params)
+    for side in SIDES:
+        off = arm_joints(by, fit.state, side) - arm_joints(by, truth, side)
+        assert np.linalg.norm(off, axis=1).max() < 0.04
+
+
+def test_arms_that_agree_are_not_searched() -> None:
+    params = LimbSearchParams()
+    by, truth = fitter(2), standing()
+    views = views_of(by, truth)
+    fit = by.fit(truth, views, 1 / 30, 2, learn_shape=False)
+    again, sides = ArmSearch(by, params).improve(fit, views, 1 / 30, 0, learn_shape=False)
+    assert again is fit
+    assert sides == ()

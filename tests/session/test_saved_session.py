@@ -1,0 +1,150 @@
+"""A daemon on what `mocapd calibrate` has saved."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from mocapd.calibration.calibration_file import read_calibration, write_calibration
+from mocapd.calibration.saved_sources import SECRETS
+from mocapd.capture.capture_folder import load_folder
+from mocapd.config.sections import CameraSection, Config, TrackerSection
+from mocapd.errors import ConfigError
+from mocapd.session.saved_session import (
+    calibration_of,
+    cameras_of_calibration,
+    known_of_recording,
+    load_saved,
+)
+from mocapd.session.session import cameras_of, open_session
+from mocapd.wizard.saving import save_draft
+from tests.cli.small_capture import write_capture
+from tests.wizard.drafts import PORTS, full_draft, source_of
+
+
+def quiet(_what: str, _done: int, _total: int) -> None: ...
+
+
+@pytest.fixture
+def config(tmp_path: Path) -> Config:
+    """No camera is configured; a calibration is saved."""
+    state_dir = tmp_path / "state"
+    save_draft(full_draft(), state_dir)
+    canned = TrackerSection(name="canned", stature_m=1.9)
+    return Config(state_dir=state_dir, cache_dir=tmp_path, tracker=canned)
+
+
+def test_the_saved_calibration_gives_cameras_rig_and_wearer(config: Config) -> None:
+    session = open_session(config, quiet)
+    assert [camera.spec for camera in session.cameras] == [
+        source_of(name, port) for name, port in PORTS.items()
+    ]
+    assert session.rig is not None
+    assert session.rig.names == ("cam0", "cam1")
+    assert session.rig_source == str(config.state_dir / "calibration.toml")
+    assert session.cameras[0].size_px == (64, 48)
+    measured = full_draft().factors
+    assert measured is not None
+    assert session.shape.stature_m == 1.72
+    assert np.array_equal(session.shape.factors, measured)
+    assert session.shape.information is not None
+
+
+def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:
+    saved = calibration_of(config)
+    assert saved is not None
+    draft = full_draft()
+    assert saved.known.wearer.shape_factors is not None
+    assert draft.factors is not None
+    assert np.array_equal(saved.known.wearer.shape_factors, draft.factors)
+    assert saved.known.shirt is not None
+    assert len(saved.known.shirt.model) == 2  # personal
+    assert set(saved.known.shirt.white_balance) == {"cam0", "cam1"}
+
+
+def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config: Config) -> None:
+    moved = CameraSection("cam1", source_of("cam1", "4-4"), fps_hz=15.0)
+    session = open_session(replace(config, camera=(moved,)), quiet)
+    assert [(one.spec, one.expected_hz) for one in session.cameras] == [(moved.source, 15.0)]
+    assert session.rig is not None
+
+
+def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureFixture) -> None:
+    other = CameraSection("cam0", "/dev/video7")
+    assert calibration_of(replace(config, camera=(other,))) is None
+    assert "other cameras" in caplog.text
+
+
+URL = "rtsp://admin:hunter2@127.0.0.1:9/stream"
+
+
+def network_config(config: Config) -> Config:
+    """The saved calibration is of one network camera."""
+    path = config.state_dir / "calibration.toml"
+    saved = read_calibration(path)
+    one = msgspec.structs.replace(saved.camera[0], source=URL, colour=None)
+    write_calibration(path, msgspec.structs.replace(saved, camera=(one,)), {})
+    return config
+
+
+def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
+    saved = calibration_of(network_config(config))
+    assert saved is not None
+    assert cameras_of_calibration(saved)[0].source == URL
+
+
+def test_a_password_may_come_from_the_configuration(config: Config) -> None:
+    config = network_config(config)
+    (config.state_dir / SECRETS).unlink()
+    saved = calibration_of(replace(config, camera=(CameraSection("cam0", URL),)))
+    assert saved is not None
+
+
+def test_a_password_that_is_nowhere_is_asked_for(config: Config) -> None:
+    config = network_config(config)
+    (config.state_dir / SECRETS).unlink()
+    with pytest.raises(ConfigError, match=r"password of camera 'cam0'.*\*\*\*@") as caught:
+        open_session(config, quiet)
+    assert SECRETS in caught.value.fix
+    assert "[[camera]]" in caught.value.fix
+
+
+def test_other_cameras_are_told_of_without_a_password(
+    config: Config, caplog: pytest.LogCaptureFixture
+) -> None:
+    other = CameraSection("cam0", "rtsp://other/")
+    assert calibration_of(replace(network_config(config), camera=(other,))) is None
+    assert "admin:***@" in caplog.text
+    assert "hunter2" not in caplog.text
+
+
+def test_a_capture_folder_brings_its_own_unless_one_is_named(
+    config: Config, tmp_path: Path
+) -> None:
+    folder = write_capture(tmp_path / "capture")
+    recorded = replace(config, camera=cameras_of(str(folder)))
+    assert open_session(recorded, quiet).rig_source == str(folder / "rig.json")
+    named = open_session(replace(recorded, rig=config.state_dir), quiet)
+    assert named.rig_source == str(config.state_dir / "calibration.toml")
+
+
+def test_without_anything_the_setup_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="mocapd calibrate"):
+        open_session(Config(state_dir=tmp_path, cache_dir=tmp_path), quiet)
+
+
+def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
+    config: Config, tmp_path: Path
+) -> None:
+    folder = load_folder(write_capture(tmp_path / "capture"))
+    saved = load_saved(config.state_dir)
+    known = known_of_recording(saved, folder)
+    assert known.wearer.stature_m == 1.72
+    assert known.rig is saved.known.rig
+    alone = replace(saved, tables=type(saved.tables)(
+        schema=1, made=saved.tables.made, room=saved.tables.room, camera=saved.tables.camera[:1]
+    ))  # fmt: skip
+    with pytest.raises(ConfigError, match="no camera 'cam1'"):
+        known_of_recording(alone, folder)
