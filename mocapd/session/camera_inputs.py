@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
@@ -10,8 +10,9 @@ from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
 from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
-from mocapd.config.sections import CameraSection
+from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.types import Rig
 
 
@@ -59,6 +60,12 @@ def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[Ca
         expected_hz = None if source.recorded else camera.fps_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
+
+
+def bundler_params(config: Config) -> BundlerParams:
+    """How their frames wait for each other."""
+    waits_s = {one.id: one.wait_s for one in config.camera if one.wait_s is not None}
+    return replace(config.bundler, camera_waits_s=waits_s)
 
 
 def picture_size(camera: CameraSection) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,15 @@ def test_its_status_and_its_records_show_it_masked(tmp_path: Path) -> None:
 def test_a_hash_in_a_url_makes_no_folder_of_it(tmp_path: Path) -> None:
     session = open_session(config_of("http://127.0.0.1:9/v#hunter2", tmp_path), lambda *_: None)
     assert isinstance(session.cameras[0].source, UrlSource)
+
+
+def test_the_daemon_and_a_setup_on_it_wait_for_a_camera_as_the_configuration_says(
+    tmp_path: Path,
+) -> None:
+    config = config_of(ADDRESS, tmp_path)
+    config = replace(config, camera=(replace(config.camera[0], wait_s=0.25),))
+    daemon = Daemon(config, open_session(config, lambda *_: None))
+    assert daemon.hub.bundler.camera_waits_s == {"net": 0.25}
 
 
 @pytest.fixture

@@ -112,7 +112,7 @@ def _watch(
     tell: Tell,
 ) -> bool:
     """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
-    collector = FrameCollector(rig.names)
+    collector = FrameCollector(rig.names, hub.bundler)
     entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)

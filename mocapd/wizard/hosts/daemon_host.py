@@ -127,7 +127,7 @@ class DaemonHost:
         cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
-            CheckSettings(config.tracker, config.smoothing.preset),
+            CheckSettings(config.tracker, config.smoothing.preset, daemon.hub.bundler),
             self._checked,
             daemon.died,
         )

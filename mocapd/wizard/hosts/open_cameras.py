@@ -10,6 +10,7 @@ from mocapd.capture.thread import CaptureStatus, CaptureThread
 from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.draft import DraftCamera
 
@@ -27,11 +28,12 @@ class OpenCameras:
         cameras: Sequence[DraftCamera],
         died: Callable[[BaseException], None],
         sources: Mapping[str, Source] | None = None,
+        bundler: BundlerParams | None = None,
     ) -> None:
-        """sources: by id, where they exist already. Raises ConfigError or InputError for a source that
-        cannot be."""
+        """sources: by id, where they exist already; bundler: see FrameHub. Raises ConfigError or InputError
+        for a source that cannot be."""
         self.cameras = tuple(cameras)
-        self.hub = FrameHub(camera.id for camera in cameras)
+        self.hub = FrameHub((camera.id for camera in cameras), bundler=bundler)
         self._died = died
         self._pace = Pace(live=True)  # recordings start together and keep their own time
         given = sources or {}
