@@ -13,14 +13,8 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, MalformedError, UnavailableError
 from mocapd.types import Frame
 
-SCHEMES = ("rtsp", "rtsps", "http", "https")
 _TORN_LIMIT_NS = 2 * NS_PER_S  # without one whole picture: the network is bad
 _MJPG = cv2.VideoWriter.fourcc(*"MJPG")
-
-
-def is_url(source: str) -> bool:
-    """Whether a camera string means a network camera."""
-    return source.partition(":")[0].lower() in SCHEMES
 
 
 class UrlSource:

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta
 
+from mocapd.capture.source_kinds import SOURCE_FORMS
 from mocapd.capture.webcam.controls import Controls
 from mocapd.config import web_params
 from mocapd.errors import ConfigError
@@ -50,14 +51,13 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
-    source: what `mocapd cameras` prints, a video file, a capture folder's FOLDER#camN, a URL, or sim:SCENARIO#camN
     fps_hz: rate to ask a webcam for [Hz]
     wait_s: how long a frame set waits for it after its first frame came [s], in place of [bundler]; for one on a network
     white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
     """
 
     id: Annotated[str, Meta(min_length=1)]
-    source: Annotated[str, Meta(min_length=1)]
+    source: Annotated[str, Meta(min_length=1, description=SOURCE_FORMS)]
     fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
     wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
     white_balance: Path | None = None

@@ -61,10 +61,8 @@ def test_how_frames_wait_for_each_other_is_set_for_all_cameras_and_for_one(file:
     assert bundler == BundlerParams(slack_periods=0.75, camera_waits_s={"b": 0.2})
     assert bundler_params(load(file, "").config) == BundlerParams()
     error = error_of(file, cameras.replace("0.2", "20"))
-    assert (error.what, error.fix) == (
-        "camera[1].wait_s = 20 does not do",
-        "give camera[1].wait_s a number from 0 to 1",
-    )
+    assert error.what == "camera[1].wait_s = 20 does not do"
+    assert "wait_s a number from 0" in error.fix
     assert "bundler.camera_waits_s" in error_of(file, "[bundler]\ncamera_waits_s.a = 1").what
 
 

@@ -5,14 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibration.from_capture import from_capture
-from mocapd.calibration.shirt_pictures import read_model, stroked_folder
+from mocapd.calibration.from_origin import from_capture
+from mocapd.calibration.shirt_pictures import stroked_folder
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cached
+from mocapd.shirt.colour.model_pictures import read_model
 from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 

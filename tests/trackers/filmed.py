@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.session.simulation import from_scenario
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
@@ -14,6 +13,7 @@ from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
+from tests.sim.simulated_calibration import calibration_of_setup
 
 N = 36
 START_NS = 50_000_000_000_000
@@ -74,4 +74,4 @@ def _still(pixels: Bytes) -> Bytes:
 def tracker_of(filmed: Filmed, database: PoseDatabase) -> Tracker:
     """The full colour tracker, calibrated on the film's own room as a user would."""
     setup = setup_of(filmed.scenario, filmed.renderers)
-    return build_colour_tracker(from_scenario(setup), database)
+    return build_colour_tracker(calibration_of_setup(setup), database)

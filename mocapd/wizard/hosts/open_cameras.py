@@ -4,10 +4,10 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
-from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import identities_of, open_source
 from mocapd.capture.thread import CaptureStatus, CaptureThread
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
 from mocapd.pipeline.bundler import BundlerParams
@@ -66,14 +66,9 @@ class OpenCameras:
 
     def _source(self, camera: DraftCamera) -> Source:
         settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
-        others = tuple(
-            parse_identity(one.source)
-            for one in self.cameras
-            if one.id != camera.id and one.source.startswith(PREFIX)
-        )
-        return open_source(
-            camera.source, camera.id, settings=settings, others=others, pace=self._pace
-        )
+        others = identities_of((one.id, one.source) for one in self.cameras if one != camera)
+        asked = Asked(camera.id, settings=settings, others=tuple(others.values()), pace=self._pace)
+        return open_source(camera.source, asked)
 
     def _ended(self, error: BaseException) -> None:
         if not isinstance(error, MocapdError):  # those the camera's status tells
