@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 import platformdirs
 from msgspec import Meta
 
-from mocapd.capture.source_kinds import SOURCE_FORMS
 from mocapd.capture.webcam.controls import Controls
 from mocapd.config import web_params
 from mocapd.errors import ConfigError
@@ -51,13 +50,14 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
+    source: what `mocapd cameras` prints, a video file, FOLDER#camN, a URL, sim:SCENARIO#camN; a wrong one is told all kinds
     fps_hz: rate to ask a webcam for [Hz]
     wait_s: how long a frame set waits for it after its first frame came [s], in place of [bundler]; for one on a network
     white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
     """
 
     id: Annotated[str, Meta(min_length=1)]
-    source: Annotated[str, Meta(min_length=1, description=SOURCE_FORMS)]
+    source: Annotated[str, Meta(min_length=1)]
     fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
     wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
     white_balance: Path | None = None
