@@ -31,13 +31,15 @@ class Frame:
 
     `t_ns` is the middle of the exposure on CLOCK_MONOTONIC as well as it is known (for webcams:
     the driver's stamp), not the time of arrival. `seq` counts what the source delivered; gaps are
-    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only.
+    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only. `encoded`: the JPEG that
+    they were decoded from, as the camera delivered it; None where it delivered none.
     """
 
     camera: str
     seq: int
     t_ns: int
     pixels: Bytes
+    encoded: bytes | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

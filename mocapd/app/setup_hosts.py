@@ -78,7 +78,9 @@ def saved_draft(config: "Config", step: "StepName | None") -> Draft:
 
 def settings_of(config: "Config") -> CheckSettings:
     """How the daemon of this configuration tracks."""
-    return CheckSettings(config.tracker, config.smoothing.preset)
+    from mocapd.session.camera_inputs import bundler_params
+
+    return CheckSettings(config.tracker, config.smoothing.preset, bundler_params(config))
 
 
 def demo_host(config: "Config", step: "StepName | None") -> OwnHost:

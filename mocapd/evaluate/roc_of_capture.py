@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds

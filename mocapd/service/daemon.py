@@ -29,6 +29,7 @@ from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.service.health import camera_message, health_message
 from mocapd.service.mountings import Mountings
+from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
 from mocapd.types import BodyState, FrameSet, Skeleton
 
@@ -69,10 +70,12 @@ class Daemon:
         )
         self._session = session
         self._inputs = {camera.source.name: camera for camera in session.cameras}
-        self._collector = FrameCollector(self._inputs)
+        bundler = bundler_params(config)
+        self._collector = FrameCollector(self._inputs, bundler)
         sizes_px = {name: c.size_px for name, c in self._inputs.items() if any(c.size_px)}
         guard = SizeGuard(sizes_px, self._collector)
-        self.hub = FrameHub(self._inputs, guard)  # who looks at the pictures joins it
+        # who looks at the pictures joins it
+        self.hub = FrameHub(self._inputs, guard, bundler=bundler)
         self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
             CaptureThread(c.source, self.hub, self.died, c.expected_hz) for c in session.cameras

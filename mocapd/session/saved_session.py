@@ -14,7 +14,7 @@ from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.file import size_error
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.source_kinds import identity_of, origin_of
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 
@@ -39,7 +39,7 @@ def calibration_of(config: Config) -> Saved | None:
     if config.rig is not None:
         return load_saved(config.rig) if is_calibration(config.rig) else None
     place = config.state_dir / FILE_NAME
-    if not is_file(place) or any("#" in camera.source for camera in config.camera):
+    if not is_file(place) or any(origin_of(camera.source) for camera in config.camera):
         return None
     saved = load_saved(place)
     if config.camera and not fits(config.camera, saved.tables):
@@ -72,7 +72,8 @@ def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
 
 def _model(source: str) -> object:
     """A password may be written in one place and hidden in the other."""
-    return parse_identity(source).model if source.startswith(PREFIX) else without_password(source)
+    identity = identity_of(source)
+    return identity.model if identity is not None else without_password(source)
 
 
 def _named(camera: SavedCamera) -> str:

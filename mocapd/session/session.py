@@ -7,13 +7,12 @@ folder, or all of one simulated scenario. What the configuration gives itself wi
 import logging
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 from mocapd.body.shape import BodyShape
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
-from mocapd.capture.capture_folder import load_folder
-from mocapd.capture.url import is_url
+from mocapd.capture.origin import camera_address
+from mocapd.capture.source_kinds import cameras_of_origin, is_simulated, open_origin, origin_of
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
@@ -27,8 +26,6 @@ from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
 _log = logging.getLogger(__name__)
-
-SIM = "sim:"  # the renderer is imported for such cameras only: it takes a second
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,13 +42,9 @@ class Session:
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     """Every camera of a capture folder or of `sim:SCENARIO`. Raises InputError or ConfigError."""
-    if capture.startswith(SIM):
-        from mocapd.session import simulation
-
-        names = simulation.camera_names(capture)
-    else:
-        names = load_rig(Path(capture) / "rig.json").names
-    return tuple(CameraSection(name, f"{capture}#{name}") for name in names)
+    return tuple(
+        CameraSection(name, camera_address(capture, name)) for name in cameras_of_origin(capture)
+    )
 
 
 def open_session(config: Config, progress: Progress) -> Session:
@@ -68,17 +61,15 @@ def open_session(config: Config, progress: Progress) -> Session:
         )
     config = replace(config, camera=cameras)
     origin = _common_origin(cameras)
-    if origin.startswith(SIM):
-        return _simulated(config, origin, saved, progress)
     rig, rig_source = _given_rig(config, saved)
     if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
         rig, rig_source = _assumed_rig(cameras[0]), "assumed"
     known = _known(config, rig, saved)
-    if origin and saved is None:
-        folder = load_folder(Path(origin))
-        known = from_capture(folder).overlaid(known)
-        rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
-    inputs = camera_inputs(cameras, rig)
+    opened = open_origin(origin, config.cache_dir, progress) if origin else None
+    if opened is not None and saved is None:
+        known = from_origin(opened).overlaid(known)
+        rig, rig_source = (rig, rig_source) if rig else (opened.rig, opened.rig_source)
+    inputs = camera_inputs(cameras, rig, opened)
     ready = _ready_tracker(config, known, progress)
     return Session(inputs, rig, rig_source, ready.tracker, ready.shape)
 
@@ -107,21 +98,6 @@ def _assumed_rig(camera: CameraSection) -> Rig:
     return nominal_rig(camera.id, picture_size(camera))
 
 
-def _simulated(config: Config, source: str, saved: Saved | None, progress: Progress) -> Session:
-    from mocapd.session import simulation
-
-    film = simulation.open_film(source, config.cache_dir, progress)
-    known, rig_source = _known(config, None, saved), source
-    if saved is None:
-        known = simulation.from_scenario(film.setup).overlaid(known)
-    else:
-        rig_source = str(saved.path)
-    ready = _ready_tracker(config, known, progress)
-    # last, as they begin to play now
-    cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, known.rig, rig_source, ready.tracker, ready.shape)
-
-
 def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> ReadyTracker:
     """Built, and its kernels warm."""
     own = config.tracker
@@ -136,9 +112,8 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Re
 
 def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
     """The one capture folder or scenario that all cameras are of; empty when there is none."""
-    # a URL is no folder, also where its password or fragment has a `#`
-    origins = {"" if is_url(one.source) else one.source.rpartition("#")[0] for one in cameras}
-    simulated = any(camera.source.startswith(SIM) for camera in cameras)
+    origins = {origin_of(one.source) for one in cameras}
+    simulated = any(is_simulated(camera.source) for camera in cameras)
     if simulated and (len(origins) > 1 or origins == {""}):
         raise ConfigError(
             "simulated cameras must all be of one scenario",

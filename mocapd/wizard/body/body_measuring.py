@@ -114,7 +114,7 @@ def _watch(
 ) -> bool:
     """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
-    collector = FrameCollector(rig.names)
+    collector = FrameCollector(rig.names, hub.bundler)
     entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)

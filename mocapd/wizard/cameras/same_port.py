@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
-from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, match_identity, parse_identity
+from mocapd.capture.source_kinds import identities_of
+from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs
 from mocapd.wizard.context import Context, Step
@@ -29,7 +30,7 @@ def moved_cameras(
     saved: Sequence[DraftCamera], present: Sequence[WebcamIdentity]
 ) -> tuple[Moved, ...]:
     """Which of the saved webcams sit in another port than they did; the others are left out."""
-    identities = {c.id: parse_identity(c.source) for c in saved if c.source.startswith(PREFIX)}
+    identities = identities_of((camera.id, camera.source) for camera in saved)
     moved = []
     for name, wanted in identities.items():
         others = [one for other, one in identities.items() if other != name]

@@ -107,7 +107,7 @@ def _follow(
 ) -> bool:
     """Follow the hub's frames until enough is seen; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
-    collector = FrameCollector([camera.name for camera in tracks.cameras])
+    collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
     entry = OnlyCameras(collector, names)
     give_up_ns = clock() + nanoseconds(params.patience_s)
     hub.join(entry)

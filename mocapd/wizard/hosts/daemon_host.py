@@ -7,13 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.capture.source_kinds import is_simulated
 from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.daemon import Daemon, Snapshot
-from mocapd.session.session import SIM, Session
+from mocapd.session.session import Session
 from mocapd.types import BodyState, Rig, Skeleton
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import Moved, moved_cameras, same_camera
@@ -127,7 +128,7 @@ class DaemonHost:
         cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
-            CheckSettings(config.tracker, config.smoothing.preset),
+            CheckSettings(config.tracker, config.smoothing.preset, daemon.hub.bundler),
             self._checked,
             daemon.died,
         )
@@ -159,7 +160,7 @@ def state_dir_of(config: Config, session: Session) -> Path:
     """Where a setup is saved; what simulated cameras give never takes the place of a real calibration."""
     if session.rig_source == str(config.state_dir / FILE_NAME):
         return config.state_dir
-    simulated = any(camera.spec.startswith(SIM) for camera in session.cameras)
+    simulated = any(is_simulated(camera.address) for camera in session.cameras)
     return config.state_dir / "demo" if simulated else config.state_dir
 
 

@@ -43,7 +43,7 @@ class OwnHost:
         self._over = threading.Event()
         self._saved = threading.Event()
         self._death: BaseException | None = None
-        self._cameras = OpenCameras(draft.cameras, self.died, sources)
+        self._cameras = OpenCameras(draft.cameras, self.died, sources, settings.bundler)
         self._locks = CameraLocks(self._cameras.sources)
         self._shown = NewestBody()
         of_cameras = SetupCameras(draft.cameras, nodes, self._locks, moved)

@@ -12,7 +12,7 @@ from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.source_kinds import identity_of
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -77,9 +77,8 @@ class _File(msgspec.Struct, frozen=True):
 
 def key_of(camera: DraftCamera) -> str | None:
     """vid:pid:serial; None for a camera that has none, whose lens cannot be known again."""
-    if not camera.source.startswith(PREFIX):
-        return None
-    return ":".join(parse_identity(camera.source).model)
+    identity = identity_of(camera.source)
+    return ":".join(identity.model) if identity is not None else None
 
 
 def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
