@@ -21,7 +21,7 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
 from mocapd.types import Bytes, LabelledPicture, Rig
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 
 _PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)  # lossless at any level; this one is quick
 
@@ -96,7 +96,7 @@ class KeptDraft(Table, frozen=True):
     board: BoardSpec | None
     board_views: dict[Text, tuple[_View, ...]]
     lenses: dict[Text, _Lens]
-    lens_saved: frozenset[Text]
+    intrinsics_saved: frozenset[Text] = msgspec.field(name="lens_saved")
     rig: tuple[_Place, ...] | None
     room: _Room | None
     floor_known: bool
@@ -134,7 +134,7 @@ def kept_draft(draft: Draft) -> KeptDraft:
             for name, own in draft.board_views.items()
         },
         lenses={name: _kept_lens(lens) for name, lens in draft.lenses.items()},
-        lens_saved=draft.lens_saved,
+        intrinsics_saved=draft.intrinsics_saved,
         rig=None
         if draft.rig is None
         else tuple(_Place(**camera_to_dict(one)) for one in draft.rig.cameras),
@@ -168,7 +168,7 @@ def _kept_lens(lens: Intrinsics) -> _Lens:
     )
 
 
-def _kept_room(room: RoomQuality) -> _Room:
+def _kept_room(room: ExtrinsicsQuality) -> _Room:
     return _Room(
         method="wearer" if room.method == "wearer" else "board",
         rms_px=_figure(room.rms_px),
@@ -224,7 +224,7 @@ def draft_of(kept: KeptDraft, where: str) -> Draft:
             for name, own in kept.board_views.items()
         },
         lenses={name: _lens(lens) for name, lens in kept.lenses.items()},
-        lens_saved=kept.lens_saved,
+        intrinsics_saved=kept.intrinsics_saved,
         rig=None
         if kept.rig is None
         else Rig(tuple(camera_from_dict(msgspec.structs.asdict(one), where) for one in kept.rig)),
@@ -257,9 +257,9 @@ def _lens(told: _Lens) -> Intrinsics:
     )
 
 
-def _room(told: _Room) -> RoomQuality:
+def _room(told: _Room) -> ExtrinsicsQuality:
     by_camera = {name: _nan(px) for name, px in told.camera_rms_px.items()}
-    return RoomQuality(told.method, _nan(told.rms_px), by_camera, _nan(told.play_area_cm))
+    return ExtrinsicsQuality(told.method, _nan(told.rms_px), by_camera, _nan(told.play_area_cm))
 
 
 def _colours(told: Mapping[str, _Colours]) -> dict[str, DraftColours]:

@@ -33,7 +33,7 @@ from mocapd.calibration.saved_calibration import (
 from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
 from mocapd.types import Camera, LabelledPicture
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 
 _MOST_VIEWS = 10**6  # of one lens
 
@@ -102,9 +102,9 @@ def load_draft(place: Path) -> Draft:
             for one, camera in zip(saved.camera, known.rig.cameras, strict=True)
             if one.lens is not None
         },
-        lens_saved=frozenset(one.id for one in saved.camera if one.lens is not None),
+        intrinsics_saved=frozenset(one.id for one in saved.camera if one.lens is not None),
         rig=known.rig,
-        room=RoomQuality(
+        room=ExtrinsicsQuality(
             room.method,
             math.nan if room.rms_px is None else room.rms_px,
             {one.id: math.nan if one.rms_px is None else one.rms_px for one in saved.camera},
@@ -150,7 +150,7 @@ def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamer
         R=calibrated.R.tolist(),
         t_m=calibrated.t_m.tolist(),
         rms_px=figure(rms_px),
-        lens=None if lens is None else _lens_fit(lens, camera.id in draft.lens_saved),
+        lens=None if lens is None else _lens_fit(lens, camera.id in draft.intrinsics_saved),
         controls=camera.controls,
         colour=None
         if colours is None

@@ -10,7 +10,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
-from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
@@ -84,7 +84,7 @@ def lenses() -> list[Camera]:
 
 
 def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
-    rig, report = room_from_body(
+    rig, report = extrinsics_from_body(
         moments(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
     )
     true = CAMERAS[1].R @ CAMERAS[0].R.T
@@ -120,9 +120,9 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
         rounds=14, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
-    free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
-    stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, stiff)
-    ringed_rig, report = room_from_body(
+    free_rig, _ = extrinsics_from_body(seen, lenses(), STATURE_M, short)
+    stiff_rig, _ = extrinsics_from_body(seen, lenses(), STATURE_M, stiff)
+    ringed_rig, report = extrinsics_from_body(
         seen, lenses(), STATURE_M, replace(stiff, surface_uncertainty=2.0)
     )
     assert rotation_deg(free_rig) < 2.0
@@ -181,4 +181,4 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
 def test_a_camera_that_never_saw_the_wearer_is_named() -> None:
     alone = [{"left": m["left"]} for m in moments(4)]
     with pytest.raises(ConfigError, match="'right'"):
-        room_from_body(alone, lenses(), STATURE_M)
+        extrinsics_from_body(alone, lenses(), STATURE_M)

@@ -8,7 +8,7 @@ from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import moved_camera
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
-from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, placed_by_rings
+from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
 from mocapd.geometry import rotations
@@ -109,7 +109,7 @@ def test_rings_put_a_camera_back_in_its_place() -> None:
     pairs = arms(120, noise=2e-4)
     gross = pairs.xy.copy()
     gross[1, :6, 1] += 0.15  # rings of something else
-    found, covariance = placed_by_rings(
+    found, covariance = place_by_rings(
         RingPairs(gross, pairs.seen), CAMERAS[0], wrong, loose, STATURE_M
     )
     turn = rotations.angle_rad(rotations.from_matrix(found.R), rotations.from_matrix(true.R))
@@ -120,6 +120,6 @@ def test_rings_put_a_camera_back_in_its_place() -> None:
 
 def test_what_is_known_for_certain_stays() -> None:
     wrong = moved_camera(CAMERAS[1], np.array([0.1, 0.0, 0.0, 0.0, 0.05, 0.0]))
-    found, _ = placed_by_rings(arms(40, 1e-3), CAMERAS[0], wrong, 1e-12 * np.eye(6), STATURE_M)
+    found, _ = place_by_rings(arms(40, 1e-3), CAMERAS[0], wrong, 1e-12 * np.eye(6), STATURE_M)
     assert np.allclose(found.R, wrong.R, atol=1e-4)
     assert np.allclose(found.t_m, wrong.t_m, atol=1e-4)

@@ -13,7 +13,7 @@ from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
 from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
 from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in, world_on_floor
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import covered
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
 from mocapd.geometry.camera_model import centre, project
@@ -79,7 +79,7 @@ def lens_views(clips: dict[SetupScene, Clip]) -> Views:
 @pytest.fixture(scope="module")
 def lenses(lens_views: Views) -> dict[str, Intrinsics]:
     return {
-        name: solve_lens(list(views.values()), BOARD_M, (640, 480), name)
+        name: solve_intrinsics(list(views.values()), BOARD_M, (640, 480), name)
         for name, views in lens_views.items()
     }
 

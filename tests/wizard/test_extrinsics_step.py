@@ -15,7 +15,7 @@ from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes, Rig
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,
@@ -56,7 +56,7 @@ class Room:
 
     def __init__(self, folder: Path, draft: Draft) -> None:
         self.context = FakeContext(folder, draft)
-        self.step = RoomStep(self.context)
+        self.step = ExtrinsicsStep(self.context)
         self.step.enter()
 
     def show(self, pictures: Iterable[Mapping[str, Bytes]], seconds: float = STILL_S) -> None:
@@ -275,7 +275,7 @@ def test_fewer_places_are_solved_when_asked_for(tmp_path: Path) -> None:
 def test_a_room_without_lenses_is_refused(tmp_path: Path) -> None:
     draft = drafted()
     with pytest.raises(InputError, match="the lens of cam1 is not known"):
-        RoomStep(FakeContext(tmp_path, replace(draft, lenses={"cam0": lens(0)})))
+        ExtrinsicsStep(FakeContext(tmp_path, replace(draft, lenses={"cam0": lens(0)})))
 
 
 def test_commands_and_methods_that_are_not_there_are_refused(tmp_path: Path) -> None:

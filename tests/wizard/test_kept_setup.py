@@ -160,7 +160,7 @@ def test_a_camera_left_out_then_may_be_there_now(tmp_path: Path) -> None:
 
 
 def test_webcams_are_set_to_what_was_found_and_others_must_fit(tmp_path: Path) -> None:
-    draft = replace(drafted(), lens_saved=frozenset({"cam1"}))
+    draft = replace(drafted(), intrinsics_saved=frozenset({"cam1"}))
     keep(tmp_path, draft)
     webcam = FakeWebcam("cam0")
     locks = CameraLocks((webcam,))

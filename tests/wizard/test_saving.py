@@ -26,7 +26,7 @@ def test_a_saved_draft_can_be_gone_on_with(tmp_path: Path) -> None:
     assert draft.room is not None
     assert np.isnan(loaded.room.rms_px)
     assert loaded.room.camera_rms_px == draft.room.camera_rms_px
-    assert loaded.lens_saved == {"cam0", "cam1"}
+    assert loaded.intrinsics_saved == {"cam0", "cam1"}
     assert loaded.rig is not None
     assert draft.rig is not None
     for read, wrote in zip(loaded.rig.cameras, draft.rig.cameras, strict=True):

@@ -47,7 +47,7 @@ class BoardView:
 
 
 @dataclass(frozen=True, slots=True)
-class NotSeen:
+class DetectionFailure:
     """No usable board in this picture. `detail` adds what was seen instead."""
 
     index: int

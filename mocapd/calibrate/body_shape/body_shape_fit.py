@@ -43,13 +43,13 @@ class ShapeParams:
     joint_sd_rad: float = 0.5  # how far a pose may yield to a change of shape
     least_match: float = 0.6  # of a moment that counts
     tolerated_cost: float = 1.5  # and its cost, against that of the middle one
-    fewest_moments: int = 6
+    fewest_observations: int = 6
     # how many of them count in full against what is known of people: their errors are alike
-    independent_moments: float = 32.0
+    independent_observations: float = 32.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ShapeMoment:
+class BodyObservation:
     """The body as it was tracked at one instant, and what the cameras saw: views at work resolution."""
 
     t_ns: int
@@ -71,13 +71,13 @@ class ShapeFit:
     counted: tuple[int, ...]
 
 
-def moment_of(
+def observe_body(
     track: Track,
     frames: FrameSet,
     model: BodyModel,
     cameras: Sequence[Camera],
-    before: ShapeMoment | None,
-) -> ShapeMoment | None:
+    before: BodyObservation | None,
+) -> BodyObservation | None:
     """A moment of a tracked frame set; None when nothing was seen. before: the last one, for velocity."""
     body = track.body
     if body.pose is None or not track.evidence:
@@ -104,11 +104,11 @@ def moment_of(
         np.ones(model.n_shape),
         initial_information(model.space),
     )
-    return ShapeMoment(body.t_ns, state, tuple(views))
+    return BodyObservation(body.t_ns, state, tuple(views))
 
 
 def fit_shape(
-    moments: Sequence[ShapeMoment],
+    moments: Sequence[BodyObservation],
     model: BodyModel,
     cameras: Sequence[Camera],
     params: ShapeParams | None = None,
@@ -118,7 +118,7 @@ def fit_shape(
     tracker = FitParams()
     fitter = Fitter(model, cameras, image_scales(cameras, tracker.work_width_px), tracker)
     gatherer = RowGatherer(fitter, p.radius_px)
-    if len(moments) < p.fewest_moments:
+    if len(moments) < p.fewest_observations:
         raise _too_few(len(moments), p)
     states = [
         fitter.fit(m.state, m.views, p.loose_s, p.settling, learn_shape=True).state for m in moments
@@ -184,7 +184,7 @@ class _Evidence:
             self.H += H[n:, n:] - Hps.T @ back
             self.b += b[n:] - Hps.T @ own
             self.follows[k] = back, own
-        gain = min(1.0, p.independent_moments / len(counted))
+        gain = min(1.0, p.independent_observations / len(counted))
         self.H, self.b = self.H * gain, self.b * gain
 
     def step(self, factors: Floats) -> Floats:
@@ -211,14 +211,14 @@ def _counted(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: fl
         for k, moment in enumerate(rows)
         if _match(moment) >= least_match and costs[k] <= tolerable
     ]
-    if len(counted) < p.fewest_moments:
+    if len(counted) < p.fewest_observations:
         raise _too_few(len(counted), p)
     return counted
 
 
 def _too_few(count: int, p: ShapeParams) -> InputError:
     return InputError(
-        f"body and pictures agree in {count} moments only, {p.fewest_moments} are needed",
+        f"body and pictures agree in {count} moments only, {p.fewest_observations} are needed",
         "body",
         "check the colours, then stand where all cameras see the whole shirt and measure again",
     )

@@ -46,7 +46,7 @@ class BoardExtrinsicsParams:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SolvedRoom:
+class SceneExtrinsics:
     """Cameras and board positions in the first camera's frame; `indices`: of the positions."""
 
     names: tuple[str, ...]
@@ -69,7 +69,7 @@ class CameraFit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlacedRoom:
+class WorldExtrinsics:
     """The room in the world; `note`: what must be said of the floor ("": nothing)."""
 
     rig: Rig
@@ -80,14 +80,14 @@ class PlacedRoom:
     note: str
 
 
-def solve_room(
+def solve_extrinsics(
     names: Sequence[str],
     sizes_px: Sequence[tuple[int, int]],
     lenses: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     spec: BoardSpec,
     params: BoardExtrinsicsParams,
-) -> SolvedRoom:
+) -> SceneExtrinsics:
     """All cameras and positions at once; `views[camera][index]`, frames of one index being of one moment.
 
     Raises ConfigError naming the cameras that share no positions with the others.
@@ -101,12 +101,12 @@ def solve_room(
     scene, indices = first_scene(names, lenses, trusted, board_m)
     seen = observations(names, trusted, indices, board_m)
     bundle = adjust(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
-    return SolvedRoom(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
+    return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
 
 
 def lone_camera(
     name: str, size_px: tuple[int, int], lens: Intrinsics, spec: BoardSpec
-) -> SolvedRoom:
+) -> SceneExtrinsics:
     """One camera and no board yet: what `with_board` then adds gives it a place."""
     none = np.zeros(0, np.int64)
     scene = ReprojectionProblem(
@@ -118,10 +118,12 @@ def lone_camera(
     )
     seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)))
     bundle = Bundle(scene, np.zeros(0, bool), np.array([lens.focal_deviation]))
-    return SolvedRoom((name,), (size_px,), spec, (), seen, bundle)
+    return SceneExtrinsics((name,), (size_px,), spec, (), seen, bundle)
 
 
-def with_board(room: SolvedRoom, index: int, views: Mapping[str, BoardView]) -> SolvedRoom:
+def with_board(
+    room: SceneExtrinsics, index: int, views: Mapping[str, BoardView]
+) -> SceneExtrinsics:
     """The room with one more position of the board, which moves no camera."""
     board_m, scene = corners_m(room.spec), room.bundle.scene
     seen = observations(
@@ -188,8 +190,8 @@ def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[Reprojectio
 
 
 def placed(
-    room: SolvedRoom, floor: int | None, where: str, params: BoardExtrinsicsParams
-) -> PlacedRoom:
+    room: SceneExtrinsics, floor: int | None, where: str, params: BoardExtrinsicsParams
+) -> WorldExtrinsics:
     """The room in the world of the board that lies on the floor at index `floor`; None: guessed.
 
     `where` names that picture in an error. Raises ContradictionError, or ConfigError: a lens is not
@@ -202,7 +204,7 @@ def placed(
         world = world_on_floor(scene, room.indices.index(floor), centre_m(room.spec), where)
     rig = rig_in(world, scene, room.names, room.sizes_px)
     kept = seen.of(room.bundle.used)
-    made = PlacedRoom(
+    made = WorldExtrinsics(
         rig,
         _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
         {name: _fit(room, i) for i, name in enumerate(room.names)},
@@ -218,7 +220,7 @@ def _rms(error_px: Floats) -> float:
     return float(np.sqrt(np.mean(error_px**2))) if len(error_px) else float("nan")
 
 
-def _fit(room: SolvedRoom, i: int) -> CameraFit:
+def _fit(room: SceneExtrinsics, i: int) -> CameraFit:
     bundle, seen = room.bundle, room.seen
     own = seen.camera == i
     kept = own & bundle.used
@@ -231,7 +233,7 @@ def _fit(room: SolvedRoom, i: int) -> CameraFit:
     )
 
 
-def _refuse_bad(made: PlacedRoom, params: BoardExtrinsicsParams) -> None:
+def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams) -> None:
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(

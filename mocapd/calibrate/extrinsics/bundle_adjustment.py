@@ -22,7 +22,7 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     residuals_px,
     stepped_problem,
 )
-from mocapd.calibrate.intrinsics.intrinsics_priors import LensPriors
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.types import Floats, Ints
 
@@ -42,7 +42,7 @@ class BundleParams:
     delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
     rounds: int = 2  # of the board's motion, taken from the solution before
     evaluations: int = 15
-    priors: LensPriors = field(default_factory=LensPriors)
+    priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

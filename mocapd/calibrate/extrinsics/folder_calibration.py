@@ -5,17 +5,22 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, NotSeen, settled
-from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
+from mocapd.calibrate.board.board_detection import (
+    BoardDetector,
+    BoardView,
+    DetectionFailure,
+    settled,
+)
+from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibrate.board.recordings import Recording, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
     placed,
-    solve_room,
+    solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import Choice, chosen_views, covered
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
@@ -25,7 +30,7 @@ Progress = Callable[[str, int, int], None]
 _PROBES = 6  # pictures per camera that the board's variant is settled with
 _ASKED = 2  # pictures per camera that are asked why there is no board
 # A lens alone may leave its focal length open where the room then settles it.
-_ALONE = LensLimits(focal_deviation=0.25)
+_ALONE = IntrinsicsLimits(focal_deviation=0.25)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +49,7 @@ class BoardSighting:
     recording: Recording
     views: Mapping[int, BoardView]
     pictures: int
-    not_seen: tuple[NotSeen, ...]
+    not_seen: tuple[DetectionFailure, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,9 +138,9 @@ def _sighting(
             blank.append((index, pixels))
         count += 1
         progress(f"board in {recording.name}", min(count, total), total)
-    reasons: tuple[NotSeen, ...] = ()
+    reasons: tuple[DetectionFailure, ...] = ()
     if len(views) < _ALONE.fewest_views:
-        reasons = tuple(why_not_seen(detector, pixels, index) for index, pixels in blank)
+        reasons = tuple(diagnose_detection(detector, pixels, index) for index, pixels in blank)
     return BoardSighting(recording, views, count, reasons), spec
 
 
@@ -165,7 +170,7 @@ def _refuse_blind(sightings: Sequence[BoardSighting]) -> None:
 def _lens(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
     views = chosen_views(list(one.views.values()), size_px, params.choice)
-    return solve_lens(views, board_m, size_px, one.recording.name, _ALONE)
+    return solve_intrinsics(views, board_m, size_px, one.recording.name, _ALONE)
 
 
 def _room(
@@ -188,7 +193,7 @@ def _room(
         )
     progress("room", 0, 1)
     sizes_px = [one.recording.size_px for one in sightings]
-    room = solve_room(names, sizes_px, lenses, views, spec, params.room)
+    room = solve_extrinsics(names, sizes_px, lenses, views, spec, params.room)
     progress("room", 1, 1)
     made = placed(room, floor_frame, f"frame {floor_frame}", params.room)
     notes += [made.note] if made.note else []

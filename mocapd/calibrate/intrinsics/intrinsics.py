@@ -31,7 +31,7 @@ _WORTH = 0.97  # a further coefficient must lower the held-out error to this par
 
 
 @dataclass(frozen=True, slots=True)
-class LensLimits:
+class IntrinsicsLimits:
     """What a lens must reach to be used."""
 
     fewest_views: int = 6
@@ -73,18 +73,18 @@ class _Solution:
     per_view_px: Floats
 
 
-def solve_lens(
+def solve_intrinsics(
     views: Sequence[BoardView],
     board_m: Floats,
     size_px: tuple[int, int],
     where: str,
-    limits: LensLimits | None = None,
+    limits: IntrinsicsLimits | None = None,
 ) -> Intrinsics:
     """The lens of camera `where`. Raises ConfigError that says why these views do not give it.
 
     `board_m` (n,3): the board's corners by id.
     """
-    limits = limits or LensLimits()
+    limits = limits or IntrinsicsLimits()
     if len(views) < limits.fewest_views:
         raise ConfigError(
             f"the board is usable in {len(views)} pictures, a lens needs {limits.fewest_views}",
@@ -217,7 +217,7 @@ def _parallel(where: str) -> ConfigError:
     )
 
 
-def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> None:
+def _refuse_parallel(solution: _Solution, where: str, limits: IntrinsicsLimits) -> None:
     """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
     normals = np.stack([R[:, 2] for R in solution.rotations])
     cosines = np.clip(normals @ normals.T, -1.0, 1.0)
@@ -226,7 +226,7 @@ def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> Non
         raise _parallel(where)
 
 
-def _refuse_bad(lens: Intrinsics, where: str, limits: LensLimits) -> None:
+def _refuse_bad(lens: Intrinsics, where: str, limits: IntrinsicsLimits) -> None:
     if lens.rms_px > limits.rms_px or lens.held_out_px > limits.held_out_px:
         raise ConfigError(
             f"the board fits badly: {lens.rms_px:.2f} px, {lens.held_out_px:.2f} px held out",

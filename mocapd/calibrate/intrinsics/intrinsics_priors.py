@@ -9,7 +9,7 @@ from mocapd.types import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KnownLenses:
+class KnownIntrinsics:
     """Lenses (C,9) measured before, and their standard deviations (C,9); infinite: not known."""
 
     lens: Floats
@@ -17,7 +17,7 @@ class KnownLenses:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LensPriors:
+class IntrinsicsPriors:
     """Standard deviations. What the pictures tell outweighs them; what they do not tell stays sane.
 
     Pixels are square, the axis meets the picture near its middle, and distortion is moderate.
@@ -27,7 +27,7 @@ class LensPriors:
     aspect: float = 0.005  # of fx / fy from 1
     middle: float = 0.025  # of cx, cy from the middle, in picture widths
     dist: tuple[float, float, float, float, float] = (0.3, 0.3, 0.003, 0.003, 0.2)
-    known: KnownLenses | None = None
+    known: KnownIntrinsics | None = None
 
     def residuals(self, lens: Floats, size_px: Floats) -> Floats:
         """(C,8), with known lenses (C,17), in standard deviations; lens (C,9), size_px (C,2)."""

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.body.model import build_model, shape_of
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
@@ -21,7 +21,7 @@ _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 
 
 def align_with_gravity(
-    rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats
+    rig: Rig, moments: Sequence[PatchObservation], stature_m: float, factors: Floats
 ) -> Rig:
     """The rig in the world of someone who stood and walked in it.
 
@@ -54,7 +54,7 @@ def align_with_gravity(
     )
 
 
-def _bodies(rig: Rig, moments: Sequence[Moment]) -> Floats:
+def _bodies(rig: Rig, moments: Sequence[PatchObservation]) -> Floats:
     """Hips, neck and shoulders (F,4,3) of every moment that at least two cameras saw."""
     missing = np.full((len(_NAMES), 2), np.nan)
     xy = np.array(

@@ -53,7 +53,7 @@ class SelfCalibrationParams:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RoomReport:
+class SelfCalibrationReport:
     """How well the room was solved.
 
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
@@ -89,7 +89,7 @@ class _Evidence:
     follows: list[tuple[Floats, Floats] | None]
 
 
-class RoomSolver:
+class JointSolver:
     """Gauss-Newton over all cameras but the first, the body's shape, and every keyframe's pose."""
 
     def __init__(
@@ -123,7 +123,7 @@ class RoomSolver:
         """Of the middle keyframe as things are now, for each drawn pixel."""
         return float(np.median([_cost(frame) for frame in self._gather()]))
 
-    def solve(self) -> tuple[Rig, RoomReport, dict[str, Floats]]:
+    def solve(self) -> tuple[Rig, SelfCalibrationReport, dict[str, Floats]]:
         """The room at rest, how good it is, and by camera but the first the covariance (6,6) of its motion.
 
         Raises ConfigError when too little agrees.
@@ -258,7 +258,7 @@ class RoomSolver:
         scene: _Scene,
         rows: Sequence[Sequence[BodyRows]],
         covariances: Mapping[str, Floats],
-    ) -> RoomReport:
+    ) -> SelfCalibrationReport:
         good = [frame for frame in rows if _match(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
@@ -267,7 +267,7 @@ class RoomSolver:
             camera.name: uncertainty_of(camera, first, covariances[camera.name])
             for camera in scene.cameras[1:]
         }
-        return RoomReport(
+        return SelfCalibrationReport(
             residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(scene.cameras)},
             frames=len(good),
             distance_m={

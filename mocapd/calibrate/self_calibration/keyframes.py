@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, PatchSighting
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, PatchSighting
 from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import View
@@ -30,7 +30,10 @@ class Keyframe:
 
 
 def choose(
-    moments: Sequence[Moment], names: Sequence[str], count: int, least_confidence: float = 0.3
+    moments: Sequence[PatchObservation],
+    names: Sequence[str],
+    count: int,
+    least_confidence: float = 0.3,
 ) -> list[Keyframe]:
     """Up to `count` moments seen by at least two cameras, spread over time, well seen and slow."""
     rated: list[tuple[float, Keyframe]] = []

@@ -51,7 +51,7 @@ class PatchSighting:
         return xy
 
 
-Moment = Mapping[str, PatchSighting]  # by camera, of one frame set
+PatchObservation = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 
 def unplaced(lenses: Sequence[Camera]) -> tuple[Camera, ...]:
@@ -89,9 +89,9 @@ class PatchTracks:
         self._trackers = [
             ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
         ]
-        self.moments: list[Moment] = []
+        self.moments: list[PatchObservation] = []
 
-    def add(self, frames: FrameSet) -> Moment:
+    def add(self, frames: FrameSet) -> PatchObservation:
         """Follow one frame set: who saw the wearer, and how."""
         seen: dict[str, PatchSighting] = {}
         for tracker in self._trackers:

@@ -48,7 +48,7 @@ def lengths_m(stature_m: float) -> Floats:
     return np.array([0.55 * upper, 0.55 * fore, 0.4 * fore])
 
 
-def placed_by_rings(
+def place_by_rings(
     pairs: RingPairs, first: Camera, second: Camera, covariance: Floats, stature_m: float
 ) -> tuple[Camera, Floats]:
     """The second camera, and the covariance (6,6) of its motion, from the rings and from what was

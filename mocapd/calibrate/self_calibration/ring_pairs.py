@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchSighting
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, PatchSighting
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, SIDES, sleeve_rings
 from mocapd.clock import nanoseconds
 from mocapd.geometry.camera_model import to_camera
@@ -30,7 +30,7 @@ class RingPairs:
 
 
 def ring_pairs(
-    moments: Sequence[Moment], pair: tuple[Camera, Camera], scales: tuple[int, int]
+    moments: Sequence[PatchObservation], pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> RingPairs:
     """Of the moments in which both cameras saw the wearer; the second camera's rings are moved to
     the first's instants. The cameras stand about where `pair` says."""
@@ -69,7 +69,7 @@ def ring_pairs(
 
 
 def _rings(
-    moment: Moment, i: int, pair: tuple[Camera, Camera], scales: tuple[int, int]
+    moment: PatchObservation, i: int, pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> tuple[Floats, Floats]:
     """Of one of both cameras, as `sleeve_rings`."""
     sightings = [moment[camera.name] for camera in pair]

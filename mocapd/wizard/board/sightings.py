@@ -25,7 +25,7 @@ class SightingParams:
     most: int = 16  # of one pair of cameras
 
 
-class Moments:
+class BoardSightings:
     """The board's views by camera and index; those of one index are of one moment."""
 
     def __init__(
@@ -53,7 +53,7 @@ class Moments:
 
     @property
     def count(self) -> int:
-        """Moments at which two cameras or more saw the board."""
+        """BoardSightings at which two cameras or more saw the board."""
         seen = [index for own in self._views.values() for index in own]
         return int((np.unique(seen, return_counts=True)[1] >= 2).sum()) if seen else 0
 

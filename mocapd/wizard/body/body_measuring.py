@@ -17,7 +17,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.session.tracker_setup import cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
-from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
+from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
@@ -68,7 +68,7 @@ def measure(
     assert draft.stature_m is not None
     tracker = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
-    moments = BodyMoments(model, draft.rig.cameras, params)
+    moments = BodyObservations(model, draft.rig.cameras, params)
     if not _watch(hub, draft.rig, tracker, moments, watched, tell):
         return None
     tell("working out the proportions", SEEN)
@@ -107,7 +107,7 @@ def _watch(
     hub: FrameHub,
     rig: Rig,
     tracker: Tracker,
-    moments: BodyMoments,
+    moments: BodyObservations,
     watched: Watched,
     tell: Tell,
 ) -> bool:
@@ -139,7 +139,7 @@ def _watch(
         watched.body = None
 
 
-def _asked(seen: bool, moments: BodyMoments) -> str:
+def _asked(seen: bool, moments: BodyObservations) -> str:
     """What the wearer is to do now."""
     if not seen:
         return "Stand where all cameras see the whole shirt, arms out"

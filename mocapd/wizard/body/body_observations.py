@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment, moment_of
+from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation, observe_body
 from mocapd.clock import nanoseconds
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Track, Tracking
 
@@ -28,7 +28,7 @@ class BodyObservationParams:
     longest_good_s: float = 12.0
 
 
-class BodyMoments:
+class BodyObservations:
     """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last moment only."""
 
     def __init__(
@@ -39,9 +39,9 @@ class BodyMoments:
     ) -> None:
         self._model, self._cameras = model, tuple(cameras)
         self._p = params if params is not None else BodyObservationParams()
-        self.moments: list[ShapeMoment] = []
+        self.moments: list[BodyObservation] = []
         self.pictures: dict[str, Bytes] = {}
-        self._last: ShapeMoment | None = None
+        self._last: BodyObservation | None = None
         self._bends: list[Floats] = []
 
     def add(self, track: Track, frames: FrameSet) -> bool:
@@ -50,7 +50,7 @@ class BodyMoments:
         before, self._last = self._last, None
         if body.tracking is not Tracking.LIVE or body.confidence[_SIDES].mean() < _SURE:
             return False
-        self._last = moment_of(track, frames, self._model, self._cameras, before)
+        self._last = observe_body(track, frames, self._model, self._cameras, before)
         if self._last is None or before is None:
             return False  # just found: not settled, and its velocity is not known
         due_ns = self.moments[-1].t_ns + nanoseconds(self._p.every_s) if self.moments else 0

@@ -25,7 +25,7 @@ def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
         draft,
         cameras=cameras,
         lenses=lenses,
-        lens_saved=draft.lens_saved & lenses.keys(),
+        intrinsics_saved=draft.intrinsics_saved & lenses.keys(),
         colours=colours,
     )
     names = {camera.id for camera in cameras}

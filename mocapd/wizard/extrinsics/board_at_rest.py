@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
+from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
@@ -79,7 +79,7 @@ def _mean(views: list[BoardView], index: int) -> BoardView:
     return replace(views[-1], index=index, ids=ids, corners_px=corners_px)
 
 
-def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
+def looks_like_floor(room: SceneExtrinsics, views: Mapping[str, BoardView]) -> bool:
     """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
     scene = room.bundle.scene
     lying = with_board(room, -1, views).bundle.scene
@@ -93,7 +93,7 @@ def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
     return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
 
 
-def _lowest_m(room: SolvedRoom, up: Floats) -> float:
+def _lowest_m(room: SceneExtrinsics, up: Floats) -> float:
     """The height under which the board is lower than wherever it was held."""
     if not room.indices:
         return float("inf")

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.wizard.board.board_look import BoardObservation, Look
-from mocapd.wizard.board.sightings import Moments, Views
+from mocapd.wizard.board.sightings import BoardSightings, Views
 from mocapd.wizard.draft import DraftCamera
 
 ENOUGH = 10  # sightings in all
@@ -21,7 +21,9 @@ class BoardCollection:
 
     def __init__(self, cameras: Sequence[DraftCamera], spec: BoardSpec, earlier: Views) -> None:
         self._cameras = tuple(cameras)
-        self._moments = Moments({camera.id: camera.size_px for camera in cameras}, corners_m(spec))
+        self._moments = BoardSightings(
+            {camera.id: camera.size_px for camera in cameras}, corners_m(spec)
+        )
         self._moments.add(earlier)
         self._own = 0  # sightings of this step
         self._tried = 0  # of them at the last try

@@ -9,14 +9,14 @@ from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     ContradictionError,
-    PlacedRoom,
-    SolvedRoom,
+    SceneExtrinsics,
+    WorldExtrinsics,
     placed,
-    solve_room,
+    solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.calibrate.intrinsics.intrinsics_priors import KnownLenses, LensPriors
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, chosen_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.geometry.reprojection import intrinsics_row
@@ -39,7 +39,7 @@ def solve_live(
     spec: BoardSpec,
     views: Views,
     earlier: frozenset[int],
-) -> tuple[SolvedRoom, PlacedRoom]:
+) -> tuple[SceneExtrinsics, WorldExtrinsics]:
     """The room, and where it is placed as long as no floor is known.
 
     `earlier`: indices of moments from the lens step. If the room does not fit with them, the cameras
@@ -57,13 +57,13 @@ def solve_live(
 
 def _solved(
     cameras: Sequence[DraftCamera], lenses: Mapping[str, Intrinsics], spec: BoardSpec, views: Views
-) -> tuple[SolvedRoom, PlacedRoom]:
+) -> tuple[SceneExtrinsics, WorldExtrinsics]:
     names = [camera.id for camera in cameras]
     sizes_px = [camera.size_px for camera in cameras]
     chosen = {camera.id: _chosen(camera, views) for camera in cameras}
     known = _known([lenses[name] for name in names], [_alone(name, views) for name in names])
-    bundle = replace(PARAMS.bundle, priors=LensPriors(known=known))
-    room = solve_room(names, sizes_px, lenses, chosen, spec, replace(PARAMS, bundle=bundle))
+    bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(known=known))
+    room = solve_extrinsics(names, sizes_px, lenses, chosen, spec, replace(PARAMS, bundle=bundle))
     return room, placed(room, None, "", PARAMS)
 
 
@@ -81,7 +81,7 @@ def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
     return {index: view for index, view in views[camera.id].items() if index not in dropped}
 
 
-def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownLenses:
+def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownIntrinsics:
     """Lenses without pictures of their own stay near what was measured."""
     rows = np.stack([intrinsics_row(lens.K, lens.dist) for lens in lenses])
     deviation = np.full(rows.shape, np.inf)
@@ -92,10 +92,10 @@ def _known(lenses: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -
         deviation[i, :2] = focal * rows[i, :2]
         deviation[i, 2:4] = _MIDDLE * lens.size_px[0]
         deviation[i, 4:] = _DIST
-    return KnownLenses(rows, deviation)
+    return KnownIntrinsics(rows, deviation)
 
 
-def _refused(room: SolvedRoom) -> float:
+def _refused(room: SceneExtrinsics) -> float:
     return 1.0 - float(np.mean(room.bundle.used))
 
 

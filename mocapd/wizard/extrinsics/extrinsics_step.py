@@ -11,12 +11,12 @@ from typing import Protocol
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.commands import ROOM, Command, Method, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.extrinsics.extrinsics_with_board import BoardRoom
-from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.step import StepName, StepView
 
 
-class RoomMethod(Protocol):
+class ExtrinsicsMethod(Protocol):
     """A way to find the room: as a Step, which see, but for the name."""
 
     @property
@@ -29,12 +29,12 @@ class RoomMethod(Protocol):
     def leave(self) -> None: ...
 
 
-METHODS: Mapping[str, Callable[[Context], RoomMethod]] = MappingProxyType(
-    {"board": BoardRoom, "wearer": WearerRoom}
+METHODS: Mapping[str, Callable[[Context], ExtrinsicsMethod]] = MappingProxyType(
+    {"board": ExtrinsicsWithBoard, "wearer": ExtrinsicsWithWearer}
 )
 
 
-class RoomStep:
+class ExtrinsicsStep:
     """Hands everything on to the method that was chosen; the board's to begin with."""
 
     name = StepName.ROOM
@@ -52,7 +52,7 @@ class RoomStep:
             )
         self._context = context
         self._method_name = "board"
-        self._method: RoomMethod = METHODS["board"](context)
+        self._method: ExtrinsicsMethod = METHODS["board"](context)
 
     def enter(self) -> None:
         """See Step."""

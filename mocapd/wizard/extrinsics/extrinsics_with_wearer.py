@@ -16,16 +16,16 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
 from mocapd.wizard.commands import WEARER_ROOM, Command, StartWalk, StopWalk
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft import RoomQuality
+from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
 from mocapd.wizard.extrinsics.walk_coverage import WalkParams
-from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerFound, walk_and_solve
+from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
 from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, StepView
 
 _SHOWN_PLACES = 12  # of the wearer's way, in the picture of the room
 
 
-class WearerRoom:
+class ExtrinsicsWithWearer:
     """See the head of this file. The draft is changed when the room is found."""
 
     name = StepName.ROOM
@@ -42,7 +42,7 @@ class WearerRoom:
         self._walk: Walk | None = None  # while a job runs
         self._walk_next = False
         self._refusal: Problem | None = None
-        self._found: WearerFound | None = None
+        self._found: WearerExtrinsics | None = None
 
     # -- as a Step -------------------------------------------------------------------------------
 
@@ -86,7 +86,7 @@ class WearerRoom:
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
         load, params = self._load, self._params
 
-        def done(found: WearerFound | None) -> None:
+        def done(found: WearerExtrinsics | None) -> None:
             if walk is not self._walk:
                 return
             self._walk = None
@@ -97,14 +97,14 @@ class WearerRoom:
             lambda tell: walk_and_solve(hub, draft, cache_dir, walk, tell, load, params), done
         )
 
-    def _take(self, found: WearerFound) -> None:
+    def _take(self, found: WearerExtrinsics) -> None:
         self._found = found
         residuals = np.array(list(found.report.residual_px.values()))
         self._context.draft = replace(
             self._context.draft,
             rig=found.rig,
             floor_known=True,
-            room=RoomQuality(
+            room=ExtrinsicsQuality(
                 "wearer",
                 float(np.sqrt(np.mean(residuals**2))),
                 dict(found.report.residual_px),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
-from mocapd.calibrate.self_calibration.patch_tracks import Moment
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation
 from mocapd.clock import seconds
 from mocapd.geometry import rotations
 
@@ -39,7 +39,7 @@ class Coverage:
         self._places: set[tuple[int, int]] = set()
         self._last_ns: int | None = None
 
-    def add(self, moment: Moment, t_ns: int) -> None:
+    def add(self, moment: PatchObservation, t_ns: int) -> None:
         """What the cameras saw at t_ns."""
         dt_s = 0.0 if self._last_ns is None else seconds(t_ns - self._last_ns)
         self._last_ns = t_ns

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.calibrate.self_calibration.joint_solver import RoomReport
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, unplaced
-from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.errors import InputError
@@ -30,11 +30,11 @@ _TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WearerFound:
+class WearerExtrinsics:
     """The room, how good it is, and where the wearer walked (N,3) [m]."""
 
     rig: Rig
-    report: RoomReport
+    report: SelfCalibrationReport
     walked_m: Floats
 
 
@@ -55,7 +55,7 @@ def walk_and_solve(
     load: LoadDatabase,
     params: WalkParams,
     clock: Callable[[], int] = monotonic_ns,
-) -> WearerFound | None:
+) -> WearerExtrinsics | None:
     """The room of a draft whose lenses, colours and stature are known; None when stopped.
 
     Raises InputError when too little was seen, ConfigError when what was seen does not agree.
@@ -79,12 +79,12 @@ def walk_and_solve(
     near = draft.rig
     if near is not None and set(near.names) != {camera.name for camera in lenses}:
         near = None
-    rig, report = room_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
+    rig, report = extrinsics_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
     first = rig.cameras[0]
     walked = [
         from_camera(first, m[first.name].joints_m[0]) for m in tracks.moments if first.name in m
     ]
-    return WearerFound(rig, report, np.array(walked).reshape(-1, 3))
+    return WearerExtrinsics(rig, report, np.array(walked).reshape(-1, 3))
 
 
 def lenses_of(draft: Draft) -> list[Camera]:

@@ -17,18 +17,22 @@ from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
 from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import BoardWatch
-from mocapd.wizard.board.sightings import Moments
+from mocapd.wizard.board.sightings import BoardSightings
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
 from mocapd.wizard.context import Context
-from mocapd.wizard.intrinsics.intrinsics_views import LensCamera, LensOffer
-from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
+from mocapd.wizard.intrinsics.intrinsics_views import CameraIntrinsics, IntrinsicsOffer
+from mocapd.wizard.intrinsics.saved_intrinsics import (
+    SavedIntrinsics,
+    find_saved_intrinsics,
+    read_intrinsics,
+)
 from mocapd.wizard.step import Problem, Scene, Shape, StepName, StepState, StepView, Tell
 
 _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
 
 
-class LensStep:
+class IntrinsicsStep:
     """Collects pictures of the board, of all cameras at once, and solves lens after lens."""
 
     name = StepName.LENS
@@ -46,7 +50,7 @@ class LensStep:
         self._note = ""
         self._now_ns = 0
         self._round = 0
-        self._solving: LensCamera | None = None
+        self._solving: CameraIntrinsics | None = None
         self._damaged: tuple[Problem, ...] = ()
         self._begin()
         self._offer()
@@ -123,9 +127,9 @@ class LensStep:
         board_m = corners_m(self._spec)
         cameras = self._context.draft.cameras
         self._cameras = {
-            one.id: LensCamera(one, PickedViews(one.size_px, board_m)) for one in cameras
+            one.id: CameraIntrinsics(one, PickedViews(one.size_px, board_m)) for one in cameras
         }
-        self._moments = Moments({one.id: one.size_px for one in cameras}, board_m)
+        self._moments = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
         self._round += 1  # a job of the round before is not listened to
 
     def _take(self, look: Look, now_ns: int) -> None:
@@ -214,27 +218,29 @@ class LensStep:
                 for id_, own in self._moments.views.items()
             },
             lenses={id_: one.lens for id_, one in self._cameras.items() if one.lens is not None},
-            lens_saved=frozenset(saved | (draft.lens_saved & of_draft)),
+            intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
     # -- lenses of before ------------------------------------------------------------------------
 
     def _offer(self) -> None:
         """A lens of this setup, else one of the file of lenses."""
-        saved: tuple[SavedLens, ...] = ()
+        saved: tuple[SavedIntrinsics, ...] = ()
         try:
-            saved = read_lenses(self._context.state_dir)
+            saved = read_intrinsics(self._context.state_dir)
         except ConfigError as error:
             self._damaged = (Problem.of(error),)
         for id_, one in self._cameras.items():
             lens = self._context.draft.lenses.get(id_)
-            found = lens_for(one.camera, saved)
+            found = find_saved_intrinsics(one.camera, saved)
             if lens is not None and lens.size_px == one.camera.size_px:
-                one.offered = LensOffer(lens, "", from_file=False)
+                one.offered = IntrinsicsOffer(lens, "", from_file=False)
             elif found is not None:
-                one.offered = LensOffer(found.lens(), f"{found.when:%Y-%m-%d}", from_file=True)
+                one.offered = IntrinsicsOffer(
+                    found.lens(), f"{found.when:%Y-%m-%d}", from_file=True
+                )
 
-    def _use_saved(self, cameras: Sequence[LensCamera]) -> None:
+    def _use_saved(self, cameras: Sequence[CameraIntrinsics]) -> None:
         offered = [one for one in cameras if one.offered is not None]
         if not offered:
             raise InputError("no lens of before is known", cameras[0].name, "show it the board")
@@ -242,7 +248,7 @@ class LensStep:
             one.use(one.offered)
         self._write_when_done()
 
-    def _named(self, camera: str) -> LensCamera:
+    def _named(self, camera: str) -> CameraIntrinsics:
         if camera not in self._cameras:
             raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
         return self._cameras[camera]

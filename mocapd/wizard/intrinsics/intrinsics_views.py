@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
 from mocapd.calibrate.intrinsics.views import GRID, Choice, chosen_views
 from mocapd.errors import MocapdError
@@ -12,7 +12,7 @@ from mocapd.types import Floats
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.step import Json, Problem, Shape
 
-_LIMITS = LensLimits(focal_deviation=0.05)
+_LIMITS = IntrinsicsLimits(focal_deviation=0.05)
 _CHOICE = Choice(most=24)
 _FIRST_TRY = 10  # pictures, whatever they lack: a refusal then says what
 _NEXT_TRY = 4  # pictures more
@@ -21,7 +21,7 @@ _COLUMNS = ("left", "middle", "right")
 
 
 @dataclass(frozen=True, slots=True)
-class GoodLens:
+class IntrinsicsGoal:
     """When a lens ends the collecting, and when a person may end it by hand.
 
     held_out: error in parts of the picture's width; focal_deviation: of the focal length, of itself.
@@ -35,7 +35,7 @@ class GoodLens:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LensOffer:
+class IntrinsicsOffer:
     """A lens of before. when: the day it was measured, "" in this setup; from_file: of another setup."""
 
     lens: Intrinsics
@@ -44,18 +44,18 @@ class LensOffer:
 
 
 @dataclass(slots=True, eq=False)
-class LensCamera:
+class CameraIntrinsics:
     """What is known of one camera so far."""
 
     camera: DraftCamera
     picked: PickedViews
-    offered: LensOffer | None = None
-    taken: LensOffer | None = None  # the one that was offered, when the person took it
+    offered: IntrinsicsOffer | None = None
+    taken: IntrinsicsOffer | None = None  # the one that was offered, when the person took it
     lens: Intrinsics | None = None  # that the step ends with
     usable: Intrinsics | None = None  # the newest one that is not good enough yet
     refusal: Problem | None = None
     tried: int = 0  # pictures at the last try
-    good: GoodLens = field(default_factory=GoodLens)
+    good: IntrinsicsGoal = field(default_factory=IntrinsicsGoal)
 
     @property
     def name(self) -> str:
@@ -72,7 +72,7 @@ class LensCamera:
     def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
         """For a job. Raises ConfigError that says what is wrong with the pictures."""
         chosen = chosen_views(views, self.camera.size_px, _CHOICE)
-        return solve_lens(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
+        return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
 
     def take(self, lens: Intrinsics, tried: int) -> None:
         """The job's lens: good enough to end with, or the best so far."""
@@ -90,7 +90,7 @@ class LensCamera:
         """The job found that these pictures give no lens."""
         self.tried, self.refusal = tried, Problem.of(error)
 
-    def use(self, offered: LensOffer | None) -> None:
+    def use(self, offered: IntrinsicsOffer | None) -> None:
         """The lens of before; None: a new one is measured."""
         self.taken = offered
         self.lens = None if offered is None else offered.lens

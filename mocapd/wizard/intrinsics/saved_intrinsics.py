@@ -36,7 +36,7 @@ Row5 = tuple[Finite, Finite, Finite, Finite, Finite]
 Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e9)]
 
 
-class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
+class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
     """camera: vid:pid:serial; focus: what its focus was locked to; when: UTC."""
 
     camera: str
@@ -72,7 +72,7 @@ class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
 
 class _File(msgspec.Struct, frozen=True):
     schema: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
-    lens: tuple[SavedLens, ...] = ()
+    lens: tuple[SavedIntrinsics, ...] = ()
 
 
 def key_of(camera: DraftCamera) -> str | None:
@@ -82,7 +82,7 @@ def key_of(camera: DraftCamera) -> str | None:
     return ":".join(parse_identity(camera.source).model)
 
 
-def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
+def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
     """All that were saved; none without the file. Raises ConfigError when it is damaged."""
     path = state_dir / FILE_NAME
     try:
@@ -96,7 +96,9 @@ def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
     return file.lens
 
 
-def lens_for(camera: DraftCamera, saved: tuple[SavedLens, ...]) -> SavedLens | None:
+def find_saved_intrinsics(
+    camera: DraftCamera, saved: tuple[SavedIntrinsics, ...]
+) -> SavedIntrinsics | None:
     """The one measured of this camera in this mode, with the same focus where that is known."""
     key = key_of(camera)
     for one in saved:
@@ -108,7 +110,7 @@ def lens_for(camera: DraftCamera, saved: tuple[SavedLens, ...]) -> SavedLens | N
     return None
 
 
-def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
+def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
     """Add the draft's new lenses; one of the same camera and mode is replaced, others stay.
 
     For when the calibration is saved. Raises CannotCreateError, ConfigError.
@@ -118,12 +120,12 @@ def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
         for camera in draft.cameras
         if (key := key_of(camera)) is not None
         and camera.id in draft.lenses
-        and camera.id not in draft.lens_saved
+        and camera.id not in draft.intrinsics_saved
     ]
     if not new:
         return
     made = {(one.camera, one.size_px) for one in new}
-    kept = [one for one in read_lenses(state_dir) if (one.camera, one.size_px) not in made]
+    kept = [one for one in read_intrinsics(state_dir) if (one.camera, one.size_px) not in made]
     data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
     path = state_dir / FILE_NAME
     try:
@@ -136,12 +138,12 @@ def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
         ) from None
 
 
-def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedLens:
+def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedIntrinsics:
     K: tuple[Row3, Row3, Row3] = msgspec.convert(
         np.round(lens.K, 4).tolist(), tuple[Row3, Row3, Row3]
     )
     dist: Row5 = msgspec.convert(np.round(lens.dist, 7).tolist(), Row5)
-    return SavedLens(
+    return SavedIntrinsics(
         camera=key,
         size_px=camera.size_px,
         when=when.replace(microsecond=0),
@@ -156,6 +158,6 @@ def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> S
     )
 
 
-def _table(one: SavedLens) -> Mapping[str, object]:
+def _table(one: SavedIntrinsics) -> Mapping[str, object]:
     table: dict[str, object] = msgspec.to_builtins(one, builtin_types=(datetime,))
     return table
