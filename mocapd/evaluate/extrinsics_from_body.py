@@ -93,10 +93,10 @@ def _known(capture: Path) -> _Known:
 
 def find_extrinsics(known: _Known, database: PoseDatabase) -> tuple[Rig, SelfCalibrationReport]:
     """The rig from the capture's lenses and videos."""
-    lenses = known.folder.rig.cameras
-    tracks = PatchTracks(lenses, known.stature_m, known.colours, known.W, database)
+    bare_cameras = known.folder.rig.cameras
+    tracks = PatchTracks(bare_cameras, known.stature_m, known.colours, known.W, database)
     tracks.add_all(frame_sets(known.folder))
-    return extrinsics_from_body(tracks.moments, lenses, known.stature_m)
+    return extrinsics_from_body(tracks.observations, bare_cameras, known.stature_m)
 
 
 def rms_cm(known: _Known, rig: Rig, database: PoseDatabase) -> tuple[float, float]:

@@ -53,7 +53,7 @@ def walking(i: int) -> MotionState:
     )
 
 
-def moments(
+def observations(
     n: int = 16, fitter: Fitter = FITTER, factors: Floats | None = None
 ) -> list[dict[str, PatchSighting]]:
     """Both cameras' sightings; each judges depth wrongly by a few percent, as a lone camera does."""
@@ -61,7 +61,7 @@ def moments(
     out = []
     for i in range(n):
         state = walking(i) if factors is None else replace(walking(i), factors=factors)
-        moment: dict[str, PatchSighting] = {}
+        observation: dict[str, PatchSighting] = {}
         joints, quats = fitter.joints(state)
         for camera, drawing in zip(CAMERAS, fitter.drawings, strict=True):
             roi = drawing.region(state, 0.0, 24)
@@ -70,11 +70,11 @@ def moments(
             turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
             wrong = rotations.exp(rng.normal(0.0, 0.03, 3))
             seen = to_camera(camera, joints) * (1.0 + rng.normal(0.0, 0.03))
-            moment[camera.name] = PatchSighting(
+            observation[camera.name] = PatchSighting(
                 nanoseconds(0.3 * i), seen, rotations.multiply(wrong, turned), np.ones(N_JOINTS),
                 ids, (2 * roi[0], 2 * roi[1], 2 * roi[2], 2 * roi[3]),
             )  # fmt: skip
-        out.append(moment)
+        out.append(observation)
     return out
 
 
@@ -85,7 +85,7 @@ def lenses() -> list[Camera]:
 
 def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
     rig, report = extrinsics_from_body(
-        moments(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
+        observations(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
     )
     true = CAMERAS[1].R @ CAMERAS[0].R.T
     found = rig.cameras[1].R @ rig.cameras[0].R.T
@@ -115,7 +115,7 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
-    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
+    seen = observations(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = SelfCalibrationParams(
         rounds=14, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
@@ -179,6 +179,6 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
 
 
 def test_a_camera_that_never_saw_the_wearer_is_named() -> None:
-    alone = [{"left": m["left"]} for m in moments(4)]
+    alone = [{"left": m["left"]} for m in observations(4)]
     with pytest.raises(ConfigError, match="'right'"):
         extrinsics_from_body(alone, lenses(), STATURE_M)

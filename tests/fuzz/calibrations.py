@@ -81,7 +81,7 @@ def lenses(place: Place) -> Attempt:
         for camera in draft.cameras:
             found = find_saved_intrinsics(camera, read_intrinsics(place.folder))
             if found is not None:
-                found.lens()
+                found.intrinsics()
         return True
 
     return attempt

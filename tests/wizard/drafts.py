@@ -51,7 +51,7 @@ def full_draft() -> Draft:
             for name in NAMES
         ),
         board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
-        lenses={
+        intrinsics={
             camera.name: Intrinsics(
                 SIZE_PX, K, camera.dist, np.array([True, True, False, False, False]),
                 0.25, 0.3, tuple(range(12)), (), 0.001,
@@ -59,7 +59,7 @@ def full_draft() -> Draft:
             for camera in rig.cameras
         },
         rig=rig,
-        room=ExtrinsicsQuality("wearer", float("nan"), {"cam0": 0.3, "cam1": 0.4}, 0.5),
+        extrinsics_quality=ExtrinsicsQuality("wearer", float("nan"), {"cam0": 0.3, "cam1": 0.4}, 0.5),
         floor_known=True,
         colours={name: DraftColours(LabelledPicture(pixels, strokes), np.eye(3) * 1.1) for name in NAMES},
         personal=True,

@@ -231,4 +231,4 @@ def attack_at_random(
 
 def without_room(draft: Draft) -> Draft:
     """So that no tracker is prepared."""
-    return replace(draft, rig=None, room=None)
+    return replace(draft, rig=None, extrinsics_quality=None)

@@ -58,7 +58,7 @@ def draft(person: SimulatedWearer) -> Draft:
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
         rig=person.rig,
-        room=ExtrinsicsQuality("board", 0.3, {}, 0.2),
+        extrinsics_quality=ExtrinsicsQuality("board", 0.3, {}, 0.2),
         floor_known=True,
         colours=colours,
         personal=solved.personal,

@@ -28,7 +28,7 @@ from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 SHORT = WalkParams(
     good_s=3.0, facings=1, places=1, patience_s=25.0,
-    room=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
+    extrinsics=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
 )  # fmt: skip
 
 
@@ -44,7 +44,7 @@ def draft() -> Draft:
     solved = solve({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
-        lenses={
+        intrinsics={
             c.name: Intrinsics(c.size_px, c.K, c.dist, np.ones(5, bool), 0.2, 0.2, (), (), 0.002)
             for c in person.rig.cameras
         },
@@ -121,9 +121,9 @@ def test_the_room_of_a_wearer(tmp_path: Path, draft: Draft, database: PoseDataba
     assert shares == sorted(shares)
     found = kept(context)
     assert found.rig is not None
-    assert found.room is not None
-    assert (found.room.method, found.floor_known) == ("wearer", True)
-    assert set(found.room.camera_rms_px) == set(found.rig.names)
+    assert found.extrinsics_quality is not None
+    assert (found.extrinsics_quality.method, found.floor_known) == ("wearer", True)
+    assert set(found.extrinsics_quality.camera_rms_px) == set(found.rig.names)
     apart_m = [
         np.linalg.norm(centre(rig.cameras[1]) - centre(rig.cameras[0]))
         for rig in (found.rig, person.rig)

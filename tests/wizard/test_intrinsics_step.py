@@ -78,7 +78,7 @@ def test_lenses_are_found_by_themselves(tmp_path: Path) -> None:
     assert view.progress == 1.0
     assert shown.context.scenes == [Scene.LENS]
     for true in RIG:
-        lens = shown.context.draft.lenses[true.name]
+        lens = shown.context.draft.intrinsics[true.name]
         focal = np.diag(lens.K)[:2] / np.diag(true.K)[:2] - 1.0
         print(true.name, 100 * focal, "%", lens.rms_px, lens.held_out_px)
         assert np.abs(focal).max() <= 0.005
@@ -282,7 +282,7 @@ WHEN = datetime(2026, 11, 20, 9, 30, tzinfo=UTC)
 
 def test_a_lens_is_offered_to_the_camera_that_it_was_measured_of(tmp_path: Path) -> None:
     context = FakeContext(tmp_path, Draft(cameras=(WEBCAM,), board=SPEC))
-    store_intrinsics(replace(context.draft, lenses={"cam0": LENS}), context.state_dir, WHEN)
+    store_intrinsics(replace(context.draft, intrinsics={"cam0": LENS}), context.state_dir, WHEN)
     moved = replace(WEBCAM, id="left", source="usb:2-1:046d:0825:5F2A")
     context = FakeContext(tmp_path, Draft(cameras=(moved,), board=SPEC))
     step = IntrinsicsStep(context)
@@ -293,15 +293,15 @@ def test_a_lens_is_offered_to_the_camera_that_it_was_measured_of(tmp_path: Path)
     assert step.view().state is StepState.WAITING
     do(step, "use_saved", {"camera": "left"})
     assert step.view().state is StepState.DONE
-    np.testing.assert_allclose(context.draft.lenses["left"].K, RIG[0].K, rtol=1e-6)
-    np.testing.assert_allclose(context.draft.lenses["left"].dist, RIG[0].dist, atol=1e-6)
+    np.testing.assert_allclose(context.draft.intrinsics["left"].K, RIG[0].K, rtol=1e-6)
+    np.testing.assert_allclose(context.draft.intrinsics["left"].dist, RIG[0].dist, atol=1e-6)
     assert context.draft.intrinsics_saved == {"left"}
     do(step, "measure", {"camera": "left"})
     assert step.view().state is StepState.WAITING
 
 
 def test_saved_lenses_are_of_one_camera_and_one_mode(tmp_path: Path) -> None:
-    draft = Draft(cameras=(WEBCAM,), lenses={"cam0": LENS})
+    draft = Draft(cameras=(WEBCAM,), intrinsics={"cam0": LENS})
     store_intrinsics(draft, tmp_path, WHEN)
     saved = read_intrinsics(tmp_path)
     assert find_saved_intrinsics(WEBCAM, saved) is not None
@@ -315,13 +315,13 @@ def test_saved_lenses_are_of_one_camera_and_one_mode(tmp_path: Path) -> None:
 
 def test_storing_replaces_the_same_and_keeps_the_others(tmp_path: Path) -> None:
     other = replace(WEBCAM, id="cam1", source="usb:1-4:046d:0825:77")
-    draft = Draft(cameras=(WEBCAM, other), lenses={"cam0": LENS, "cam1": LENS})
+    draft = Draft(cameras=(WEBCAM, other), intrinsics={"cam0": LENS, "cam1": LENS})
     store_intrinsics(draft, tmp_path, WHEN)
     better = replace(LENS, rms_px=0.1)
-    store_intrinsics(replace(draft, lenses={"cam0": better, "cam1": LENS}), tmp_path, WHEN)
+    store_intrinsics(replace(draft, intrinsics={"cam0": better, "cam1": LENS}), tmp_path, WHEN)
     assert sorted(one.rms_px for one in read_intrinsics(tmp_path)) == [0.1, 0.2]
     # a lens that was taken over is not stored as new
-    worse = replace(draft, lenses={"cam0": LENS}, intrinsics_saved=frozenset({"cam0"}))
+    worse = replace(draft, intrinsics={"cam0": LENS}, intrinsics_saved=frozenset({"cam0"}))
     store_intrinsics(worse, tmp_path, WHEN)
     assert sorted(one.rms_px for one in read_intrinsics(tmp_path)) == [0.1, 0.2]
 
@@ -352,7 +352,7 @@ def test_a_damaged_file_of_lenses_is_told_and_the_step_goes_on(tmp_path: Path, t
     ],
 )
 def test_numbers_that_cannot_be_are_damage(tmp_path: Path, was: str, becomes: str) -> None:
-    store_intrinsics(Draft(cameras=(WEBCAM,), lenses={"cam0": LENS}), tmp_path, WHEN)
+    store_intrinsics(Draft(cameras=(WEBCAM,), intrinsics={"cam0": LENS}), tmp_path, WHEN)
     path = tmp_path / FILE_NAME
     text = path.read_text()
     assert was in text

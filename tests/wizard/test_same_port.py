@@ -84,7 +84,7 @@ def test_another_camera_in_its_place_is_calibrated_anew(tmp_path: Path) -> None:
     before = (context.state_dir / "calibration.toml").read_bytes()
     do(step, "same_port", {"camera": "cam1", "same": False})
     assert context.draft.rig is None
-    assert set(context.draft.lenses) == {"cam0"}
+    assert set(context.draft.intrinsics) == {"cam0"}
     assert set(context.draft.colours) == {"cam0"}
     assert (context.state_dir / "calibration.toml").read_bytes() == before
 

@@ -12,18 +12,18 @@ from mocapd.types import Camera
 
 
 def initial_extrinsics(
-    moments: Sequence[PatchObservation], lenses: Sequence[Camera]
+    observations: Sequence[PatchObservation], bare_cameras: Sequence[Camera]
 ) -> list[Camera]:
     """The first camera where a lone webcam would stand, the others by the bodies seen in common.
 
     Cameras that share nothing with the first are chained through others. Raises ConfigError naming
     a camera that shares nothing with any.
     """
-    alone = unplaced(lenses)
+    alone = unplaced(bare_cameras)
     placed: dict[str, Camera] = {alone[0].name: alone[0]}
     while len(placed) < len(alone):
         candidates = [
-            (_shared(moments, a, b.name), a, b)
+            (_shared(observations, a, b.name), a, b)
             for a in placed
             for b in alone
             if b.name not in placed
@@ -53,5 +53,5 @@ def initial_extrinsics(
     return [placed[camera.name] for camera in alone]
 
 
-def _shared(moments: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
-    return [m for m in moments if a in m and b in m]
+def _shared(observations: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
+    return [m for m in observations if a in m and b in m]

@@ -30,7 +30,7 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 @dataclass(frozen=True, slots=True)
 class SelfCalibrationParams:
-    """How the room is solved."""
+    """How the extrinsics are solved."""
 
     keyframes: int = 64
     rounds: int = 20
@@ -38,9 +38,9 @@ class SelfCalibrationParams:
         8  # last rounds: steps end in the noise of whole pixels, which their mean halves
     )
     radius_px: int = 14  # work px within which colours are looked for
-    polish: int = 3  # rounds of the poses alone in the room that was found
+    polish: int = 3  # rounds of the poses alone with the extrinsics that were found
     loose_s: float = 0.4  # a start is held to as loosely as a prediction over this time
-    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of room or shape
+    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of extrinsics or shape
     least_match: float = 0.6  # of a keyframe that counts
     tolerated_cost: float = 3.0  # and its cost, against that of the middle one
     least_keyframes: int = 6
@@ -54,7 +54,7 @@ class SelfCalibrationParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SelfCalibrationReport:
-    """How well the room was solved.
+    """How well the extrinsics were solved.
 
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
     colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
@@ -124,7 +124,7 @@ class JointSolver:
         return float(np.median([_cost(frame) for frame in self._gather()]))
 
     def solve(self) -> tuple[Rig, SelfCalibrationReport, dict[str, Floats]]:
-        """The room at rest, how good it is, and by camera but the first the covariance (6,6) of its motion.
+        """The rig at the end, how good it is, and by camera but the first the covariance (6,6) of its motion.
 
         Raises ConfigError when too little agrees.
         """
@@ -213,7 +213,7 @@ class JointSolver:
         """One step of cameras and shape, the poses following.
 
         All is moved by the same rows, with the poses eliminated (Schur complement). To alternate with
-        the tracker's own fit was tried: its cost differs a little, and room and poses then drift
+        the tracker's own fit was tried: its cost differs a little, and cameras and poses then drift
         together along what the pictures hardly tell.
         """
         found, n = self._informed(self._evidence(rows)), self._n_shape

@@ -17,12 +17,12 @@ from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
 _PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
-_STILL_M_S = 0.3  # a mark that moves so fast halves a moment's worth
+_STILL_M_S = 0.3  # a mark that moves so fast halves an observation's worth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Keyframe:
-    """A moment: its sightings by camera index, and the one of its first camera a frame earlier."""
+    """An observation: its sightings by camera index, and the one of its first camera a frame earlier."""
 
     t_ns: int
     sightings: dict[int, PatchSighting]
@@ -30,16 +30,16 @@ class Keyframe:
 
 
 def choose(
-    moments: Sequence[PatchObservation],
+    observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
     least_confidence: float = 0.3,
 ) -> list[Keyframe]:
-    """Up to `count` moments seen by at least two cameras, spread over time, well seen and slow."""
+    """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow."""
     rated: list[tuple[float, Keyframe]] = []
     last: dict[int, PatchSighting] = {}
-    for moment in moments:
-        seen = {i: moment[name] for i, name in enumerate(names) if name in moment}
+    for observation in observations:
+        seen = {i: observation[name] for i, name in enumerate(names) if name in observation}
         if len(seen) >= 2:
             first = min(seen)
             worth = min(float(s.confidence[MARKS].mean()) for s in seen.values())

@@ -1,4 +1,4 @@
-"""A camera's place from sleeve rings: each arm's rings are points, as far from each other in every moment.
+"""A camera's place from sleeve rings: each arm's rings are points, as far from each other in every observation.
 
 Bundle adjustment over one camera, the distances between neighbouring rings, and all points, which are
 eliminated (Schur complement) [Triggs et al., Bundle adjustment - a modern synthesis, 2000, section 6.1].
@@ -21,7 +21,7 @@ from mocapd.types import Camera, Floats
 _POINT_SD_M = 0.004  # a ring's middle
 _LENGTH_SD_M = 0.007  # cloth shifts along the arm
 _SPREAD = np.array([0.02, 0.07, 0.09])  # of each length over people, of its mean
-# arms that count in full, and the most that one may count: their errors are alike from moment to moment
+# arms that count in full, and the most that one may count: their errors are alike from observation to observation
 _INDEPENDENT, _MOST = 30.0, 0.25
 _ROUNDS = 25
 _GENTLE = 3  # first rounds, before outliers are left out

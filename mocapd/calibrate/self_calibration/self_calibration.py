@@ -25,35 +25,37 @@ from mocapd.types import Camera, Floats, Rig
 
 
 def extrinsics_from_body(
-    moments: Sequence[PatchObservation],
-    lenses: Sequence[Camera],
+    observations: Sequence[PatchObservation],
+    bare_cameras: Sequence[Camera],
     stature_m: float,
     params: SelfCalibrationParams | None = None,
     near: Rig | None = None,
 ) -> tuple[Rig, SelfCalibrationReport]:
     """The rig in world coordinates: floor at y = 0, the wearer at the origin facing +Z at the start.
 
-    moments: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
-    Raises ConfigError when the moments do not tell where the cameras stand.
+    observations: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
+    Raises ConfigError when the observations do not tell where the cameras stand.
     """
     p = params if params is not None else SelfCalibrationParams()
-    keyframes = choose(moments, [camera.name for camera in lenses], p.keyframes)
+    keyframes = choose(observations, [camera.name for camera in bare_cameras], p.keyframes)
     model = build_model(stature_m)
-    solvers = [JointSolver(model, initial_extrinsics(moments, lenses), keyframes, p)]
+    solvers = [JointSolver(model, initial_extrinsics(observations, bare_cameras), keyframes, p)]
     if near is not None:
         old = {camera.name: camera for camera in near.cameras}
-        before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in lenses]
+        before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in bare_cameras]
         solvers.append(JointSolver(model, before, keyframes, p))
     rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
-    rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_uncertainty)
-    return align_with_gravity(rig, moments, stature_m, report.factors), report
+    rig, report = _with_rings(
+        rig, report, covariances, observations, stature_m, p.surface_uncertainty
+    )
+    return align_with_gravity(rig, observations, stature_m, report.factors), report
 
 
 def _with_rings(
     rig: Rig,
     report: SelfCalibrationReport,
     covariances: Mapping[str, Floats],
-    moments: Sequence[PatchObservation],
+    observations: Sequence[PatchObservation],
     stature_m: float,
     surface_uncertainty: float,
 ) -> tuple[Rig, SelfCalibrationReport]:
@@ -62,7 +64,7 @@ def _with_rings(
     work = image_scales(rig.cameras, FitParams().work_width_px)
     cameras, uncertainties = [first], {}
     for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
-        pairs = ring_pairs(moments, (first, other), (work[0], image_scale))
+        pairs = ring_pairs(observations, (first, other), (work[0], image_scale))
         known = surface_uncertainty**2 * covariances[other.name]
         camera, covariance = other, known
         if len(pairs.seen):

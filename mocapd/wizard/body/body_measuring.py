@@ -68,20 +68,20 @@ def measure(
     assert draft.stature_m is not None
     tracker = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
-    moments = BodyObservations(model, draft.rig.cameras, params)
-    if not _watch(hub, draft.rig, tracker, moments, watched, tell):
+    observations = BodyObservations(model, draft.rig.cameras, params)
+    if not _watch(hub, draft.rig, tracker, observations, watched, tell):
         return None
     tell("working out the proportions", SEEN)
-    fit = fit_shape(moments.moments, model, draft.rig.cameras)
-    last = fit.states[-1], moments.moments[-1]
+    fit = fit_shape(observations.observations, model, draft.rig.cameras)
+    last = fit.states[-1], observations.observations[-1]
     return Measured(
         BodyShape(draft.stature_m, fit.factors),
         fit,
         scale_of(fit, model, draft.floor_known),
         {
-            camera.name: body_picture(moments.pictures[camera.name], camera, model, *last, i)
+            camera.name: body_picture(observations.pictures[camera.name], camera, model, *last, i)
             for i, camera in enumerate(draft.rig.cameras)
-            if camera.name in moments.pictures
+            if camera.name in observations.pictures
         },
     )
 
@@ -107,22 +107,22 @@ def _watch(
     hub: FrameHub,
     rig: Rig,
     tracker: Tracker,
-    moments: BodyObservations,
+    observations: BodyObservations,
     watched: Watched,
     tell: Tell,
 ) -> bool:
-    """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
+    """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""
     collector = FrameCollector(rig.names)
     entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)
     try:
-        while moments.share < 1.0:
+        while observations.share < 1.0:
             if watched.stop.is_set():
                 return False
             if monotonic_ns() > give_up_ns:
                 raise InputError(
-                    f"the wearer was well seen for {moments.good_s:.0f} s only",
+                    f"the wearer was well seen for {observations.good_s:.0f} s only",
                     "body",
                     "check the colours, stand where all cameras see the whole shirt, and measure again",
                 )
@@ -131,18 +131,18 @@ def _watch(
                 continue
             track = tracker.step(frames)
             watched.body = track.body, tracker.skeleton
-            seen = moments.add(track, frames)
-            tell(_asked(seen, moments), READY + (SEEN - READY) * moments.share)
+            seen = observations.add(track, frames)
+            tell(_asked(seen, observations), READY + (SEEN - READY) * observations.share)
         return True
     finally:
         hub.leave(entry)
         watched.body = None
 
 
-def _asked(seen: bool, moments: BodyObservations) -> str:
+def _asked(seen: bool, observations: BodyObservations) -> str:
     """What the wearer is to do now."""
     if not seen:
         return "Stand where all cameras see the whole shirt, arms out"
-    if not moments.bent:
+    if not observations.bent:
         return "Arms out; now bend both elbows and stretch them again, slowly"
     return "Good. Go on bending and stretching the elbows"

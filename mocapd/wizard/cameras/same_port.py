@@ -58,11 +58,11 @@ def other_camera(draft: Draft, moved: PortChange) -> Draft:
     draft = same_camera(draft, moved)
     return replace(
         draft,
-        lenses=_without(draft.lenses, moved.camera),
+        intrinsics=_without(draft.intrinsics, moved.camera),
         intrinsics_saved=draft.intrinsics_saved - {moved.camera},
         colours=_without(draft.colours, moved.camera),
         rig=None,
-        room=None,
+        extrinsics_quality=None,
         floor_known=False,
     )
 

@@ -214,7 +214,7 @@ class CheckStep:
         except MocapdError as error:
             raise InputError(error.what, error.where, error.fix) from error
         # the lenses are kept now: a second save does not keep them anew
-        self._context.draft = replace(draft, intrinsics_saved=frozenset(draft.lenses))
+        self._context.draft = replace(draft, intrinsics_saved=frozenset(draft.intrinsics))
         self._context.saved()
 
     def _told(self) -> tuple[StepState, str, float]:

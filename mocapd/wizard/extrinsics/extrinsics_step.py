@@ -17,7 +17,7 @@ from mocapd.wizard.step import StepName, StepView
 
 
 class ExtrinsicsMethod(Protocol):
-    """A way to find the room: as a Step, which see, but for the name."""
+    """A way to find the extrinsics: as a Step, which see, but for the name."""
 
     @property
     def verbs(self) -> Verbs: ...
@@ -40,9 +40,9 @@ class ExtrinsicsStep:
     name = StepName.ROOM
 
     def __init__(self, context: Context) -> None:
-        """Raises InputError when lenses are missing."""
+        """Raises InputError when intrinsics are missing."""
         missing = [
-            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.lenses
+            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.intrinsics
         ]
         if missing or not context.draft.cameras:
             raise InputError(

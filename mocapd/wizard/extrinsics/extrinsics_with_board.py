@@ -1,4 +1,4 @@
-"""The room with the board: held where cameras see it together, then laid on the floor.
+"""The extrinsics with the board: held where cameras see it together, then laid on the floor.
 
 Its commands are `commands.BOARD_ROOM`.
 """
@@ -12,7 +12,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     SceneExtrinsics,
     WorldExtrinsics,
     lone_camera,
-    placed,
+    place_in_world,
     with_board,
 )
 from mocapd.errors import ConfigError, InputError, MocapdError
@@ -66,7 +66,7 @@ class ExtrinsicsWithBoard:
         self._now_ns = 0
         self._begun_ns: int | None = None
         self._refusal: Problem | None = None
-        self._room: SceneExtrinsics | None = None
+        self._extrinsics: SceneExtrinsics | None = None
         self._made: WorldExtrinsics | None = None
         self._plan: Json = None
 
@@ -77,8 +77,8 @@ class ExtrinsicsWithBoard:
         self._watch.start()
         if len(self._cameras) == 1:
             one = self._cameras[0]
-            lens = self._context.draft.lenses[one.id]
-            self._room = lone_camera(one.id, one.size_px, lens, self._spec)
+            intrinsics = self._context.draft.intrinsics[one.id]
+            self._extrinsics = lone_camera(one.id, one.size_px, intrinsics, self._spec)
             self._to_floor()
         else:
             self._context.scene(Scene.ROOM)
@@ -163,15 +163,19 @@ class ExtrinsicsWithBoard:
         self._seen.try_now()
         self._asked, self._solving = False, True
         views, earlier = self._seen.views, self._earlier
-        cameras, spec, lenses = self._cameras, self._spec, dict(self._context.draft.lenses)
+        cameras, spec, intrinsics_of = (
+            self._cameras,
+            self._spec,
+            dict(self._context.draft.intrinsics),
+        )
 
         def job(tell: Tell) -> tuple[SceneExtrinsics, WorldExtrinsics]:
             tell("the room", 0.0)
-            return solve_live(cameras, lenses, spec, views, earlier)
+            return solve_live(cameras, intrinsics_of, spec, views, earlier)
 
         def done(found: tuple[SceneExtrinsics, WorldExtrinsics]) -> None:
             self._solving = False
-            self._room, self._made = found
+            self._extrinsics, self._made = found
             self._plan = plan_of(*found)
             self._to_floor()
 
@@ -187,17 +191,17 @@ class ExtrinsicsWithBoard:
     def _watch_floor(self, look: Look) -> None:
         still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
         self._rest.take(look, still)
-        if self._room is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
+        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
             return
         try:
-            if looks_like_floor(self._room, self._rest.views()):
+            if looks_like_floor(self._extrinsics, self._rest.views()):
                 self._lay_down()
         except ConfigError as error:
             self._refusal = Problem.of(error)
             self._rest.forget()
 
     def _floor_by_hand(self) -> None:
-        if self._room is None:
+        if self._extrinsics is None:
             raise InputError(
                 "the cameras' places are not known yet", "room", "hold the board before the cameras"
             )
@@ -215,14 +219,16 @@ class ExtrinsicsWithBoard:
 
     def _lay_down(self) -> None:
         """Raises ConfigError when the floor is none."""
-        assert self._room is not None
+        assert self._extrinsics is not None
         views = self._rest.views()
         index = next(iter(views.values())).index
-        room = with_board(self._room, index, views)
-        self._finish(room, placed(room, index, "the floor", PARAMS), floor_known=True)
+        extrinsics = with_board(self._extrinsics, index, views)
+        self._finish(
+            extrinsics, place_in_world(extrinsics, index, "the floor", PARAMS), floor_known=True
+        )
 
     def _skip_floor(self) -> None:
-        if self._room is None or self._made is None:
+        if self._extrinsics is None or self._made is None:
             raise InputError(
                 "the cameras' places are not known yet",
                 "room",
@@ -230,11 +236,13 @@ class ExtrinsicsWithBoard:
                 if len(self._cameras) == 1
                 else "hold the board before the cameras",
             )
-        self._finish(self._room, self._made, floor_known=False)
+        self._finish(self._extrinsics, self._made, floor_known=False)
 
-    def _finish(self, room: SceneExtrinsics, made: WorldExtrinsics, floor_known: bool) -> None:
+    def _finish(
+        self, extrinsics: SceneExtrinsics, made: WorldExtrinsics, floor_known: bool
+    ) -> None:
         self._stage, self._refusal = BoardPhase.DONE, None
-        self._room, self._made, self._plan = room, made, plan_of(room, made)
+        self._extrinsics, self._made, self._plan = extrinsics, made, plan_of(extrinsics, made)
         area = made.play_area
         self._context.draft = replace(
             self._context.draft,
@@ -242,7 +250,7 @@ class ExtrinsicsWithBoard:
             board_views=self._seen.views,
             rig=made.rig,
             floor_known=floor_known,
-            room=ExtrinsicsQuality(
+            extrinsics_quality=ExtrinsicsQuality(
                 "board",
                 made.rms_px,
                 {name: fit.rms_px for name, fit in made.cameras.items()},

@@ -1,8 +1,8 @@
-"""The room without a board: the wearer in the shirt walks about for 20 to 30 s.
+"""The extrinsics without a board: the wearer in the shirt walks about for 20 to 30 s.
 
 Its commands are `commands.WEARER_ROOM`.
 
-It needs lenses, colours and stature. A room that is there already, of cameras that were bumped since, is
+It needs intrinsics, colours and stature. A rig that is there already, of cameras that were bumped since, is
 where the search begins.
 """
 
@@ -22,11 +22,11 @@ from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
 from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, StepView
 
-_SHOWN_PLACES = 12  # of the wearer's way, in the picture of the room
+_SHOWN_PLACES = 12  # of the wearer's way, in the plan of the rig
 
 
 class ExtrinsicsWithWearer:
-    """See the head of this file. The draft is changed when the room is found."""
+    """See the head of this file. The draft is changed when they are found."""
 
     name = StepName.ROOM
     verbs = WEARER_ROOM
@@ -74,7 +74,7 @@ class ExtrinsicsWithWearer:
                 self._stop()
 
     def job_failed(self, error: MocapdError) -> None:
-        """It can be begun again; the room that was there stays."""
+        """It can be begun again; the rig that was there stays."""
         self._walk = None
         self._refusal = Problem.of(error)
 
@@ -104,7 +104,7 @@ class ExtrinsicsWithWearer:
             self._context.draft,
             rig=found.rig,
             floor_known=True,
-            room=ExtrinsicsQuality(
+            extrinsics_quality=ExtrinsicsQuality(
                 "wearer",
                 float(np.sqrt(np.mean(residuals**2))),
                 dict(found.report.residual_px),
@@ -200,10 +200,10 @@ class ExtrinsicsWithWearer:
         found, draft = self._found, self._context.draft
         quality: dict[str, Json] | None = None
         plan: Json = None
-        if found is not None and draft.room is not None:
+        if found is not None and draft.extrinsics_quality is not None:
             report = found.report
             quality = {
-                "rms_px": round(draft.room.rms_px, 3),
+                "rms_px": round(draft.extrinsics_quality.rms_px, 3),
                 "play_area_cm": None,
                 "cameras": {
                     name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()

@@ -1,4 +1,4 @@
-"""The job of the room without a board: the wearer is followed in every camera alone, then the room is solved."""
+"""The job of the extrinsics without a board: the wearer is followed in every camera alone, then all is solved."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -31,7 +31,7 @@ _TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WearerExtrinsics:
-    """The room, how good it is, and where the wearer walked (N,3) [m]."""
+    """The extrinsics, how good they are, and where the wearer walked (N,3) [m]."""
 
     rig: Rig
     report: SelfCalibrationReport
@@ -56,13 +56,13 @@ def walk_and_solve(
     params: WalkParams,
     clock: Callable[[], int] = monotonic_ns,
 ) -> WearerExtrinsics | None:
-    """The room of a draft whose lenses, colours and stature are known; None when stopped.
+    """The extrinsics of a draft whose intrinsics, colours and stature are known; None when stopped.
 
     Raises InputError when too little was seen, ConfigError when what was seen does not agree.
     """
     assert draft.stature_m is not None
-    lenses = lenses_of(draft)
-    placed = replace(draft, rig=Rig(unplaced(lenses)), factors=None)
+    bare_cameras = draft_cameras(draft)
+    placed = replace(draft, rig=Rig(unplaced(bare_cameras)), factors=None)
     shirt = calibration_of(placed).shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = {
@@ -70,29 +70,35 @@ def walk_and_solve(
         for name, picture in shirt.white_balance.items()
     }
     database = load(cache_dir, lambda what, share: tell(what, READY * share))
-    tracks = PatchTracks(lenses, draft.stature_m, colours, W, database)
+    tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
-        hub, tracks, Coverage([c.name for c in lenses], params), walk, tell, params, clock
+        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, tell, params, clock
     ):
         return None
     tell("working out where the cameras stand", SEEN)
     near = draft.rig
-    if near is not None and set(near.names) != {camera.name for camera in lenses}:
+    if near is not None and set(near.names) != {camera.name for camera in bare_cameras}:
         near = None
-    rig, report = extrinsics_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
+    rig, report = extrinsics_from_body(
+        tracks.observations, bare_cameras, draft.stature_m, params.extrinsics, near
+    )
     first = rig.cameras[0]
     walked = [
-        from_camera(first, m[first.name].joints_m[0]) for m in tracks.moments if first.name in m
+        from_camera(first, m[first.name].joints_m[0])
+        for m in tracks.observations
+        if first.name in m
     ]
     return WearerExtrinsics(rig, report, np.array(walked).reshape(-1, 3))
 
 
-def lenses_of(draft: Draft) -> list[Camera]:
-    """The draft's cameras with their lenses; they stand anywhere."""
+def draft_cameras(draft: Draft) -> list[Camera]:
+    """The draft's cameras with their intrinsics; they stand anywhere."""
     out = []
     for camera in draft.cameras:
-        lens = draft.lenses[camera.id]
-        out.append(Camera(camera.id, camera.size_px, lens.K, lens.dist, np.eye(3), np.zeros(3)))
+        intrinsics = draft.intrinsics[camera.id]
+        out.append(
+            Camera(camera.id, camera.size_px, intrinsics.K, intrinsics.dist, np.eye(3), np.zeros(3))
+        )
     return out
 
 

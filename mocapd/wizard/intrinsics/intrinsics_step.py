@@ -1,4 +1,4 @@
-"""The step Intrinsics: the board is shown to every camera, whose lens is solved as soon as enough was seen.
+"""The step Lens: the board is shown to every camera, whose intrinsics are solved as soon as enough was seen.
 
 Its commands are `commands.LENS`.
 """
@@ -33,7 +33,7 @@ _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one
 
 
 class IntrinsicsStep:
-    """Collects pictures of the board, of all cameras at once, and solves lens after lens."""
+    """Collects pictures of the board, of all cameras at once, and solves the intrinsics of one after the other."""
 
     name = StepName.LENS
     verbs = LENS
@@ -103,7 +103,9 @@ class IntrinsicsStep:
         """See Step."""
         cameras = self._cameras.values()
         state = StepState.DONE if self._done() else StepState.WAITING
-        if state is StepState.WAITING and any(one.refusal and not one.lens for one in cameras):
+        if state is StepState.WAITING and any(
+            one.refusal and not one.intrinsics for one in cameras
+        ):
             state = StepState.FAILED
         return StepView(
             state,
@@ -129,19 +131,21 @@ class IntrinsicsStep:
         self._cameras = {
             one.id: CameraIntrinsics(one, PickedViews(one.size_px, board_m)) for one in cameras
         }
-        self._moments = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
+        self._sightings = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
         self._round += 1  # a job of the round before is not listened to
 
     def _take(self, look: Look, now_ns: int) -> None:
         self._advice.take(look)
-        together = self._moments.offer(look)
+        together = self._sightings.offer(look)
         for id_, seen in look.seen.items():
             one = self._cameras[id_]
-            if one.lens is not None or not one.picked.offer(seen.view, seen.motion_px):
+            if one.intrinsics is not None or not one.picked.offer(seen.view, seen.motion_px):
                 continue
-            if not (together and self._moments.still(id_, seen)):
-                one.picked.views[-1] = self._moments.add_alone(id_, seen.view)
-        wanted = {id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].lens}
+            if not (together and self._sightings.still(id_, seen)):
+                one.picked.views[-1] = self._sightings.add_alone(id_, seen.view)
+        wanted = {
+            id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].intrinsics
+        }
         self._advice.ask(now_ns, wanted, self._spec)
 
     def _found_variant(self, spec: BoardSpec) -> None:
@@ -160,7 +164,7 @@ class IntrinsicsStep:
             for id_, (offered, taken) in offers.items():
                 self._cameras[id_].offered = offered
                 self._cameras[id_].use(taken)
-        # otherwise corners stay where they are, and a lens does not mind the scale of the board
+        # otherwise corners stay where they are, and intrinsics do not mind the scale of the board
         self._watch.change(spec)
         self._advice.forget()
         self._write_when_done()
@@ -180,10 +184,10 @@ class IntrinsicsStep:
             tell(f"the lens of {one.name}", 0.0)
             return one.solve(views, board_m)
 
-        def done(lens: Intrinsics) -> None:
+        def done(intrinsics: Intrinsics) -> None:
             self._solving = None
-            if begun_in == self._round and one.lens is None:
-                one.take(lens, count)
+            if begun_in == self._round and one.intrinsics is None:
+                one.take(intrinsics, count)
                 self._write_when_done()
 
         self._context.start_job(job, done)
@@ -195,11 +199,11 @@ class IntrinsicsStep:
                     "its lens is not known well enough yet", one.name, "show it the board on"
                 )
         for one in self._cameras.values():
-            one.lens = one.by_hand()
+            one.intrinsics = one.by_hand()
         self._write_when_done()
 
     def _done(self) -> bool:
-        return all(one.lens is not None for one in self._cameras.values())
+        return all(one.intrinsics is not None for one in self._cameras.values())
 
     def _write_when_done(self) -> None:
         if not self._done():
@@ -215,29 +219,33 @@ class IntrinsicsStep:
             board=self._spec,
             board_views={
                 id_: earlier.get(id_, {}) if id_ in of_draft else own
-                for id_, own in self._moments.views.items()
+                for id_, own in self._sightings.views.items()
             },
-            lenses={id_: one.lens for id_, one in self._cameras.items() if one.lens is not None},
+            intrinsics={
+                id_: one.intrinsics
+                for id_, one in self._cameras.items()
+                if one.intrinsics is not None
+            },
             intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
-    # -- lenses of before ------------------------------------------------------------------------
+    # -- intrinsics of before --------------------------------------------------------------------
 
     def _offer(self) -> None:
-        """A lens of this setup, else one of the file of lenses."""
+        """Intrinsics of this setup, else of the file of earlier ones."""
         saved: tuple[SavedIntrinsics, ...] = ()
         try:
             saved = read_intrinsics(self._context.state_dir)
         except ConfigError as error:
             self._damaged = (Problem.of(error),)
         for id_, one in self._cameras.items():
-            lens = self._context.draft.lenses.get(id_)
+            intrinsics = self._context.draft.intrinsics.get(id_)
             found = find_saved_intrinsics(one.camera, saved)
-            if lens is not None and lens.size_px == one.camera.size_px:
-                one.offered = IntrinsicsOffer(lens, "", from_file=False)
+            if intrinsics is not None and intrinsics.size_px == one.camera.size_px:
+                one.offered = IntrinsicsOffer(intrinsics, "", from_file=False)
             elif found is not None:
                 one.offered = IntrinsicsOffer(
-                    found.lens(), f"{found.when:%Y-%m-%d}", from_file=True
+                    found.intrinsics(), f"{found.when:%Y-%m-%d}", from_file=True
                 )
 
     def _use_saved(self, cameras: Sequence[CameraIntrinsics]) -> None:
@@ -258,7 +266,7 @@ class IntrinsicsStep:
     def _sentence(self) -> str:
         if self._done():
             return "All lenses are known. Go on to the room."
-        left = {id_: one for id_, one in self._cameras.items() if one.lens is None}
+        left = {id_: one for id_, one in self._cameras.items() if one.intrinsics is None}
         seen = {
             id_: seen
             for id_, seen in self._watch.newest.items()
@@ -279,17 +287,17 @@ class IntrinsicsStep:
     def _overlays(self) -> dict[str, tuple[Shape, ...]]:
         if self._done():
             return {}
-        corners = self._watch.shapes(self._now_ns, self._moments.still_px())
+        corners = self._watch.shapes(self._now_ns, self._sightings.still_px())
         return {
-            id_: (*(one.cells() if one.lens is None else ()), *corners.get(id_, ()))
+            id_: (*(one.cells() if one.intrinsics is None else ()), *corners.get(id_, ()))
             for id_, one in self._cameras.items()
         }
 
     def _problems(self) -> tuple[Problem, ...]:
-        left = {id_: one.lens is None for id_, one in self._cameras.items()}
+        left = {id_: one.intrinsics is None for id_, one in self._cameras.items()}
         stopped = stopped_cameras(self._context, self._cameras)
         refused = tuple(
-            one.refusal for one in self._cameras.values() if one.refusal and not one.lens
+            one.refusal for one in self._cameras.values() if one.refusal and not one.intrinsics
         )
         advice = () if self._done() else self._advice.problems(self._now_ns, left)
         return (*self._damaged, *stopped, *refused, *advice)

@@ -1,4 +1,4 @@
-"""Lenses of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
+"""Intrinsics of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -55,8 +55,8 @@ class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
         if not (self.K[0][0] > 0.0 and self.K[1][1] > 0.0 and self.K[2] == (0.0, 0.0, 1.0)):
             raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
 
-    def lens(self) -> Intrinsics:
-        """As the lens step finds one."""
+    def intrinsics(self) -> Intrinsics:
+        """As the step Lens finds them."""
         return Intrinsics(
             self.size_px,
             np.array(self.K),
@@ -76,7 +76,7 @@ class _File(msgspec.Struct, frozen=True):
 
 
 def key_of(camera: DraftCamera) -> str | None:
-    """vid:pid:serial; None for a camera that has none, whose lens cannot be known again."""
+    """vid:pid:serial; None for a camera that has none, whose intrinsics cannot be known again."""
     if not camera.source.startswith(PREFIX):
         return None
     return ":".join(parse_identity(camera.source).model)
@@ -111,15 +111,15 @@ def find_saved_intrinsics(
 
 
 def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
-    """Add the draft's new lenses; one of the same camera and mode is replaced, others stay.
+    """Add the draft's new intrinsics; those of the same camera and mode are replaced, others stay.
 
     For when the calibration is saved. Raises CannotCreateError, ConfigError.
     """
     new = [
-        _saved(key, camera, draft.lenses[camera.id], when)
+        _saved(key, camera, draft.intrinsics[camera.id], when)
         for camera in draft.cameras
         if (key := key_of(camera)) is not None
-        and camera.id in draft.lenses
+        and camera.id in draft.intrinsics
         and camera.id not in draft.intrinsics_saved
     ]
     if not new:
