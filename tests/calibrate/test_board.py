@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settled
+from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settle_variant
 from mocapd.calibrate.board.detection_diagnostics import diagnose_detection
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.errors import ConfigError
@@ -125,9 +125,9 @@ def test_corners_are_found_where_they_are(spec: BoardSpec, inverted: bool) -> No
 
 def test_the_board_is_found_in_the_other_layout_and_ink() -> None:
     for board in (replace(PRINT, inverted=True), replace(PRINT, legacy=True)):
-        found = settled(SPEC, [picture(board)])
+        found = settle_variant(SPEC, [picture(board)])
         assert (found.inverted, found.legacy) == (board.inverted, board.legacy)
-    assert settled(SPEC, [np.full((100, 100), 90, np.uint8)]) == SPEC
+    assert settle_variant(SPEC, [np.full((100, 100), 90, np.uint8)]) == SPEC
 
 
 def test_a_blurred_picture_is_less_sharp() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, move_camera
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
@@ -163,14 +163,14 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
         .render(replace(state, root_m=moved_root, local_xyzw=local), 0.0, roi)
         .copy()
     )
-    cameras = (CAMERAS[0], moved_camera(CAMERAS[1], motion))
+    cameras = (CAMERAS[0], move_camera(CAMERAS[1], motion))
     fitter = Fitter(MODEL, cameras, [2, 2], FitParams())
     assert np.mean(fitter.drawings[1].render(state, 0.0, roi) != by_body) < 1e-3
     rows = RowGatherer(fitter, 10).gather(state, view)
     # the step that the columns ask for leads back, to first order
     T = camera_columns(rows.at_m)
     step = np.linalg.solve(T @ rows.H[:6, :6] @ T.T + 1e-3 * np.eye(6), T @ rows.b[:6])
-    back = moved_camera(cameras[1], step.astype(np.float64))
+    back = move_camera(cameras[1], step.astype(np.float64))
     before = np.linalg.norm(
         cameras[1].R @ state.root_m + cameras[1].t_m - to_camera(CAMERAS[1], state.root_m)
     )

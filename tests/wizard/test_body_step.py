@@ -19,7 +19,7 @@ from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.colour.tracker import ColourTracker
 from mocapd.types import Frame, FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
-from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Scene, StepState, Tell
@@ -49,7 +49,7 @@ def bends(person: SimulatedWearer) -> list[FrameSet]:
 @pytest.fixture(scope="module")
 def draft(person: SimulatedWearer) -> Draft:
     """Room and colours are done."""
-    solved = solve({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
+    solved = solve_colours({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
     colours = {
         name: DraftColours(one.drawn.picture, one.W)
         for name, one in solved.cameras.items()

@@ -17,7 +17,7 @@ from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.types import Frame, FrameSet
-from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
@@ -41,7 +41,7 @@ def database() -> PoseDatabase:
 def draft() -> Draft:
     """Lenses, colours and stature are known, the room is not."""
     person = wearer()
-    solved = solve({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
+    solved = solve_colours({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
         intrinsics={

@@ -139,7 +139,7 @@ def fit_shape(
             break
         step = evidence.step(factors)
         states = [
-            state if follow is None else _followed(model, state, follow, step)
+            state if follow is None else _follow_shape(model, state, follow, step)
             for state, follow in zip(states, evidence.follows, strict=True)
         ]
         factors = np.clip(factors + step, _SMALLEST, _LARGEST)
@@ -198,7 +198,9 @@ class _Evidence:
         return step
 
 
-def _followed(model: BodyModel, state: MotionState, follow: _Follow, step: Floats) -> MotionState:
+def _follow_shape(
+    model: BodyModel, state: MotionState, follow: _Follow, step: Floats
+) -> MotionState:
     root, local = stepped(model, state.root_m, state.local_xyzw, follow[1] - follow[0] @ step)
     return replace(state, root_m=root, local_xyzw=local)
 

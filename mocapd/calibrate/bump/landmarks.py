@@ -59,7 +59,7 @@ def find_landmarks(pixels: Bytes, camera: Camera) -> Landmarks:
 def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     """How far the camera is turned in a later picture. None is a turn as likely as another one that
     twice as many marks say."""
-    before, now = _followed(marks, _small(pixels), camera)
+    before, now = _track(marks, _small(pixels), camera)
     focal_px = float(camera.K[0, 0]) * _WIDTH_PX / camera.size_px[0]
     limit = _AGREE_PX / focal_px
     if len(before) < 2:
@@ -98,7 +98,7 @@ def _small(pixels: Bytes) -> Bytes:
     return np.clip(128.0 + 48.0 * detail / contrast, 0, 255).astype(np.uint8)
 
 
-def _followed(marks: Landmarks, picture: Bytes, camera: Camera) -> tuple[Floats, Floats]:
+def _track(marks: Landmarks, picture: Bytes, camera: Camera) -> tuple[Floats, Floats]:
     """Rays (M,3) of the marks that are found in a small picture, before and now."""
     if len(marks.places) == 0 or picture.shape != marks.picture.shape:
         return np.empty((0, 3)), np.empty((0, 3))

@@ -12,15 +12,15 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
     ReprojectionProblem,
     residuals_px,
-    stepped_problem,
+    with_steps,
 )
-from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
+from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust_bundle
+from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
+    guess_world,
     play_area_error,
-    rig_in,
-    world_guessed,
+    rig_in_world,
     world_on_floor,
 )
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
@@ -100,9 +100,9 @@ def solve_extrinsics(
         }
         for name in names
     }
-    scene, indices = first_scene(names, intrinsics_of, trusted, board_m)
+    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m)
     seen = observations(names, trusted, indices, board_m)
-    bundle = adjust(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
+    bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
     return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
 
 
@@ -139,7 +139,7 @@ def with_board(
         if camera_from_board is None:
             continue
         guess = _with(scene, scene.camera_from_scene[i].inverse() @ camera_from_board)
-        found, error_px = _fitted(guess, seen)
+        found, error_px = _fit_position(guess, seen)
         # one camera alone may take the mirror image of a board that it sees small
         if error_px < best_px:
             best, best_px = found, error_px
@@ -176,13 +176,15 @@ def _with(scene: ReprojectionProblem, scene_from_board: RigidTransform) -> Repro
     )
 
 
-def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[ReprojectionProblem, float]:
+def _fit_position(
+    scene: ReprojectionProblem, seen: Observations
+) -> tuple[ReprojectionProblem, float]:
     """Its one position fitted, and the root mean square error [px]."""
     cameras = len(scene.delay)
     still = np.zeros((cameras, INTRINSICS)), np.zeros((cameras, POSE))
 
     def stepped(x: Floats) -> ReprojectionProblem:
-        return stepped_problem(scene, *still, x[None], np.zeros(cameras))
+        return with_steps(scene, *still, x[None], np.zeros(cameras))
 
     solution = scipy.optimize.least_squares(
         lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01
@@ -201,17 +203,17 @@ def place_in_world(
     """
     scene, seen = extrinsics.bundle.scene, extrinsics.seen
     if floor is None:
-        world = world_guessed(scene, corners_m(extrinsics.spec))
+        world = guess_world(scene, corners_m(extrinsics.spec))
     else:
         world = world_on_floor(
             scene, extrinsics.indices.index(floor), centre_m(extrinsics.spec), where
         )
-    rig = rig_in(world, scene, extrinsics.names, extrinsics.sizes_px)
+    rig = rig_in_world(world, scene, extrinsics.names, extrinsics.sizes_px)
     kept = seen.of(extrinsics.bundle.used)
     made = WorldExtrinsics(
         rig,
         _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
-        {name: _fit(extrinsics, i) for i, name in enumerate(extrinsics.names)},
+        {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)},
         len(extrinsics.indices),
         play_area_error(rig, kept),
         world.note,
@@ -224,7 +226,7 @@ def _rms(error_px: Floats) -> float:
     return float(np.sqrt(np.mean(error_px**2))) if len(error_px) else float("nan")
 
 
-def _fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
+def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
     bundle, seen = extrinsics.bundle, extrinsics.seen
     own = seen.camera == i
     kept = own & bundle.used

@@ -9,7 +9,7 @@ from mocapd.calibrate.board.board_detection import (
     BoardDetector,
     BoardView,
     DetectionFailure,
-    settled,
+    settle_variant,
 )
 from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibrate.board.recordings import Recording, find_recordings
@@ -21,7 +21,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 )
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, chosen_views, covered
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Floats, Rig
@@ -124,7 +124,7 @@ def _sighting(
 ) -> tuple[BoardSighting, BoardSpec]:
     step = max(1, recording.frames // (stride * _PROBES)) * stride
     probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
-    spec = settled(spec, probes)
+    spec = settle_variant(spec, probes)
     detector = BoardDetector(spec)
     views: dict[int, BoardView] = {}
     blank: list[tuple[int, Bytes]] = []
@@ -169,7 +169,7 @@ def _refuse_blind(sightings: Sequence[BoardSighting]) -> None:
 
 def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
-    views = chosen_views(list(one.views.values()), size_px, params.choice)
+    views = choose_views(list(one.views.values()), size_px, params.choice)
     return solve_intrinsics(views, board_m, size_px, one.recording.name, _ALONE)
 
 

@@ -20,7 +20,7 @@ from mocapd.types import Floats
 FEWEST_SHARED = 3  # board positions that join two cameras: one may be wrong
 
 
-def first_scene(
+def initial_scene(
     names: Sequence[str],
     intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
@@ -33,7 +33,7 @@ def first_scene(
     cameras which share none with the others.
     """
     poses = {name: _poses(views[name], intrinsics_of[name], board_m) for name in names}
-    relative = _chained(names, poses)
+    relative = _span_pose_graph(names, poses)
     intrinsics = np.stack(
         [intrinsics_row(intrinsics_of[name].K, intrinsics_of[name].dist) for name in names]
     )
@@ -82,7 +82,7 @@ def _poses(
     return {index: pose for index, pose in found.items() if pose is not None}
 
 
-def _chained(
+def _span_pose_graph(
     names: Sequence[str], poses: Mapping[str, Mapping[int, RigidTransform]]
 ) -> dict[str, RigidTransform]:
     """camera_from_first of each camera, by Prim's tree with the most shared positions first."""

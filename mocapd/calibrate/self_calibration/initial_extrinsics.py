@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, unplaced
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, place_nominally
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
@@ -19,7 +19,7 @@ def initial_extrinsics(
     Cameras that share nothing with the first are chained through others. Raises ConfigError naming
     a camera that shares nothing with any.
     """
-    alone = unplaced(bare_cameras)
+    alone = place_nominally(bare_cameras)
     placed: dict[str, Camera] = {alone[0].name: alone[0]}
     while len(placed) < len(alone):
         candidates = [

@@ -10,12 +10,12 @@ from mocapd.calibrate.self_calibration.body_rows import (
     N_CAMERA,
     BodyRows,
     RowGatherer,
+    average_cameras,
     camera_columns,
-    mean_camera,
-    moved_camera,
+    move_camera,
 )
 from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
-from mocapd.calibrate.self_calibration.keyframes import Keyframe, starts, views
+from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import image_scales
@@ -108,10 +108,10 @@ class JointSolver:
         scene = _Scene(list(cameras), np.ones(self._n_shape), [])
         fitter = Fitter(model, cameras, self._work, self._tracker)
         for keyframe in keyframes:
-            seen = views(keyframe, self._work)
+            seen = keyframe_views(keyframe, self._work)
             fits = [
                 fitter.fit(s, seen, params.loose_s, 8, learn_shape=False)
-                for s in starts(keyframe, cameras, model, np.ones(model.n_shape))
+                for s in initial_states(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)
             scene.states.append(replace(best.state, factors=scene.factors))
@@ -135,7 +135,7 @@ class JointSolver:
             if i >= p.rounds - p.averaged:
                 kept.append((tuple(scene.cameras), scene.factors))
         scene.cameras = [
-            mean_camera([cameras[i] for cameras, _ in kept]) for i in range(len(scene.cameras))
+            average_cameras([cameras[i] for cameras, _ in kept]) for i in range(len(scene.cameras))
         ]
         scene.factors = np.mean([factors for _, factors in kept], axis=0)
         scene.states = [replace(state, factors=scene.factors) for state in scene.states]
@@ -221,7 +221,7 @@ class JointSolver:
         scene.factors = np.clip(scene.factors + step[:n], _SMALLEST, _LARGEST)
         for i in range(1, len(scene.cameras)):
             k = n + N_CAMERA * (i - 1)
-            scene.cameras[i] = moved_camera(scene.cameras[i], step[k : k + N_CAMERA])
+            scene.cameras[i] = move_camera(scene.cameras[i], step[k : k + N_CAMERA])
         self._follow(scene, found, step)
 
     def _follow(self, scene: _Scene, found: "_Evidence", step: Floats) -> None:

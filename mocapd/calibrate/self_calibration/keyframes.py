@@ -29,7 +29,7 @@ class Keyframe:
     before: PatchSighting | None
 
 
-def choose(
+def choose_keyframes(
     observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
@@ -62,7 +62,7 @@ def choose(
     return [rated[max(part, key=lambda i: rated[i][0])][1] for part in parts]
 
 
-def views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
+def keyframe_views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     """What each camera saw, at its own instant."""
     out = []
     for i, s in keyframe.sightings.items():
@@ -72,7 +72,7 @@ def views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     return out
 
 
-def starts(
+def initial_states(
     keyframe: Keyframe, cameras: Sequence[Camera], model: BodyModel, factors: Floats
 ) -> list[MotionState]:
     """The body as each camera alone saw it, in the world, moved to where all see its marks."""

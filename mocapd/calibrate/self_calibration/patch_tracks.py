@@ -54,7 +54,7 @@ class PatchSighting:
 PatchObservation = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 
-def unplaced(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
+def place_nominally(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
     """The cameras with their intrinsics alone: each where a lone webcam would stand."""
     out = []
     for camera in bare_cameras:
@@ -86,7 +86,7 @@ class PatchTracks:
                 "room",
                 "two or more cameras make a room; one needs none",
             )
-        self.cameras = unplaced(bare_cameras) if rig is None else rig.cameras
+        self.cameras = place_nominally(bare_cameras) if rig is None else rig.cameras
         rigs = [Rig((camera,)) for camera in self.cameras] if rig is None else [rig]
         self._trackers = [
             ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs

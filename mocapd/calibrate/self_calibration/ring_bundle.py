@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, standard_skeleton
-from mocapd.calibrate.self_calibration.body_rows import N_CAMERA, moved_camera
+from mocapd.calibrate.self_calibration.body_rows import N_CAMERA, move_camera
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, perspective_jacobians, to_camera
@@ -71,7 +71,7 @@ def place_by_rings(
         moved = (found.own - found.back @ step).reshape(points.shape)
         far = np.linalg.norm(moved, axis=-1, keepdims=True)
         points = points + moved * np.minimum(1.0, _FARTHEST_M / np.maximum(far, 1e-9))
-        camera = moved_camera(camera, step[:N_CAMERA])
+        camera = move_camera(camera, step[:N_CAMERA])
         lengths = lengths + step[N_CAMERA:]
     return camera, np.asarray(np.linalg.inv(H)[:N_CAMERA, :N_CAMERA], dtype=np.float64)
 

@@ -14,7 +14,7 @@ from mocapd.calibrate.self_calibration.joint_solver import (
     SelfCalibrationParams,
     SelfCalibrationReport,
 )
-from mocapd.calibrate.self_calibration.keyframes import choose
+from mocapd.calibrate.self_calibration.keyframes import choose_keyframes
 from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation
 from mocapd.calibrate.self_calibration.ring_bundle import place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import ring_pairs
@@ -37,7 +37,9 @@ def extrinsics_from_body(
     Raises ConfigError when the observations do not tell where the cameras stand.
     """
     p = params if params is not None else SelfCalibrationParams()
-    keyframes = choose(observations, [camera.name for camera in bare_cameras], p.keyframes)
+    keyframes = choose_keyframes(
+        observations, [camera.name for camera in bare_cameras], p.keyframes
+    )
     model = build_model(stature_m)
     solvers = [JointSolver(model, initial_extrinsics(observations, bare_cameras), keyframes, p)]
     if near is not None:

@@ -5,7 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.board.board_detection import BoardDetector, DetectionFailure, Reason, settled
+from mocapd.calibrate.board.board_detection import (
+    BoardDetector,
+    DetectionFailure,
+    Reason,
+    settle_variant,
+)
 from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.types import Frame
@@ -71,7 +76,7 @@ class BoardAdvice:
         pixels = frames[name].pixels
 
         def answer(_tell: Tell) -> tuple[BoardSpec, DetectionFailure | None]:
-            found = settled(spec, [pixels]) if unseen else spec
+            found = settle_variant(spec, [pixels]) if unseen else spec
             detector = BoardDetector(found)
             if found != spec or detector.find(pixels) is not None:
                 return found, None

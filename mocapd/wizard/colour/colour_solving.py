@@ -59,7 +59,7 @@ class Solution:
     missing: tuple[str, ...]
 
 
-def solve(
+def solve_colours(
     drawn: Mapping[str, StrokeDrawing], personal: bool, before: Mapping[str, CameraSolution]
 ) -> Solution:
     """Solve all cameras that have strokes; `before`: solutions whose strokes need not be judged again.

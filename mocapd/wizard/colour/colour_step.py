@@ -15,7 +15,12 @@ from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
-from mocapd.wizard.colour.colour_solving import CameraSolution, Solution, StrokeDrawing, solve
+from mocapd.wizard.colour.colour_solving import (
+    CameraSolution,
+    Solution,
+    StrokeDrawing,
+    solve_colours,
+)
 from mocapd.wizard.colour.still_pictures import Countdown, StillPictures
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
@@ -159,7 +164,7 @@ class ColourStep:
                 self._solution, self._solutions = solution, self._solutions + 1
                 self._keep()
 
-        self._context.start_job(lambda tell: _solved(drawn, personal, before, tell), done)
+        self._context.start_job(lambda tell: _solve(drawn, personal, before, tell), done)
 
     def _keep(self) -> None:
         """What is good goes to the draft."""
@@ -264,14 +269,14 @@ class ColourStep:
         )
 
 
-def _solved(
+def _solve(
     drawn: Mapping[str, StrokeDrawing],
     personal: bool,
     before: Mapping[str, CameraSolution],
     tell: Tell,
 ) -> Solution:
     tell("reading the light from the strokes", 0.5)
-    return solve(drawn, personal, before)
+    return solve_colours(drawn, personal, before)
 
 
 def _listed(names: list[str]) -> str:

@@ -17,7 +17,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
-from mocapd.calibrate.intrinsics.views import Choice, chosen_views
+from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.geometry.reprojection import intrinsics_row
 from mocapd.wizard.board.sightings import Views
@@ -46,16 +46,16 @@ def solve_live(
     may have been moved since, and it is solved without. Raises ConfigError.
     """
     try:
-        found = _solved(cameras, intrinsics_of, spec, views)
+        found = _solve(cameras, intrinsics_of, spec, views)
         if not earlier or _refused(found[0]) <= _MOST_REFUSED:
             return found
     except ContradictionError:
         if not earlier:
             raise
-    return _solved(cameras, intrinsics_of, spec, _apart(views, earlier))
+    return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
 
 
-def _solved(
+def _solve(
     cameras: Sequence[DraftCamera],
     intrinsics_of: Mapping[str, Intrinsics],
     spec: BoardSpec,
@@ -81,7 +81,7 @@ def _alone(name: str, views: Views) -> list[BoardView]:
 def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
     """All that are shared, and the best of those alone."""
     alone = _alone(camera.id, views)
-    kept = {view.index for view in chosen_views(alone, camera.size_px, _ALONE)}
+    kept = {view.index for view in choose_views(alone, camera.size_px, _ALONE)}
     dropped = {view.index for view in alone} - kept
     return {index: view for index, view in views[camera.id].items() if index not in dropped}
 

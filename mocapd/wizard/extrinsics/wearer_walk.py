@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
-from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, unplaced
+from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, place_nominally
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
@@ -62,7 +62,7 @@ def walk_and_solve(
     """
     assert draft.stature_m is not None
     bare_cameras = draft_cameras(draft)
-    placed = replace(draft, rig=Rig(unplaced(bare_cameras)), factors=None)
+    placed = replace(draft, rig=Rig(place_nominally(bare_cameras)), factors=None)
     shirt = calibration_of(placed).shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = {

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
-from mocapd.calibrate.intrinsics.views import GRID, Choice, chosen_views
+from mocapd.calibrate.intrinsics.views import GRID, Choice, choose_views
 from mocapd.errors import MocapdError
 from mocapd.types import Floats
 from mocapd.wizard.draft import DraftCamera
@@ -71,7 +71,7 @@ class CameraIntrinsics:
 
     def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
         """For a job. Raises ConfigError that says what is wrong with the pictures."""
-        chosen = chosen_views(views, self.camera.size_px, _CHOICE)
+        chosen = choose_views(views, self.camera.size_px, _CHOICE)
         return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
 
     def take(self, intrinsics: Intrinsics, tried: int) -> None:
