@@ -67,7 +67,7 @@ class LabelledPicture:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Camera:
-    """A calibrated camera: lens K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
+    """A calibrated camera: intrinsics K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
 
     name: str
     size_px: tuple[int, int]  # width, height

@@ -26,7 +26,7 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         plugged_cameras,
         where_now,
     )
-    from mocapd.wizard.cameras.same_port import moved_cameras
+    from mocapd.wizard.cameras.same_port import find_port_changes
     from mocapd.wizard.setup_keeper import kept_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
@@ -50,7 +50,7 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         config.cache_dir,
         step,
         nodes=list_cameras,
-        moved=moved_cameras(before.cameras, identities(infos)),
+        moved=find_port_changes(before.cameras, identities(infos)),
     )
 
 

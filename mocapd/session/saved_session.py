@@ -22,7 +22,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Saved:
+class LoadedCalibration:
     """A calibration as its file has it, and as a tracker takes it."""
 
     path: Path
@@ -30,7 +30,7 @@ class Saved:
     known: Calibration
 
 
-def calibration_of(config: Config) -> Saved | None:
+def configured_calibration(config: Config) -> LoadedCalibration | None:
     """The calibration that `rig` names; else that of the state directory, for its own cameras.
 
     None for a rig in the capture format, for cameras that bring a rig with them, and for others than
@@ -56,11 +56,11 @@ def is_calibration(path: Path) -> bool:
     return is_folder(path) or path.suffix == ".toml"
 
 
-def load_saved(place: Path) -> Saved:
+def load_saved(place: Path) -> LoadedCalibration:
     """The calibration of a file or folder, with its pictures. Raises InputError or ConfigError."""
     path = calibration_path(place)
     tables = read_calibration(path)
-    return Saved(path, tables, from_saved(tables, path))
+    return LoadedCalibration(path, tables, from_saved(tables, path))
 
 
 def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
@@ -80,7 +80,7 @@ def _named(camera: SavedCamera) -> str:
     return f"{camera.id} = {without_password(camera.source)}"
 
 
-def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
+def cameras_of_calibration(saved: LoadedCalibration) -> tuple[CameraSection, ...]:
     """The calibrated cameras as a configuration has them. Raises ConfigError where a password is
     missing."""
     place = str(saved.path.parent)
@@ -95,7 +95,7 @@ def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
     )
 
 
-def known_of_recording(saved: Saved, folder: CaptureFolder) -> Calibration:
+def known_of_recording(saved: LoadedCalibration, folder: CaptureFolder) -> Calibration:
     """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
     where it does not. Raises ConfigError when they did not."""
     sizes = {camera.id: camera.size_px for camera in saved.tables.camera}

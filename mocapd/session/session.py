@@ -19,7 +19,11 @@ from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M,
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.session.from_configuration import from_configuration
-from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
+from mocapd.session.saved_session import (
+    LoadedCalibration,
+    cameras_of_calibration,
+    configured_calibration,
+)
 from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry
@@ -50,7 +54,7 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
 def open_session(config: Config, progress: Progress) -> Session:
     """Check and prepare everything; `progress` is told while something long is made for the first
     time. Raises ConfigError, InputError or CannotCreateError."""
-    saved = calibration_of(config)
+    saved = configured_calibration(config)
     cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
     if not cameras:
         raise ConfigError(
@@ -74,14 +78,14 @@ def open_session(config: Config, progress: Progress) -> Session:
     return Session(inputs, rig, rig_source, ready.tracker, ready.shape)
 
 
-def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
+def _given_rig(config: Config, saved: LoadedCalibration | None) -> tuple[Rig | None, str]:
     """The rig of the calibration or the rig file, and which file that is."""
     if saved is not None:
         return saved.known.rig, str(saved.path)
     return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
 
 
-def _known(config: Config, rig: Rig | None, saved: Saved | None) -> Calibration:
+def _known(config: Config, rig: Rig | None, saved: LoadedCalibration | None) -> Calibration:
     """From configuration and calibration: what the configuration itself gives goes before."""
     own = from_configuration(config.shirt, config.camera, rig)
     return own if saved is None else saved.known.overlaid(own)

@@ -17,7 +17,7 @@ from mocapd.service.daemon import Daemon, Snapshot
 from mocapd.session.session import Session
 from mocapd.types import BodyState, Rig, Skeleton
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.same_port import Moved, moved_cameras, same_camera
+from mocapd.wizard.cameras.same_port import PortChange, find_port_changes, same_camera
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.newest_body import NewestBody
@@ -195,8 +195,8 @@ def _with_what_was_saved(
     return cameras, Draft(cameras=cameras, board=saved.board, stature_m=saved.stature_m)
 
 
-def _moved(draft: Draft) -> tuple[Moved, ...]:
+def _moved(draft: Draft) -> tuple[PortChange, ...]:
     """What the daemon itself has taken for the same camera, to be asked about."""
     nodes = video_nodes(SYSFS, DEV)
     present = dict.fromkeys(node.identity for node in nodes if node.identity is not None)
-    return moved_cameras(draft.cameras, tuple(present))
+    return find_port_changes(draft.cameras, tuple(present))

@@ -11,7 +11,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.daemon import Snapshot, ThreadDiedError
 from mocapd.types import BodyState, Rig, Skeleton
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.same_port import Moved
+from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.hosts.open_cameras import OpenCameras
@@ -35,7 +35,7 @@ class OwnHost:
         sources: Mapping[str, Source] | None = None,
         scene: Callable[[Scene], object] | None = None,
         nodes: Callable[[], tuple[CameraInfo, ...]] = tuple,
-        moved: tuple[Moved, ...] = (),
+        moved: tuple[PortChange, ...] = (),
     ) -> None:
         """draft: what is known, with the cameras to open; step: the one to do, None for all of them;
         sources: the draft's cameras by id where they exist already; nodes: lists what else is plugged
