@@ -9,10 +9,10 @@ import pytest
 @pytest.fixture(autouse=True, scope="module")
 def usual_signals() -> Iterator[None]:
     """Children inherit what is ignored here: under nohup, or in the background of a script."""
-    usual = {signal.SIGHUP: signal.SIG_DFL, signal.SIGINT: signal.default_int_handler}
-    ignored = [number for number in usual if signal.getsignal(number) is signal.SIG_IGN]
+    ends = signal.SIGHUP, signal.SIGINT
+    ignored = [number for number in ends if signal.getsignal(number) is signal.SIG_IGN]
     for number in ignored:
-        signal.signal(number, usual[number])
+        signal.signal(number, signal.SIG_DFL)
     yield
     for number in ignored:
         signal.signal(number, signal.SIG_IGN)

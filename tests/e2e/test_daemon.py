@@ -18,6 +18,7 @@ from mocapd.evaluate.score import JOINT_SETS
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World
 from tests.cli.mocapd_process import mocapd, start
+from tests.cli.own_time import end_within
 from tests.cli.small_capture import write_capture
 
 FRAMES = 90
@@ -116,7 +117,7 @@ class Running:
     def end(self, number: signal.Signals) -> tuple[int, str]:
         """Exit code and stderr after this signal; it has two seconds."""
         self.process.send_signal(number)
-        _, err = self.process.communicate(timeout=2.0)
+        err = end_within(self.process, 2.0)
         return self.process.returncode, err
 
 
