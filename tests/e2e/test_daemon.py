@@ -20,6 +20,7 @@ from mocapd.sim.world import World
 from tests.cli.mocapd_process import mocapd, start
 from tests.cli.own_time import end_within
 from tests.cli.small_capture import write_capture
+from tests.outputs.frames import free_port
 
 FRAMES = 90
 SETTLED_S = 1.0  # from the first frame with a person on
@@ -68,13 +69,6 @@ pose = "diagonal"
 at_m = [-0.1, 0.0]
 yaw_deg = -15.0
 """
-
-
-def free_port(kind: socket.SocketKind) -> int:
-    """A port of 127.0.0.1 that is free just now."""
-    with socket.socket(socket.AF_INET, kind) as one:
-        one.bind(("127.0.0.1", 0))
-        return int(one.getsockname()[1])
 
 
 class Running:
