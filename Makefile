@@ -58,7 +58,7 @@ demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one liv
 	@$(BIN)/mocapd demo
 
 test: dev ## run all tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
 check: dev ## lint, format, types, import contract, dead code
 	$(BIN)/ruff check .

@@ -31,13 +31,15 @@ class Frame:
 
     `t_ns` is the middle of the exposure on CLOCK_MONOTONIC as well as it is known (for webcams:
     the driver's stamp), not the time of arrival. `seq` counts what the source delivered; gaps are
-    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only.
+    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only. `encoded`: the JPEG that
+    they were decoded from, as the camera delivered it; None where it delivered none.
     """
 
     camera: str
     seq: int
     t_ns: int
     pixels: Bytes
+    encoded: bytes | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +67,7 @@ class LabelledPicture:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Camera:
-    """A calibrated camera: lens K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
+    """A calibrated camera: intrinsics K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, and camera_from_world R (3,3), t_m (3,)."""
 
     name: str
     size_px: tuple[int, int]  # width, height

@@ -101,6 +101,12 @@ class _SkippedForNothing:
             terminalreporter.write_line(f"FAILED: ../shared is there, yet skipped: {test}")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """In a process that shares the tests with others (`make test`), what takes long comes first."""
+    if hasattr(config, "workerinput"):
+        items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     if os.environ.get("MOCAPD_REQUIRE_SHARED"):
         config.pluginmanager.register(_SkippedForNothing())

@@ -40,13 +40,12 @@ def prepare_apart(config: "Config") -> None:
     done = _prepared(marker)
     if want in done:
         return
-    from mocapd.session.session import (
-        SIM,  # and all that the processes need, imported once for them
-    )
+    import mocapd.session.session  # noqa: F401  all that the processes need, imported once for them
+    from mocapd.capture.source_kinds import is_simulated
 
     # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
     # it tells at once what is wrong with them
-    simulated = any(camera.source.startswith(SIM) for camera in config.camera)
+    simulated = any(is_simulated(camera.source) for camera in config.camera)
     first = (_make_film, _make_database) if simulated else ()
     if _all_end_well(config, first) and _all_end_well(config, (_open,)):
         _remember(marker, [*done[1 - REMEMBERED :], want])
@@ -118,10 +117,10 @@ def _work(work: Callable[["Config"], None], config: "Config") -> None:
 
 def _make_film(config: "Config") -> None:
     """What the simulated webcams show; its bar gives way to the database's, which takes longer."""
-    from mocapd.session import simulation
+    from mocapd.capture.source_kinds import open_origin, origin_of
 
-    for source in {camera.source.rpartition("#")[0] for camera in config.camera}:
-        simulation.open_film(source, config.cache_dir, lambda *_: None)
+    for origin in {origin_of(camera.source) for camera in config.camera}:
+        open_origin(origin, config.cache_dir, lambda *_: None)
 
 
 def _make_database(config: "Config") -> None:
@@ -142,9 +141,6 @@ def _make_database_quietly(config: "Config") -> None:
 
 
 def _open(config: "Config") -> None:
-    # the simulated webcams of this process play for nobody: when they began is not to be told
-    logging.getLogger("mocapd.session.simulation").setLevel(logging.WARNING)
-
     from mocapd.app.progress import ProgressBars
     from mocapd.session.session import open_session
 

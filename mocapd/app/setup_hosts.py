@@ -26,7 +26,7 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         plugged_cameras,
         where_now,
     )
-    from mocapd.wizard.cameras.same_port import moved_cameras
+    from mocapd.wizard.cameras.same_port import find_port_changes
     from mocapd.wizard.setup_keeper import kept_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
@@ -50,7 +50,7 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         config.cache_dir,
         step,
         nodes=list_cameras,
-        moved=moved_cameras(before.cameras, identities(infos)),
+        moved=find_port_changes(before.cameras, identities(infos)),
     )
 
 
@@ -78,7 +78,9 @@ def saved_draft(config: "Config", step: "StepName | None") -> Draft:
 
 def settings_of(config: "Config") -> CheckSettings:
     """How the daemon of this configuration tracks."""
-    return CheckSettings(config.tracker, config.smoothing.preset)
+    from mocapd.session.camera_inputs import bundler_params
+
+    return CheckSettings(config.tracker, config.smoothing.preset, bundler_params(config))
 
 
 def demo_host(config: "Config", step: "StepName | None") -> OwnHost:

@@ -72,14 +72,6 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def exists(path: Path) -> bool:
-    """Whether there is anything; no for what can be no path."""
-    try:
-        return path.exists()
-    except OSError:
-        return False
-
-
 def is_folder(path: Path) -> bool:
     """Whether there is a folder; no for what can be no path."""
     try:

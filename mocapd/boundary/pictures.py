@@ -5,6 +5,7 @@ nine seconds. So the size is read here, compared with what is wanted, and every 
 """
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,7 +22,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 _PNG_CHANNELS = {0: 1, 2: 3, 3: 3, 4: 2, 6: 4}  # by colour type; 3: a palette, decoded as colour
 _JPEG = b"\xff\xd8"
 _SOF = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # start of frame; not tables
-_SOS, _EOI = 0xDA, 0xD9
+_DHT, _SOS, _EOI = 0xC4, 0xDA, 0xD9
 _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})  # markers without a length
 _MOST_STRAY = 1024  # bytes between segments, which some webcams leave and decoders skip
 
@@ -48,6 +49,19 @@ def read_header(data: bytes | memoryview) -> PictureHeader:
     if min(header.size_px) < 1:
         raise MalformedError("has no pixels")
     return header
+
+
+def is_plain_jpeg(data: bytes, size_px: tuple[int, int]) -> bool:
+    """Whether it is a JPEG of this size (width, height) that every browser shows: of 8 bits, grey or colour,
+    with its Huffman tables, which some webcams leave out. Raises MalformedError."""
+    header = read_header(data)
+    return (
+        header.kind == "jpeg"
+        and header.size_px == size_px
+        and header.bits == 8
+        and header.channels in (1, 3)
+        and any(marker == _DHT for marker, _ in _jpeg_segments(memoryview(data)))
+    )
 
 
 def decode_picture(
@@ -106,26 +120,32 @@ def _png_header(data: memoryview) -> PictureHeader:
 
 
 def _jpeg_header(data: memoryview) -> PictureHeader:
+    for marker, segment in _jpeg_segments(data):
+        if marker in _SOF:
+            if len(segment) < 6:
+                raise MalformedError("has a frame header that is cut short")
+            bits, height, width, channels = struct.unpack(">BHHB", segment[:6])
+            return PictureHeader("jpeg", (width, height), channels, bits)
+    raise MalformedError("has no frame header")
+
+
+def _jpeg_segments(data: memoryview) -> Iterator[tuple[int, memoryview]]:
+    """Marker and content of every segment before the compressed picture."""
     at, stray = len(_JPEG), 0
     while at + 4 <= len(data):
         marker = data[at + 1]
         if data[at] != 0xFF or marker in (0x00, 0xFF):  # fill bytes may stand before a marker
             at, stray = at + 1, stray + 1
             if stray > _MOST_STRAY:
-                break
+                return
             continue
         if marker in (_SOS, _EOI):
-            break
+            return
         if marker in _ALONE:
             at += 2
             continue
         length = int.from_bytes(data[at + 2 : at + 4], "big")
         if length < 2 or at + 2 + length > len(data):
             raise MalformedError("has a segment that is longer than the file")
-        if marker in _SOF:
-            if length < 8:
-                raise MalformedError("has a frame header that is cut short")
-            bits, height, width, channels = struct.unpack(">BHHB", data[at + 4 : at + 10])
-            return PictureHeader("jpeg", (width, height), channels, bits)
+        yield marker, data[at + 4 : at + 2 + length]
         at += 2 + length
-    raise MalformedError("has no frame header")

@@ -1,14 +1,11 @@
-"""The pictures of the shirt that a folder, a file or a calibration names, read and checked."""
+"""The pictures of the shirt that a folder, a file or a calibration names, checked."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
-from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.boundary.files import is_file, is_folder
-from mocapd.errors import ConfigError, InputError
-from mocapd.shirt.colour.strokes import read_labelled, stroked_pictures, strokes_beside
+from mocapd.errors import InputError
+from mocapd.shirt.colour.strokes import stroked_pictures, strokes_beside
 from mocapd.shirt.colour.white_balance import balanced
 from mocapd.types import Floats, LabelledPicture
 
@@ -29,22 +26,6 @@ def stroked_folder(folder: Path) -> tuple[Path, ...]:
     if not images:
         raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
     return tuple(stroked_image(image) for image in images)
-
-
-def read_model(images: tuple[Path, ...]) -> tuple[LabelledPicture, ...]:
-    """The images of the shirt. Raises ConfigError when a colour has no stroke on any of them."""
-    pictures = tuple(read_labelled(image) for image in images)
-    if pictures:
-        painted = np.unique(np.concatenate([np.unique(p.labels) for p in pictures]))
-        missing = sorted(set(range(1, N_COLOURS + 1)) - set(painted.tolist()))
-        if missing:
-            names = ", ".join(f"{i} ({standard_shirt().colour_names[i - 1]})" for i in missing)
-            raise ConfigError(
-                f"no stroke of colour {names} on any image",
-                str(images[0].parent),
-                "paint it where the shirt shows it",
-            )
-    return pictures
 
 
 def personal_model(

@@ -204,3 +204,11 @@ def size_error(
         where,
         f"record or set the camera to {want_px[0]}x{want_px[1]}, or calibrate it again",
     )
+
+
+def check_size(
+    where: str, camera: str, got_px: tuple[int, int], want_px: tuple[int, int] | None
+) -> None:
+    """Raises ConfigError for pictures that do not fit the calibration; None fits all."""
+    if want_px is not None and got_px != want_px:
+        raise size_error(where, camera, got_px, want_px)

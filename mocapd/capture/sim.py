@@ -65,13 +65,15 @@ class SimCamera:
         wait_ns = self._ready_ns(n) - monotonic_ns()
         if self._closed.wait(seconds(max(wait_ns, 0))):
             raise CameraLost("the simulated camera was closed", self.name, "open it again")
+        jpeg = self._jpeg(n)
         try:
-            pixels = decode_picture(self._jpeg(n), cv2.IMREAD_COLOR)
+            pixels = decode_picture(jpeg, cv2.IMREAD_COLOR)
         except MalformedError as error:
             raise InputError(
                 f"a frame of the film {error.what}", self.name, "delete the cache"
             ) from None
-        return Frame(self.name, n - self._first, self.exposure_ns(n), frozen_pixels(pixels))
+        seq, t_ns = n - self._first, self.exposure_ns(n)
+        return Frame(self.name, seq, t_ns, frozen_pixels(pixels), jpeg)
 
     def close(self) -> None:
         """Switch off and wake a blocked `read`."""

@@ -4,28 +4,25 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import MOST_PIXELS
+from mocapd.boundary.pictures import MOST_PIXELS, decode_picture
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import GuardedCapture
-from mocapd.capture.pixels import frozen_pixels
-from mocapd.clock import monotonic_ns
-from mocapd.errors import CameraLost, ConfigError, UnavailableError
+from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
+from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.errors import CameraLost, ConfigError, MalformedError, UnavailableError
 from mocapd.types import Frame
 
-SCHEMES = ("rtsp", "rtsps", "http", "https")
-
-
-def is_url(source: str) -> bool:
-    """Whether a camera string means a network camera."""
-    return source.partition(":")[0].lower() in SCHEMES
+_TORN_LIMIT_NS = 2 * NS_PER_S  # without one whole picture: the network is bad
+_MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 
 
 class UrlSource:
     """Frames are stamped on arrival: the network's delay is not known, so give wired cameras the preference.
 
-    `size_px` (width, height), when given, must be what the camera sends. Raises ConfigError for what
-    is no address. Whatever is told of it hides its password.
+    `size_px` (width, height), when given, must be what the camera sends. Motion JPEG is decoded here, for
+    the files are wanted as they come; `torn` counts those that were damaged and left out. Raises ConfigError
+    for what is no address. Whatever is told of it hides its password.
     """
 
     recorded = False
@@ -47,7 +44,9 @@ class UrlSource:
         self._shown = without_password(url)
         self._size_px = size_px
         self._timeouts_ms = (round(1e3 * open_timeout_s), round(1e3 * read_timeout_s))
+        self.torn = 0
         self._seq = 0
+        self._is_mjpg = False
         self._capture: GuardedCapture | None = None
 
     def open(self) -> None:
@@ -87,22 +86,37 @@ class UrlSource:
         if self._size_px is not None and size_px != self._size_px:
             capture.release()
             raise size_error(self._shown, self.name, size_px, self._size_px)
+        is_mjpg = int(capture.get(cv2.CAP_PROP_FOURCC)) == _MJPG
+        self._is_mjpg = is_mjpg and capture.set(cv2.CAP_PROP_FORMAT, -1)  # files, not pixels
         self._capture = GuardedCapture(capture)
 
     def read(self) -> Frame:
-        """Raises CameraLost when nothing came within the read timeout, or the stream ended."""
+        """Raises CameraLost when nothing came within the read timeout, only damage did, or the stream
+        ended."""
         guarded = self._capture
         if guarded is None:
             raise CameraLost("not open", self.name, "call open first")
-        with guarded as capture:
-            grabbed = not guarded.closing and capture.grab()
-            t_ns = monotonic_ns()
-            good, pixels = capture.retrieve() if grabbed else (False, None)
-        if not good or pixels is None:
-            self.close()
-            raise CameraLost("the network camera stopped sending", self._shown, "check its network")
-        seq, self._seq = self._seq, self._seq + 1
-        return Frame(self.name, seq, t_ns, frozen_pixels(pixels))
+        began_ns = monotonic_ns()
+        while True:
+            with guarded as capture:
+                grabbed = not guarded.closing and capture.grab()
+                t_ns = monotonic_ns()
+                good, raw = capture.retrieve() if grabbed else (False, None)
+            if not good or raw is None:
+                break
+            seq, self._seq = self._seq, self._seq + 1
+            if not self._is_mjpg:
+                return Frame(self.name, seq, t_ns, frozen_pixels(raw))
+            try:
+                pixels = frozen_pixels(decode_picture(frozen_pixels(raw), cv2.IMREAD_COLOR))
+            except MalformedError:
+                self.torn += 1
+                if t_ns - began_ns < _TORN_LIMIT_NS:
+                    continue
+                break
+            return Frame(self.name, seq, t_ns, pixels, delivered_jpeg(raw, pixels))
+        self.close()
+        raise CameraLost("the network camera stopped sending", self._shown, "check its network")
 
     def close(self) -> None:
         """Let go; a blocked `read` ends after its timeout at the latest."""

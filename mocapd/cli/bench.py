@@ -19,7 +19,6 @@ from mocapd.errors import ConfigError
 if TYPE_CHECKING:
     from mocapd.evaluate.bench.bench_live import Watching
 
-_SIM = "sim:"
 _DEFAULT = "sim:living_room"
 
 
@@ -56,11 +55,12 @@ def bench_command(
     Example: mocapd bench --tracker colour --json
     """
     from mocapd.app.libraries import prepare_libraries
+    from mocapd.capture.source_kinds import is_simulated
     from mocapd.outputs.registry import zenoh_section
 
     refuse_variant(variant)
     effective = effective_config(config, settings, tracker__name=tracker).config
-    if live and not capture.startswith(_SIM):
+    if live and not is_simulated(capture):
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
     if watched and not live:
         raise ConfigError("--watched without --live", "command line", "add --live")

@@ -58,9 +58,9 @@ def check_config(
 def _print_calibration(config: "Config") -> None:
     """What it is, as comments below the settings."""
     from mocapd.boundary.urls import without_password
-    from mocapd.session.saved_session import calibration_of
+    from mocapd.session.saved_session import configured_calibration
 
-    saved = calibration_of(config)
+    saved = configured_calibration(config)
     if saved is None:
         used = (
             f"the rig {config.rig}" if config.rig else "none saved (`mocapd calibrate` makes one)"

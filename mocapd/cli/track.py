@@ -52,7 +52,7 @@ def track(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.progress import ProgressBars
-    from mocapd.calibration.from_capture import from_capture
+    from mocapd.calibration.from_origin import from_capture
     from mocapd.capture.capture_folder import frame_sets, load_folder
     from mocapd.session.offline import check_writable, track_all, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved

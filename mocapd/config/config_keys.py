@@ -247,6 +247,8 @@ def _table(annotation: Any) -> SectionTable | None:
 
 
 def _meta(annotation: Any) -> Meta:
+    if get_origin(annotation) in (Union, types.UnionType):
+        annotation = next(a for a in get_args(annotation) if a is not types.NoneType)
     if get_origin(annotation) is Annotated:
         for extra in annotation.__metadata__:
             if isinstance(extra, Meta):

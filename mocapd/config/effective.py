@@ -12,9 +12,10 @@ from typing import Any
 
 import platformdirs
 
-from mocapd.boundary.files import exists, is_file, is_folder, user_path
+from mocapd.boundary.files import is_file, user_path
+from mocapd.capture.source_kinds import address_beside
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
-from mocapd.config.sections import GONE, CameraSection, Config
+from mocapd.config.sections import GONE, HIDDEN, CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
 
@@ -48,7 +49,7 @@ class Effective:
 
 def known_keys() -> dict[str, Key]:
     """Every key by its path, in the order in which they are documented."""
-    return {key.path: key for key in keys_of(Config)}
+    return {key.path: key for key in keys_of(Config) if key.path not in HIDDEN}
 
 
 def config_candidates() -> tuple[Path, ...]:
@@ -166,13 +167,9 @@ def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
 
 def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
     strokes = camera.white_balance
-    # a source need not be a path; it is one if there is such a file or folder
-    path = folder / user_path(camera.source)
-    capture, hash_mark, _ = str(path).rpartition("#")
-    is_path = exists(path) or (hash_mark and is_folder(Path(capture)))
     return replace(
         camera,
-        source=str(path) if is_path else camera.source,
+        source=address_beside(folder, camera.source),
         white_balance=folder / user_path(strokes) if strokes else None,
     )
 

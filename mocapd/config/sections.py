@@ -14,6 +14,7 @@ from mocapd.config import web_params
 from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
 from mocapd.outputs.registry import OutputSection, default_sections, output_sections
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.smoothing import PRESETS
 from mocapd.trackers.registry import entry, tracker_sections
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -50,14 +51,16 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
-    source: what `mocapd cameras` prints, a video file, a capture folder's FOLDER#camN, a URL, or sim:SCENARIO#camN
+    source: what `mocapd cameras` prints, a video file, FOLDER#camN, a URL, sim:SCENARIO#camN; a wrong one is told all kinds
     fps_hz: rate to ask a webcam for [Hz]
+    wait_s: how long a frame set waits for it after its first frame came [s], in place of [bundler]; for one on a network
     white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
     """
 
     id: Annotated[str, Meta(min_length=1)]
     source: Annotated[str, Meta(min_length=1)]
     fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
+    wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
     white_balance: Path | None = None
     controls: ControlsSection = field(default_factory=ControlsSection)
 
@@ -141,6 +144,7 @@ class Config:
         Path, Meta(extra={"default": "$STATE_DIRECTORY or $XDG_STATE_HOME/mocapd"})
     ] = field(default_factory=default_state_dir)
     camera: tuple[CameraSection, ...] = ()
+    bundler: BundlerParams = field(default_factory=BundlerParams)
     tracker: TrackerSection = field(default_factory=TrackerSection)
     shirt: ShirtSection = field(default_factory=ShirtSection)
     smoothing: SmoothingSection = field(default_factory=SmoothingSection)
@@ -156,3 +160,5 @@ GONE = {
     "tracker.colour_paper.baseline = true",
     "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
 }
+# Set by `wait_s` of each camera.
+HIDDEN = ("bundler.camera_waits_s",)

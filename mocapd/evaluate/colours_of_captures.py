@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mocapd.calibrate.colours.colour_solution import white_balances
 from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.shape import mean_shape
-from mocapd.calibrate.self_calibration.joint_solver import RoomReport
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
-from mocapd.calibrate.self_calibration.self_calibration import room_from_body
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
+from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
@@ -35,7 +35,7 @@ from mocapd.types import Camera, Floats, Rig
 
 
 @dataclass(frozen=True, slots=True)
-class RoomScore:
+class ExtrinsicsScore:
     """By camera but the first: rotation_deg and distance_percent against the first camera."""
 
     rotation_deg: dict[str, float]
@@ -52,7 +52,7 @@ class _Known:
     W: dict[str, Floats]
 
 
-def score_room(found: Rig, true: Rig) -> RoomScore:
+def score_extrinsics(found: Rig, true: Rig) -> ExtrinsicsScore:
     """Where every camera stands from the first, against the truth."""
     rotation, distance = {}, {}
     for one, wanted in zip(found.cameras[1:], true.cameras[1:], strict=True):
@@ -63,7 +63,7 @@ def score_room(found: Rig, true: Rig) -> RoomScore:
         rotation[one.name] = float(np.degrees(angle_rad))
         length = float(np.linalg.norm(mine.t_m) / np.linalg.norm(theirs.t_m))
         distance[one.name] = 100.0 * (length - 1.0)
-    return RoomScore(rotation, distance)
+    return ExtrinsicsScore(rotation, distance)
 
 
 def beside_first(found: Rig, true: Rig) -> Rig:
@@ -92,12 +92,12 @@ def _known(capture: Path) -> _Known:
     return _Known(folder, folder.stature_m or TrackerSection().stature_m, colours, W)
 
 
-def find_room(known: _Known, database: PoseDatabase) -> tuple[Rig, RoomReport]:
+def find_extrinsics(known: _Known, database: PoseDatabase) -> tuple[Rig, SelfCalibrationReport]:
     """The rig from the capture's lenses and videos."""
-    lenses = known.folder.rig.cameras
-    tracks = PatchTracks(lenses, known.stature_m, known.colours, known.W, database)
+    bare_cameras = known.folder.rig.cameras
+    tracks = PatchTracks(bare_cameras, known.stature_m, known.colours, known.W, database)
     tracks.add_all(frame_sets(known.folder))
-    return room_from_body(tracks.moments, lenses, known.stature_m)
+    return extrinsics_from_body(tracks.observations, bare_cameras, known.stature_m)
 
 
 def rms_cm(known: _Known, rig: Rig, database: PoseDatabase) -> tuple[float, float]:
@@ -132,9 +132,9 @@ def main() -> None:
     database = load_or_build(default_cache_dir()).database
     for capture in told.captures:
         known = _known(capture)
-        found, report = find_room(known, database)
+        found, report = find_extrinsics(known, database)
         true = known.folder.rig
-        result = score_room(found, true)
+        result = score_extrinsics(found, true)
         line = f"{capture.name:24s}"
         for name, degrees in result.rotation_deg.items():
             line += f" {name} {degrees:5.2f} deg {result.distance_percent[name]:+6.2f} %"

@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
@@ -45,7 +45,7 @@ _WHOLE = np.ones((3, 3), np.uint8)
 
 
 @dataclass(slots=True)
-class _Eye:
+class _CaptureSegmenter:
     """One camera of the rig: its labelled frames, and its white balance, which step 5 follows."""
 
     index: int
@@ -83,12 +83,14 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     shirt = from_capture(folder).shirt or ShirtColours()
     params, colours = Params(), colour_model(shirt.model)
     factors = image_scales(folder.rig.cameras, params.fit.work_width_px)
-    eyes: dict[str, _Eye] = {}
+    segmenters: dict[str, _CaptureSegmenter] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):
         strokes = shirt.white_balance.get(camera.name)
         W = np.eye(3) if strokes is None else white_balance_of(strokes, colours, plain=True)
         labelled = labelled_frames(folder.path, recorded.video)
-        eyes[camera.name] = _Eye(i, camera, recorded.video, factors[i], labelled, colours, W)
+        segmenters[camera.name] = _CaptureSegmenter(
+            i, camera, recorded.video, factors[i], labelled, colours, W
+        )
     fitter = Fitter(
         build_model(folder.stature_m or stature_m), folder.rig.cameras, factors, params.fit
     )
@@ -96,20 +98,22 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     total = no_roc()
     for frames, state in _tracked(result, fitter):
         for name, frame in frames.frames.items():
-            eye, dt_s = eyes[name], seconds(frame.t_ns - frames.t_ns)
-            roi = fitter.drawings[eye.index].region(state, dt_s, params.segmentation.margin_px)
+            segmenter, dt_s = segmenters[name], seconds(frame.t_ns - frames.t_ns)
+            roi = fitter.drawings[segmenter.index].region(
+                state, dt_s, params.segmentation.margin_px
+            )
             if roi is None:
                 continue
             picture, rendered = (
-                eye.picture(frame),
-                fitter.drawings[eye.index].render(state, dt_s, roi),
+                segmenter.picture(frame),
+                fitter.drawings[segmenter.index].render(state, dt_s, roi),
             )
-            if frame.seq in eye.labelled and rendered.any():
-                label = read_label(folder.path, eye.video, frame.seq)
-                total += _roc(eye, picture, rendered, roi, label)
+            if frame.seq in segmenter.labelled and rendered.any():
+                label = read_label(folder.path, segmenter.video, frame.seq)
+                total += _roc(segmenter, picture, rendered, roi, label)
                 if (name, frame.seq) in result.evidence:
                     total += _as_it_ran(result.evidence[name, frame.seq], label)
-            eye.learn(picture, rendered, roi)
+            segmenter.learn(picture, rendered, roi)
     return total
 
 
@@ -122,10 +126,12 @@ def _tracked(result: CaptureResult, fitter: Fitter) -> Iterator[tuple[FrameSet, 
             yield frames, known[frames.t_ns]
 
 
-def _roc(eye: _Eye, picture: Bytes, rendered: Bytes, roi: Roi, label: Bytes) -> Roc:
-    x0, y0, x1, y1 = (n * eye.factor for n in roi)
-    truth = colour_truth(label, (x0, y0, x1, y1), eye.factor)
-    whitening = fold(eye.colours, eye.W)
+def _roc(
+    segmenter: _CaptureSegmenter, picture: Bytes, rendered: Bytes, roi: Roi, label: Bytes
+) -> Roc:
+    x0, y0, x1, y1 = (n * segmenter.factor for n in roi)
+    truth = colour_truth(label, (x0, y0, x1, y1), segmenter.factor)
+    whitening = fold(segmenter.colours, segmenter.W)
     rows, columns = np.nonzero(rendered)
     side_px = 1 + max(np.ptp(rows), np.ptp(columns))
     maps = DistanceMaps.allocate(*rendered.shape)

@@ -8,8 +8,9 @@ jitter; so an established pairing is kept until it exceeds half a period by `hys
 
 The wait. Each camera's period and delay (arrival minus capture) are learned, so the bundler knows
 when the next frame of each should arrive. A set goes out the moment its last expected frame
-arrives, or without the missing one at that frame's expected arrival plus `slack_periods`. A camera
-that failed `patience` sets in a row is not waited for until it returns.
+arrives, or without the missing one at that frame's expected arrival plus `slack_periods`; a camera
+with a wait of its own is waited for so long. One that failed `patience` sets in a row is not waited
+for until it returns.
 
 The time. A set's time is that of its newest frame: the pose is asked for at the freshest instant, and
 each frame carries its own. Sets follow each other by their anchors. Among cameras of different rates
@@ -22,31 +23,39 @@ give both; for recordings fed in order of capture `now_ns` is left out and is th
 import heapq
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from msgspec import Meta
 
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.pipeline.camera_queue import CameraQueue
 from mocapd.types import Frame, FrameSet
 
+MOST_PERIODS = 30.0  # that a set may be told to wait: pictures are kept meanwhile
+
 
 @dataclass(frozen=True, slots=True)
 class BundlerParams:
-    """How long to wait for whom. Periods are those learned from the cameras themselves.
+    """How long the frames of one moment wait for each other; periods are learned from the cameras.
 
-    period_s: assumed of a camera until two of its frames were seen [s].
-    slack_periods: how late a frame may be before its set goes without it [periods].
-    longest_wait_periods: no set waits longer than this after its first frame arrived [periods];
-        a camera whose delay exceeds the others' by more is never paired (its `late` count tells).
-    hysteresis_periods: by how much an established pairing may exceed half a period [periods].
-    patience: sets in a row a camera may miss before nobody waits for it any more.
+    period_s: assumed of a camera until two of its frames were seen [s]
+    slack_periods: how late a frame may be before its set goes without it [periods]
+    longest_wait_periods: no set waits longer than this after its first frame arrived [periods]; a camera
+      whose delay exceeds the others' by more is never paired
+    hysteresis_periods: by how much an established pairing may exceed half a period [periods]
+    patience: sets in a row a camera may miss before nobody waits for it any more
+    camera_waits_s: by camera, how long a set waits for it after its first frame arrived [s], in place of
+      the slack and the longest wait
     """
 
-    period_s: float = 1.0 / 30.0
-    slack_periods: float = 0.5
-    longest_wait_periods: float = 1.5
-    hysteresis_periods: float = 0.15
-    patience: int = 2
+    period_s: Annotated[float, Meta(gt=0, le=1, extra={"default": "1/30"})] = 1.0 / 30.0
+    slack_periods: Annotated[float, Meta(ge=0, le=MOST_PERIODS)] = 0.5
+    longest_wait_periods: Annotated[float, Meta(ge=0, le=MOST_PERIODS)] = 1.5
+    hysteresis_periods: Annotated[float, Meta(ge=0, le=0.5)] = 0.15
+    patience: Annotated[int, Meta(ge=1, le=1000)] = 2
+    camera_waits_s: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.period_s) and self.period_s > 0.0):
@@ -57,6 +66,9 @@ class BundlerParams:
                 raise ConfigError(f"{value} periods", f"bundler.{name}", "give 0 or more")
         if self.patience < 1:
             raise ConfigError(f"{self.patience} sets", "bundler.patience", "give 1 or more")
+        for camera, wait_s in self.camera_waits_s.items():
+            if not (math.isfinite(wait_s) and wait_s >= 0.0):
+                raise ConfigError(f"{wait_s} s for camera {camera!r}", "wait_s", "give 0 or more")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +95,7 @@ class Bundler:
         self._cameras = {name: CameraQueue(name, period_ns) for name in camera_names}
         if not self._cameras:
             raise ConfigError("no camera is named", "bundler", "give at least one camera")
+        self._waits_ns = {name: nanoseconds(s) for name, s in self._params.camera_waits_s.items()}
         self._now_ns: int | None = None
         self._deadline_ns: int | None = None
         self._last_set_ns: int | None = None
@@ -185,10 +198,11 @@ class Bundler:
         """Until when to wait for a frame of this capture time; None: not, or no longer."""
         if now_ns is None or camera.frames or camera.missed >= self._params.patience:
             return None
+        own_ns = self._waits_ns.get(camera.name)
         slack_ns = round(self._params.slack_periods * oldest.period_ns)
         longest_ns = round(self._params.longest_wait_periods * oldest.period_ns)
-        until_ns = oldest.head_arrival_ns + longest_ns
-        if camera.seen:
+        until_ns = oldest.head_arrival_ns + (longest_ns if own_ns is None else own_ns)
+        if camera.seen and own_ns is None:
             until_ns = min(until_ns, expected_ns + camera.delay_ns + slack_ns)
         return until_ns if now_ns < until_ns else None
 

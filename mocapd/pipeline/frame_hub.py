@@ -4,6 +4,7 @@ import threading
 from collections.abc import Iterable
 from typing import Protocol
 
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.types import Frame
 
 
@@ -16,11 +17,15 @@ class TakesFrames(Protocol):
 class FrameHub:
     """The mailbox of capture threads. Keeps a reference to each camera's newest frame, no copy.
 
-    Safe from any threads. Whoever joins gets every frame from then on, in the capture threads.
+    Safe from any threads. Whoever joins gets every frame from then on, in the capture threads; `bundler`:
+    how whoever makes frame sets of them is to wait for these cameras.
     """
 
-    def __init__(self, names: Iterable[str], *onwards: TakesFrames) -> None:
+    def __init__(
+        self, names: Iterable[str], *onwards: TakesFrames, bundler: BundlerParams | None = None
+    ) -> None:
         self.names = tuple(names)
+        self.bundler = bundler if bundler is not None else BundlerParams()
         self._lock = threading.Lock()  # guards what follows
         self._newest: dict[str, Frame] = {}
         self._onwards: tuple[TakesFrames, ...] = onwards

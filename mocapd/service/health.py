@@ -62,7 +62,7 @@ def camera_message(
         state=_STATES[status.state],
         detail=status.trouble,
         source=camera.spec,
-        identity=camera.spec.removeprefix("usb:") if camera.spec.startswith("usb:") else "",
+        identity=camera.identity,
         size_px=camera.size_px,
         rate_hz=status.fps_hz,
         frames=status.frames,

@@ -16,6 +16,7 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.service.mountings import Mountings
+from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
 
 STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
@@ -36,10 +37,12 @@ class RunningSession:
     ) -> None:
         self.config, self.session = config, session
         self.inputs = {camera.source.name: camera for camera in session.cameras}
-        collector = FrameCollector(self.inputs)
+        bundler = bundler_params(config)
+        collector = FrameCollector(self.inputs, bundler)
         sizes_px = {name: c.size_px for name, c in self.inputs.items() if any(c.size_px)}
         guard = SizeGuard(sizes_px, collector)
-        self.hub = FrameHub(self.inputs, guard)  # who looks at the pictures joins it
+        # who looks at the pictures joins it
+        self.hub = FrameHub(self.inputs, guard, bundler=bundler)
         self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
             CaptureThread(c.source, self.hub, died, c.expected_hz) for c in session.cameras

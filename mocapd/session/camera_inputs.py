@@ -2,16 +2,18 @@
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
-from mocapd.capture.from_config import open_source
+from mocapd.capture.origin import Origin
 from mocapd.capture.pace import Pace
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
-from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
-from mocapd.config.sections import CameraSection
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import identities_of, identity_of, is_settable, open_source
+from mocapd.capture.webcam.v4l2 import WebcamSettings
+from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.types import Rig
 
 
@@ -34,11 +36,19 @@ class CameraInput:
         """What it is read from, as shown to people."""
         return without_password(self.address)
 
+    @property
+    def identity(self) -> str:
+        """PORT:VID:PID:SERIAL of a webcam, as it is configured; empty for what has none."""
+        return self.address.partition(":")[2] if identity_of(self.address) is not None else ""
 
-def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraInput, ...]:
-    """Sources for these cameras, checked but not opened. Raises ConfigError or InputError."""
+
+def camera_inputs(
+    cameras: Sequence[CameraSection], rig: Rig | None, origin: Origin | None = None
+) -> tuple[CameraInput, ...]:
+    """Sources for these cameras, checked but not opened; origin: of all of them. Raises ConfigError or
+    InputError."""
     sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
-    identities = {c.id: parse_identity(c.source) for c in cameras if c.source.startswith(PREFIX)}
+    identities = identities_of((camera.id, camera.source) for camera in cameras)
     pace = Pace(live=True)  # recordings start together and keep their own time
     inputs = []
     for camera in in_rig_order(cameras, rig):
@@ -48,24 +58,26 @@ def camera_inputs(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[Ca
             fps_hz=camera.fps_hz,
             controls=camera.controls,
         )
-        source = open_source(
-            camera.source,
-            camera.id,
-            size_px=size_px,
-            settings=settings,
-            others=tuple(one for name, one in identities.items() if name != camera.id),
-            pace=pace,
-        )
-        expected_hz = None if source.recorded else camera.fps_hz
+        others = tuple(one for name, one in identities.items() if name != camera.id)
+        asked = Asked(camera.id, size_px, settings, others, pace, origin)
+        source = open_source(camera.source, asked)
+        rate_hz = camera.fps_hz if origin is None else origin.fps_hz
+        expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
+
+
+def bundler_params(config: Config) -> BundlerParams:
+    """How their frames wait for each other."""
+    waits_s = {one.id: one.wait_s for one in config.camera if one.wait_s is not None}
+    return replace(config.bundler, camera_waits_s=waits_s)
 
 
 def picture_size(camera: CameraSection) -> tuple[int, int]:
     """Width and height [px] of the pictures to come: a recording or network camera is asked, a webcam
     will be told. Raises MocapdError when there is no picture."""
-    source = open_source(camera.source, camera.id)
-    if isinstance(source, V4l2Source):
+    source = open_source(camera.source, Asked(camera.id))
+    if is_settable(camera.source):
         return WebcamSettings().size_px
     with closing(source):
         source.open()

@@ -1,8 +1,9 @@
 """What the configuration itself knows."""
 
 from mocapd.calibration.record import Calibration, ShirtColours
-from mocapd.calibration.shirt_pictures import read_model, stroked_folder, stroked_image
+from mocapd.calibration.shirt_pictures import stroked_folder, stroked_image
 from mocapd.config.sections import CameraSection, ShirtSection
+from mocapd.shirt.colour.model_pictures import read_model
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.types import Rig
 

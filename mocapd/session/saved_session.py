@@ -14,7 +14,7 @@ from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.file import size_error
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.source_kinds import identity_of, origin_of
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 
@@ -22,7 +22,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Saved:
+class LoadedCalibration:
     """A calibration as its file has it, and as a tracker takes it."""
 
     path: Path
@@ -30,7 +30,7 @@ class Saved:
     known: Calibration
 
 
-def calibration_of(config: Config) -> Saved | None:
+def configured_calibration(config: Config) -> LoadedCalibration | None:
     """The calibration that `rig` names; else that of the state directory, for its own cameras.
 
     None for a rig in the capture format, for cameras that bring a rig with them, and for others than
@@ -39,7 +39,7 @@ def calibration_of(config: Config) -> Saved | None:
     if config.rig is not None:
         return load_saved(config.rig) if is_calibration(config.rig) else None
     place = config.state_dir / FILE_NAME
-    if not is_file(place) or any("#" in camera.source for camera in config.camera):
+    if not is_file(place) or any(origin_of(camera.source) for camera in config.camera):
         return None
     saved = load_saved(place)
     if config.camera and not fits(config.camera, saved.tables):
@@ -56,11 +56,11 @@ def is_calibration(path: Path) -> bool:
     return is_folder(path) or path.suffix == ".toml"
 
 
-def load_saved(place: Path) -> Saved:
+def load_saved(place: Path) -> LoadedCalibration:
     """The calibration of a file or folder, with its pictures. Raises InputError or ConfigError."""
     path = calibration_path(place)
     tables = read_calibration(path)
-    return Saved(path, tables, from_saved(tables, path))
+    return LoadedCalibration(path, tables, from_saved(tables, path))
 
 
 def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
@@ -72,14 +72,15 @@ def fits(cameras: Sequence[CameraSection], tables: SavedCalibration) -> bool:
 
 def _model(source: str) -> object:
     """A password may be written in one place and hidden in the other."""
-    return parse_identity(source).model if source.startswith(PREFIX) else without_password(source)
+    identity = identity_of(source)
+    return identity.model if identity is not None else without_password(source)
 
 
 def _named(camera: SavedCamera) -> str:
     return f"{camera.id} = {without_password(camera.source)}"
 
 
-def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
+def cameras_of_calibration(saved: LoadedCalibration) -> tuple[CameraSection, ...]:
     """The calibrated cameras as a configuration has them. Raises ConfigError where a password is
     missing."""
     place = str(saved.path.parent)
@@ -94,7 +95,7 @@ def cameras_of_calibration(saved: Saved) -> tuple[CameraSection, ...]:
     )
 
 
-def known_of_recording(saved: Saved, folder: CaptureFolder) -> Calibration:
+def known_of_recording(saved: LoadedCalibration, folder: CaptureFolder) -> Calibration:
     """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
     where it does not. Raises ConfigError when they did not."""
     sizes = {camera.id: camera.size_px for camera in saved.tables.camera}

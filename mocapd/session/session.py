@@ -7,28 +7,29 @@ folder, or all of one simulated scenario. What the configuration gives itself wi
 import logging
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 from mocapd.body.shape import BodyShape
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
-from mocapd.capture.capture_folder import load_folder
-from mocapd.capture.url import is_url
+from mocapd.capture.origin import camera_address
+from mocapd.capture.source_kinds import cameras_of_origin, is_simulated, open_origin, origin_of
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
 from mocapd.session.from_configuration import from_configuration
-from mocapd.session.saved_session import Saved, calibration_of, cameras_of_calibration
+from mocapd.session.saved_session import (
+    LoadedCalibration,
+    cameras_of_calibration,
+    configured_calibration,
+)
 from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
 _log = logging.getLogger(__name__)
-
-SIM = "sim:"  # the renderer is imported for such cameras only: it takes a second
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,19 +46,15 @@ class Session:
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     """Every camera of a capture folder or of `sim:SCENARIO`. Raises InputError or ConfigError."""
-    if capture.startswith(SIM):
-        from mocapd.session import simulation
-
-        names = simulation.camera_names(capture)
-    else:
-        names = load_rig(Path(capture) / "rig.json").names
-    return tuple(CameraSection(name, f"{capture}#{name}") for name in names)
+    return tuple(
+        CameraSection(name, camera_address(capture, name)) for name in cameras_of_origin(capture)
+    )
 
 
 def open_session(config: Config, progress: Progress) -> Session:
     """Check and prepare everything; `progress` is told while something long is made for the first
     time. Raises ConfigError, InputError or CannotCreateError."""
-    saved = calibration_of(config)
+    saved = configured_calibration(config)
     cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
     if not cameras:
         raise ConfigError(
@@ -68,29 +65,27 @@ def open_session(config: Config, progress: Progress) -> Session:
         )
     config = replace(config, camera=cameras)
     origin = _common_origin(cameras)
-    if origin.startswith(SIM):
-        return _simulated(config, origin, saved, progress)
     rig, rig_source = _given_rig(config, saved)
     if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
         rig, rig_source = _assumed_rig(cameras[0]), "assumed"
     known = _known(config, rig, saved)
-    if origin and saved is None:
-        folder = load_folder(Path(origin))
-        known = from_capture(folder).overlaid(known)
-        rig, rig_source = (rig, rig_source) if rig else (folder.rig, str(folder.path / "rig.json"))
-    inputs = camera_inputs(cameras, rig)
+    opened = open_origin(origin, config.cache_dir, progress) if origin else None
+    if opened is not None and saved is None:
+        known = from_origin(opened).overlaid(known)
+        rig, rig_source = (rig, rig_source) if rig else (opened.rig, opened.rig_source)
+    inputs = camera_inputs(cameras, rig, opened)
     ready = _ready_tracker(config, known, progress)
     return Session(inputs, rig, rig_source, ready.tracker, ready.shape)
 
 
-def _given_rig(config: Config, saved: Saved | None) -> tuple[Rig | None, str]:
+def _given_rig(config: Config, saved: LoadedCalibration | None) -> tuple[Rig | None, str]:
     """The rig of the calibration or the rig file, and which file that is."""
     if saved is not None:
         return saved.known.rig, str(saved.path)
     return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
 
 
-def _known(config: Config, rig: Rig | None, saved: Saved | None) -> Calibration:
+def _known(config: Config, rig: Rig | None, saved: LoadedCalibration | None) -> Calibration:
     """From configuration and calibration: what the configuration itself gives goes before."""
     own = from_configuration(config.shirt, config.camera, rig)
     return own if saved is None else saved.known.overlaid(own)
@@ -107,21 +102,6 @@ def _assumed_rig(camera: CameraSection) -> Rig:
     return nominal_rig(camera.id, picture_size(camera))
 
 
-def _simulated(config: Config, source: str, saved: Saved | None, progress: Progress) -> Session:
-    from mocapd.session import simulation
-
-    film = simulation.open_film(source, config.cache_dir, progress)
-    known, rig_source = _known(config, None, saved), source
-    if saved is None:
-        known = simulation.from_scenario(film.setup).overlaid(known)
-    else:
-        rig_source = str(saved.path)
-    ready = _ready_tracker(config, known, progress)
-    # last, as they begin to play now
-    cameras = simulation.simulated_inputs(config.camera, film)
-    return Session(cameras, known.rig, rig_source, ready.tracker, ready.shape)
-
-
 def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> ReadyTracker:
     """Built, and its kernels warm."""
     own = config.tracker
@@ -136,9 +116,8 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Re
 
 def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
     """The one capture folder or scenario that all cameras are of; empty when there is none."""
-    # a URL is no folder, also where its password or fragment has a `#`
-    origins = {"" if is_url(one.source) else one.source.rpartition("#")[0] for one in cameras}
-    simulated = any(camera.source.startswith(SIM) for camera in cameras)
+    origins = {origin_of(one.source) for one in cameras}
+    simulated = any(is_simulated(camera.source) for camera in cameras)
     if simulated and (len(origins) > 1 or origins == {""}):
         raise ConfigError(
             "simulated cameras must all be of one scenario",

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.assets import asset_path
+from mocapd.capture.origin import camera_address
+from mocapd.capture.sim_kind import scenario_address
 from mocapd.capture.stage import SceneSource, Stage
 from mocapd.clock import monotonic_ns
 from mocapd.session.tracker_setup import Progress
@@ -35,7 +37,7 @@ class Demo:
     @staticmethod
     def source_of(camera: str) -> str:
         """`sim:...`: the same camera, with the wearer's motion over and over."""
-        return f"sim:{SCENARIO}#{camera}"
+        return camera_address(scenario_address(SCENARIO), camera)
 
     @property
     def fps_hz(self) -> float:

@@ -1,6 +1,7 @@
 """What the simulator keeps in the cache: a digest, then msgpack; read only when both digest and key fit."""
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -9,6 +10,7 @@ import msgspec
 from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_msgpack
 from mocapd.errors import CannotCreateError, InputError
+from mocapd.file_lock import one_at_a_time
 from mocapd.whole_file import whole_file
 
 _DIGEST_BYTES = 32
@@ -23,6 +25,23 @@ class Keyed(Protocol):
 
 
 F = TypeVar("F", bound=Keyed)
+
+
+def read_or_make(path: Path, lock: str, key: str, kind: type[F], make: Callable[[], F]) -> F:
+    """What is kept there, else what `make` returns, kept from then on.
+
+    lock: a file of the same folder; of several processes that find nothing one makes it. Raises
+    CannotCreateError.
+    """
+    stored = read_cached(path, key, kind)
+    if stored is not None:
+        return stored
+    with one_at_a_time(path.parent, lock):
+        stored = read_cached(path, key, kind)  # by whom we waited for
+        if stored is None:
+            stored = make()
+            write_cached(path, stored)
+        return stored
 
 
 def read_cached(path: Path, key: str, kind: type[F]) -> F | None:

@@ -15,7 +15,7 @@ import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
 from mocapd.boundary.pictures import decode_picture
-from mocapd.sim.cache_file import read_cached, write_cached
+from mocapd.sim.cache_file import read_or_make
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import SimSetup, setup_of
@@ -53,10 +53,9 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     """
     key = film_key(scenario)
     path = cache_dir / f"sim-{scenario.name}-{key[:16]}.film"
-    stored = read_cached(path, key, _FilmFile)
-    if stored is None:
-        stored = _render(scenario, key, progress)
-        write_cached(path, stored)
+    stored = read_or_make(
+        path, f"sim-{scenario.name}.lock", key, _FilmFile, lambda: _render(scenario, key, progress)
+    )
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,

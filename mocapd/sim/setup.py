@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import msgspec
 import numpy as np
 
 from mocapd.sim.person.figure import build_figure
-from mocapd.sim.renderer import CameraRenderer, Set, camera_renderers
-from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario, load_scenario
+from mocapd.sim.renderer import CameraRenderer, Set
+from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario
 from mocapd.sim.scenery.furniture import backdrop
 from mocapd.sim.scenery.lamps import studio_lamps
 from mocapd.sim.scribbles import scribble
@@ -33,14 +32,8 @@ class SimSetup:
     model: tuple[LabelledPicture, ...]
 
 
-def sim_setup(scenario_path: Path) -> SimSetup:
-    """Calibrate on a scenario file. Raises InputError or ConfigError."""
-    scenario = load_scenario(scenario_path)
-    return setup_of(scenario, camera_renderers(World(scenario)))
-
-
 def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:
-    """The same with the scenario's cameras at hand."""
+    """Calibrate on a scenario, whose cameras are at hand."""
     return SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,

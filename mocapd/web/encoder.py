@@ -1,4 +1,6 @@
-"""Pictures as JPEG, only when somebody asks, and once for everybody who asks for the same."""
+"""Pictures as JPEG, only when somebody asks, and once for everybody who asks for the same.
+
+What a camera delivers as JPEG is handed on as it is to whoever asks for its whole width."""
 
 import asyncio
 from collections.abc import Callable
@@ -8,6 +10,8 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
+from mocapd.boundary.pictures import is_plain_jpeg
+from mocapd.errors import MalformedError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Bytes, Frame
 from mocapd.web.links import MOST_HZ
@@ -64,10 +68,11 @@ class PictureEncoder:
                 return None
             if before is None or frame.seq != before.seq or frame.t_ns != before.t_ns:
                 newest.made_s = loop.time()
-                newest.picture = before = await loop.run_in_executor(
-                    self._executor, encode, frame, width_px
-                )
-                self.encoded += 1
+                before = delivered(frame, width_px)
+                if before is None:
+                    before = await loop.run_in_executor(self._executor, encode, frame, width_px)
+                    self.encoded += 1
+                newest.picture = before
             return before
 
     def _slot(self, camera: str, width_px: int) -> _Newest:
@@ -89,6 +94,20 @@ class PictureEncoder:
             if loop.time() > until_s:
                 return None
             await asyncio.sleep(_LOOK_EVERY_S)
+
+
+def delivered(frame: Frame, width_px: int) -> Picture | None:
+    """A frame with the camera's own JPEG; None where that cannot be shown as it is: there is none, fewer
+    pixels are wanted, or it says something else of itself than what was decoded from it."""
+    height, width = frame.pixels.shape[:2]
+    if frame.encoded is None or width_px < width:
+        return None
+    try:
+        if not is_plain_jpeg(frame.encoded, (width, height)):
+            return None
+    except MalformedError:
+        return None
+    return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), frame.encoded)
 
 
 def encode(frame: Frame, width_px: int) -> Picture:

@@ -219,7 +219,7 @@ class SkipFloor(Command, frozen=True):
 
 
 class Solve(Command, frozen=True):
-    """With the moments there are."""
+    """With the observations there are."""
 
 
 class StartWalk(Command, frozen=True):

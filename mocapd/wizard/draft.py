@@ -28,8 +28,8 @@ class DraftCamera:
 
 
 @dataclass(frozen=True, slots=True)
-class RoomQuality:
-    """How well the room fits: `method` is "board" or "wearer"; NaN where a method cannot tell.
+class ExtrinsicsQuality:
+    """How well the extrinsics fit: `method` is "board" or "wearer"; NaN where a method cannot tell.
 
     rms_px: over all cameras; camera_rms_px: by camera; play_area_cm: median error in the play area.
     """
@@ -53,9 +53,9 @@ class DraftColours:
 class Draft:
     """Everything found so far; None or empty where a step has not been done yet.
 
-    board_views: by camera id the pictures of the board that lens and room are solved from, by the index
-    of their moment: views of one index are of one moment. lenses, colours: by camera id; lens_saved:
-    ids whose lens was taken over from an earlier setup; floor_known: whether floor and up were
+    board_views: by camera id the pictures of the board that intrinsics and extrinsics are solved from, by the index
+    of their sighting: views of one index are of one instant. intrinsics, colours: by camera id; intrinsics_saved:
+    ids whose intrinsics were taken over from an earlier setup; floor_known: whether floor and up were
     measured, not guessed; personal: whether the wearer's own colours (from the strokes) replace the
     shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`.
     """
@@ -63,10 +63,10 @@ class Draft:
     cameras: tuple[DraftCamera, ...] = ()
     board: BoardSpec | None = None
     board_views: Mapping[str, Mapping[int, BoardView]] = field(default_factory=dict)
-    lenses: Mapping[str, Intrinsics] = field(default_factory=dict)
-    lens_saved: frozenset[str] = frozenset()
+    intrinsics: Mapping[str, Intrinsics] = field(default_factory=dict)
+    intrinsics_saved: frozenset[str] = frozenset()
     rig: Rig | None = None
-    room: RoomQuality | None = None
+    extrinsics_quality: ExtrinsicsQuality | None = None
     floor_known: bool = False
     colours: Mapping[str, DraftColours] = field(default_factory=dict)
     personal: bool = False

@@ -21,7 +21,7 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.errors import MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
 from mocapd.types import Bytes, LabelledPicture, Rig
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 
 _PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)  # lossless at any level; this one is quick
 
@@ -55,7 +55,7 @@ class _View(Table, frozen=True):
     sharpness: Finite
 
 
-class _Lens(Table, frozen=True):
+class _Intrinsics(Table, frozen=True):
     size_px: tuple[Pixels, Pixels]
     K: Matrix3
     dist: Row5
@@ -76,7 +76,7 @@ class _Place(Table, frozen=True):
     t: Row3
 
 
-class _Room(Table, frozen=True):
+class _Quality(Table, frozen=True):
     method: Literal["board", "wearer"]
     rms_px: NotNegative | None
     camera_rms_px: dict[Text, NotNegative | None]
@@ -95,10 +95,10 @@ class KeptDraft(Table, frozen=True):
     cameras: Annotated[tuple[_Camera, ...], msgspec.Meta(min_length=1, max_length=64)]
     board: BoardSpec | None
     board_views: dict[Text, tuple[_View, ...]]
-    lenses: dict[Text, _Lens]
-    lens_saved: frozenset[Text]
+    intrinsics: dict[Text, _Intrinsics] = msgspec.field(name="lenses")
+    intrinsics_saved: frozenset[Text] = msgspec.field(name="lens_saved")
     rig: tuple[_Place, ...] | None
-    room: _Room | None
+    extrinsics_quality: _Quality | None = msgspec.field(name="room")
     floor_known: bool
     colours: dict[Text, _Colours]
     personal: bool
@@ -133,12 +133,16 @@ def kept_draft(draft: Draft) -> KeptDraft:
             )
             for name, own in draft.board_views.items()
         },
-        lenses={name: _kept_lens(lens) for name, lens in draft.lenses.items()},
-        lens_saved=draft.lens_saved,
+        intrinsics={
+            name: _kept_intrinsics(intrinsics) for name, intrinsics in draft.intrinsics.items()
+        },
+        intrinsics_saved=draft.intrinsics_saved,
         rig=None
         if draft.rig is None
         else tuple(_Place(**camera_to_dict(one)) for one in draft.rig.cameras),
-        room=None if draft.room is None else _kept_room(draft.room),
+        extrinsics_quality=None
+        if draft.extrinsics_quality is None
+        else _kept_quality(draft.extrinsics_quality),
         floor_known=draft.floor_known,
         colours={
             name: _Colours(
@@ -154,26 +158,26 @@ def kept_draft(draft: Draft) -> KeptDraft:
     )
 
 
-def _kept_lens(lens: Intrinsics) -> _Lens:
-    return _Lens(
-        size_px=lens.size_px,
-        K=lens.K.tolist(),
-        dist=lens.dist.tolist(),
-        free=lens.free.tolist(),
-        rms_px=_figure(lens.rms_px),
-        held_out_px=_figure(lens.held_out_px),
-        views=lens.views,
-        thrown_out=lens.thrown_out,
-        focal_deviation=_figure(lens.focal_deviation),
+def _kept_intrinsics(intrinsics: Intrinsics) -> _Intrinsics:
+    return _Intrinsics(
+        size_px=intrinsics.size_px,
+        K=intrinsics.K.tolist(),
+        dist=intrinsics.dist.tolist(),
+        free=intrinsics.free.tolist(),
+        rms_px=_figure(intrinsics.rms_px),
+        held_out_px=_figure(intrinsics.held_out_px),
+        views=intrinsics.views,
+        thrown_out=intrinsics.thrown_out,
+        focal_deviation=_figure(intrinsics.focal_deviation),
     )
 
 
-def _kept_room(room: RoomQuality) -> _Room:
-    return _Room(
-        method="wearer" if room.method == "wearer" else "board",
-        rms_px=_figure(room.rms_px),
-        camera_rms_px={name: _figure(px) for name, px in room.camera_rms_px.items()},
-        play_area_cm=_figure(room.play_area_cm),
+def _kept_quality(quality: ExtrinsicsQuality) -> _Quality:
+    return _Quality(
+        method="wearer" if quality.method == "wearer" else "board",
+        rms_px=_figure(quality.rms_px),
+        camera_rms_px={name: _figure(px) for name, px in quality.camera_rms_px.items()},
+        play_area_cm=_figure(quality.play_area_cm),
     )
 
 
@@ -190,12 +194,12 @@ def _png(pixels: Bytes) -> bytes:
 def check_kept(draft: KeptDraft) -> None:
     """What belongs to each other. Raises MalformedError."""
     sizes = {one.id: one.size_px for one in draft.cameras}
-    named = (draft.lenses, draft.colours)
+    named = (draft.intrinsics, draft.colours)
     placed = None if draft.rig is None else {one.name: one.size for one in draft.rig}
     if (
         len(sizes) < len(draft.cameras)
         or any(not sizes.keys() >= of_camera.keys() for of_camera in named)
-        or any(lens.size_px != sizes[name] for name, lens in draft.lenses.items())
+        or any(intrinsics.size_px != sizes[name] for name, intrinsics in draft.intrinsics.items())
         or placed not in (None, sizes)
     ):
         raise MalformedError("its cameras do not belong together")
@@ -223,12 +227,16 @@ def draft_of(kept: KeptDraft, where: str) -> Draft:
             name: {view.index: _view(view) for view in own}
             for name, own in kept.board_views.items()
         },
-        lenses={name: _lens(lens) for name, lens in kept.lenses.items()},
-        lens_saved=kept.lens_saved,
+        intrinsics={
+            name: _read_intrinsics(intrinsics) for name, intrinsics in kept.intrinsics.items()
+        },
+        intrinsics_saved=kept.intrinsics_saved,
         rig=None
         if kept.rig is None
         else Rig(tuple(camera_from_dict(msgspec.structs.asdict(one), where) for one in kept.rig)),
-        room=None if kept.room is None else _room(kept.room),
+        extrinsics_quality=None
+        if kept.extrinsics_quality is None
+        else _read_quality(kept.extrinsics_quality),
         floor_known=kept.floor_known,
         colours=_colours(kept.colours),
         personal=kept.personal,
@@ -243,7 +251,7 @@ def _view(told: _View) -> BoardView:
     )
 
 
-def _lens(told: _Lens) -> Intrinsics:
+def _read_intrinsics(told: _Intrinsics) -> Intrinsics:
     return Intrinsics(
         told.size_px,
         np.array(told.K),
@@ -257,9 +265,9 @@ def _lens(told: _Lens) -> Intrinsics:
     )
 
 
-def _room(told: _Room) -> RoomQuality:
+def _read_quality(told: _Quality) -> ExtrinsicsQuality:
     by_camera = {name: _nan(px) for name, px in told.camera_rms_px.items()}
-    return RoomQuality(told.method, _nan(told.rms_px), by_camera, _nan(told.play_area_cm))
+    return ExtrinsicsQuality(told.method, _nan(told.rms_px), by_camera, _nan(told.play_area_cm))
 
 
 def _colours(told: Mapping[str, _Colours]) -> dict[str, DraftColours]:

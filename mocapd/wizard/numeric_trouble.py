@@ -15,7 +15,7 @@ EXPECTED = (MocapdError, cv2.error, np.linalg.LinAlgError)
 """What a step may end in by what it is given; anything else is a bug of ours."""
 
 
-def named(error: MocapdError | cv2.error | np.linalg.LinAlgError, where: str) -> MocapdError:
+def name_trouble(error: MocapdError | cv2.error | np.linalg.LinAlgError, where: str) -> MocapdError:
     """The error as people are told it. What has no name yet is logged with the place it came from."""
     if isinstance(error, MocapdError):
         return error

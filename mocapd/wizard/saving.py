@@ -33,7 +33,7 @@ from mocapd.calibration.saved_calibration import (
 from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
 from mocapd.types import Camera, LabelledPicture
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 
 _MOST_VIEWS = 10**6  # of one lens
 
@@ -53,7 +53,7 @@ def save_draft(draft: Draft, state_dir: Path) -> Path:
 
 def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
     """The draft as the tables of the file, and its pictures by camera."""
-    if draft.rig is None or draft.room is None:
+    if draft.rig is None or draft.extrinsics_quality is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
     by_id = {camera.id: camera for camera in draft.cameras}
     cameras = tuple(_camera(draft, by_id[one.name], one) for one in draft.rig.cameras)
@@ -65,9 +65,9 @@ def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, LabelledPicture]
             mocapd=mocapd.__version__,
         ),
         room=RoomFit(
-            method="wearer" if draft.room.method == "wearer" else "board",
-            rms_px=figure(draft.room.rms_px),
-            play_area_cm=figure(draft.room.play_area_cm),
+            method="wearer" if draft.extrinsics_quality.method == "wearer" else "board",
+            rms_px=figure(draft.extrinsics_quality.rms_px),
+            play_area_cm=figure(draft.extrinsics_quality.play_area_cm),
             floor_known=draft.floor_known,
         ),
         wearer=_wearer(draft),
@@ -97,14 +97,14 @@ def load_draft(place: Path) -> Draft:
             for one in saved.camera
         ),
         board=saved.board,
-        lenses={
+        intrinsics={
             one.id: _lens(one.lens, camera)
             for one, camera in zip(saved.camera, known.rig.cameras, strict=True)
             if one.lens is not None
         },
-        lens_saved=frozenset(one.id for one in saved.camera if one.lens is not None),
+        intrinsics_saved=frozenset(one.id for one in saved.camera if one.lens is not None),
         rig=known.rig,
-        room=RoomQuality(
+        extrinsics_quality=ExtrinsicsQuality(
             room.method,
             math.nan if room.rms_px is None else room.rms_px,
             {one.id: math.nan if one.rms_px is None else one.rms_px for one in saved.camera},
@@ -136,9 +136,13 @@ def calibration_of(draft: Draft) -> Calibration:
 
 
 def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamera:
-    lens = draft.lenses.get(camera.id)
+    lens = draft.intrinsics.get(camera.id)
     colours = draft.colours.get(camera.id)
-    rms_px = draft.room.camera_rms_px.get(camera.id, math.nan) if draft.room else math.nan
+    rms_px = (
+        draft.extrinsics_quality.camera_rms_px.get(camera.id, math.nan)
+        if draft.extrinsics_quality
+        else math.nan
+    )
     return SavedCamera(
         id=camera.id,
         label=camera.label,
@@ -150,7 +154,7 @@ def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamer
         R=calibrated.R.tolist(),
         t_m=calibrated.t_m.tolist(),
         rms_px=figure(rms_px),
-        lens=None if lens is None else _lens_fit(lens, camera.id in draft.lens_saved),
+        lens=None if lens is None else _lens_fit(lens, camera.id in draft.intrinsics_saved),
         controls=camera.controls,
         colour=None
         if colours is None

@@ -182,6 +182,6 @@ def has_news(draft: Draft, begun: Draft) -> bool:
             one is not None and one is not before
             for one, before in ((draft.rig, begun.rig), (draft.factors, begun.factors))
         )
-        or any(one is not begun.lenses.get(name) for name, one in draft.lenses.items())
+        or any(one is not begun.intrinsics.get(name) for name, one in draft.intrinsics.items())
         or any(one is not begun.colours.get(name) for name, one in draft.colours.items())
     )

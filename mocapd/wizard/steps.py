@@ -9,13 +9,13 @@ from mocapd.pipeline.loop import OnDeath
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
-from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
+from mocapd.wizard.cameras.same_port import AsksForPorts, PortChange
 from mocapd.wizard.check.check_step import CheckStep
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
-from mocapd.wizard.intrinsics.intrinsics_step import LensStep
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
+from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import StepName
 from mocapd.wizard.wizard import MakeStep
@@ -29,7 +29,7 @@ class SetupCameras:
     opened: tuple[DraftCamera, ...]
     nodes: Callable[[], tuple[CameraInfo, ...]]
     locks: CameraLocks
-    moved: tuple[Moved, ...] = ()
+    moved: tuple[PortChange, ...] = ()
 
 
 def all_steps(
@@ -42,8 +42,8 @@ def all_steps(
     )
     return {
         StepName.CAMERAS: partial(AsksForPorts, make=choosing, moved=list(cameras.moved)),
-        StepName.LENS: LensStep,
-        StepName.ROOM: RoomStep,
+        StepName.LENS: IntrinsicsStep,
+        StepName.ROOM: ExtrinsicsStep,
         StepName.COLOUR: ColourStep,
         StepName.BODY: BodyStep,
         StepName.CHECK: partial(CheckStep, settings=settings, shown=shown, died=died),

@@ -15,7 +15,7 @@ from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
-from mocapd.wizard.numeric_trouble import EXPECTED, named
+from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
@@ -159,7 +159,7 @@ class Wizard:
         try:
             self._job.finish()
         except EXPECTED as error:
-            self._step.job_failed(named(error, self._step.name))
+            self._step.job_failed(name_trouble(error, self._step.name))
 
     def _tick(self) -> None:
         """Trouble is told where refusals are, and tried again with the next tick."""
@@ -167,7 +167,7 @@ class Wizard:
             self._step.tick(monotonic_ns())
             self._stumbled = ""
         except EXPECTED as error:
-            told = named(error, self._step.name)
+            told = name_trouble(error, self._step.name)
             if str(told) != self._stumbled:  # not twenty times a second
                 self._stumbled = str(told)
                 _log.warning("%s", told)
@@ -193,7 +193,7 @@ class Wizard:
         try:
             self._take(verb, args)
         except EXPECTED as error:
-            return Problem.of(named(error, self._step.name))
+            return Problem.of(name_trouble(error, self._step.name))
         # Arguments were checked, so this is a bug of ours. It is not worth a setup that took a person
         # a quarter of an hour: what the command did is doubtful, what was found before it is not.
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:

@@ -27,7 +27,7 @@ def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
     ids = {camera.id for camera in draft.cameras}
     results = {
         StepName.CAMERAS: bool(ids),
-        StepName.LENS: bool(ids) and ids <= draft.lenses.keys(),
+        StepName.LENS: bool(ids) and ids <= draft.intrinsics.keys(),
         StepName.ROOM: draft.rig is not None and ids == set(draft.rig.names),
         StepName.COLOUR: bool(ids) and ids <= draft.colours.keys(),
         StepName.BODY: draft.stature_m is not None,

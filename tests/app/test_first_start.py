@@ -1,7 +1,6 @@
 """What is made once is made in a process that ends, and remembered."""
 
 import os
-import socket
 import time
 from pathlib import Path
 
@@ -11,13 +10,11 @@ from mocapd.app import progress
 from mocapd.app.progress import ProgressBars
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
+from tests.outputs.frames import free_port
 
 
 def run(env: dict[str, str], capture: Path, *words: str) -> Outcome:
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        port = one.getsockname()[1]
-    setting = ("--set", f"zenoh.port={port}")
+    setting = ("--set", f"zenoh.port={free_port()}")
     return mocapd(env, "run", "--capture", capture, "--tracker", "canned", *setting, *words)
 
 

@@ -59,8 +59,3 @@ def test_what_can_be_no_path_is_not_there(path: str) -> None:
 def test_a_nul_in_a_path_is_refused_where_it_is_written() -> None:
     with pytest.raises(ConfigError, match="is no path"):
         files.user_path("a\0b")
-
-
-def test_whether_something_is_there_can_be_asked_of_any_path(tmp_path: Path) -> None:
-    assert files.exists(tmp_path)
-    assert not files.exists(tmp_path / ("x" * 5000))

@@ -16,6 +16,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import PAGE_URL, problems_of
 from tests.cli.mocapd_process import mocapd, start
+from tests.outputs.frames import free_port
 
 WAIT_MS = 60_000
 
@@ -29,7 +30,7 @@ def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def url(user_env: dict[str, str], runtime_dir: Path) -> Iterator[str]:
     """Of a daemon on simulated webcams, told by the `mocapd calibrate` that attaches to it."""
     env = user_env | {"XDG_RUNTIME_DIR": str(runtime_dir)}
-    process = start(env, "demo", "--set", "zenoh.port=7461", "--set", "osc.enabled=false")
+    process = start(env, "demo", "--set", f"zenoh.port={free_port()}", "--set", "osc.enabled=false")
     try:
         wait_for_page(process)
         told = mocapd(env, "calibrate", "--no-browser")

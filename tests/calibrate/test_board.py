@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settled
-from mocapd.calibrate.board.detection_diagnostics import why_not_seen
+from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settle_variant
+from mocapd.calibrate.board.detection_diagnostics import diagnose_detection
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.errors import ConfigError
 from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard, printed
@@ -85,7 +85,7 @@ def test_every_board_that_is_taken_can_be_looked_for(
 )
 def test_why_a_board_is_not_seen_is_told_of_boards_at_the_limits(spec: BoardSpec) -> None:
     """Its neighbours in size, which are tried too, cannot all be printed."""
-    told = why_not_seen(BoardDetector(spec), picture())
+    told = diagnose_detection(BoardDetector(spec), picture())
     assert told.reason in (Reason.NOTHING, Reason.OTHER_SIZE, Reason.FEW)
 
 
@@ -125,9 +125,9 @@ def test_corners_are_found_where_they_are(spec: BoardSpec, inverted: bool) -> No
 
 def test_the_board_is_found_in_the_other_layout_and_ink() -> None:
     for board in (replace(PRINT, inverted=True), replace(PRINT, legacy=True)):
-        found = settled(SPEC, [picture(board)])
+        found = settle_variant(SPEC, [picture(board)])
         assert (found.inverted, found.legacy) == (board.inverted, board.legacy)
-    assert settled(SPEC, [np.full((100, 100), 90, np.uint8)]) == SPEC
+    assert settle_variant(SPEC, [np.full((100, 100), 90, np.uint8)]) == SPEC
 
 
 def test_a_blurred_picture_is_less_sharp() -> None:
@@ -161,7 +161,7 @@ def test_the_reason_why_there_is_no_board(
 ) -> None:
     detector = BoardDetector(spec)
     assert detector.find(pixels) is None
-    told = why_not_seen(detector, pixels)
+    told = diagnose_detection(detector, pixels)
     assert told.reason is reason
     assert says in told.detail
 
@@ -173,4 +173,4 @@ def test_an_empty_room_has_no_board() -> None:
     pixels = np.clip(room + noise, 0, 255).astype(np.uint8)
     detector = BoardDetector(SPEC)
     assert detector.find(pixels) is None
-    assert why_not_seen(detector, pixels).reason is Reason.NOTHING
+    assert diagnose_detection(detector, pixels).reason is Reason.NOTHING

@@ -12,14 +12,14 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     ReprojectionProblem,
     jacobians,
     residuals_px,
-    stepped_problem,
+    with_steps,
 )
-from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
+from mocapd.calibrate.extrinsics.bundle_adjustment import adjust_bundle
+from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
+    guess_world,
     play_area_error,
-    rig_in,
-    world_guessed,
+    rig_in_world,
     world_on_floor,
 )
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
@@ -64,7 +64,7 @@ def random_scene(seed: int = 0) -> tuple[ReprojectionProblem, Observations]:
     rig = cameras(3)
     views = views_of(rig, 4, {})
     names = [c.name for c in rig]
-    scene, indices = first_scene(names, lenses_near(rig), views, BOARD_M)
+    scene, indices = initial_scene(names, lenses_near(rig), views, BOARD_M)
     rng = np.random.default_rng(seed)
     scene = replace(
         scene, path=0.05 * rng.standard_normal((5, 2, 6)), delay=np.array([0.0, 0.4, -0.3])
@@ -75,8 +75,8 @@ def random_scene(seed: int = 0) -> tuple[ReprojectionProblem, Observations]:
 def test_projection_is_that_of_the_cameras() -> None:
     scene, seen = random_scene()
     scene = replace(scene, delay=np.zeros(3))
-    rig = rig_in(world_guessed(scene, BOARD_M), scene, ["a", "b", "c"], [(640, 480)] * 3)
-    world = world_guessed(scene, BOARD_M)
+    rig = rig_in_world(guess_world(scene, BOARD_M), scene, ["a", "b", "c"], [(640, 480)] * 3)
+    world = guess_world(scene, BOARD_M)
     error = residuals_px(scene, seen)
     for n in (0, 33, 177):
         v = seen.view[n]
@@ -93,12 +93,10 @@ def test_slopes_are_those_of_small_steps() -> None:
     d = [rng.standard_normal(shape) for shape in shapes]
     h = 1e-6
     ahead, behind = (
-        residuals_px(
-            stepped_problem(scene, *(a + s * h * b for a, b in zip(at, d, strict=True))), seen
-        )
+        residuals_px(with_steps(scene, *(a + s * h * b for a, b in zip(at, d, strict=True))), seen)
         for s in (1.0, -1.0)
     )
-    parts = jacobians(stepped_problem(scene, *at), seen, at[1], at[2])
+    parts = jacobians(with_steps(scene, *at), seen, at[1], at[2])
     rows = (d[0][seen.camera], d[1][seen.camera], d[2][seen.view], d[3][seen.camera, None])
     slope = sum(np.einsum("nij,nj->ni", J, x) for J, x in zip(parts, rows, strict=True))
     np.testing.assert_allclose((ahead - behind) / (2 * h), slope, rtol=1e-5, atol=1e-3)
@@ -112,15 +110,15 @@ def test_a_chain_of_cameras_is_solved_on_the_floor() -> None:
     rig = cameras(4)
     names = [c.name for c in rig]
     views = views_of(rig, 24, CHAIN)
-    scene, indices = first_scene(names, lenses_near(rig), views, BOARD_M)
+    scene, indices = initial_scene(names, lenses_near(rig), views, BOARD_M)
     seen = observations(names, views, indices, BOARD_M)
     spoilt = seen.pixels.copy()
     spoilt[::97] += 40.0  # outliers
     seen = replace(seen, pixels=spoilt)
-    bundle = adjust(scene, indices, seen, np.array([[640.0, 480.0]] * 4))
+    bundle = adjust_bundle(scene, indices, seen, np.array([[640.0, 480.0]] * 4))
     assert not bundle.used[::97].any()
     world = world_on_floor(bundle.scene, indices.index(24), middle_m(), "the floor")
-    found = rig_in(world, bundle.scene, names, [c.size_px for c in rig])
+    found = rig_in_world(world, bundle.scene, names, [c.size_px for c in rig])
     for a, b in zip(rig, found.cameras, strict=True):
         assert abs(b.K[0, 0] / a.K[0, 0] - 1.0) < 0.005
         # the heading is that of the cameras' middle, not that of the simulated room
@@ -135,7 +133,7 @@ def test_cameras_that_share_no_position_are_named() -> None:
     rig = cameras(3)
     views = views_of(rig, 12, {i: ((0, 1), (2,))[i % 2] for i in range(13)})
     with pytest.raises(ConfigError, match="cam2 never sees the board at the same moment"):
-        first_scene([c.name for c in rig], lenses_near(rig), views, BOARD_M)
+        initial_scene([c.name for c in rig], lenses_near(rig), views, BOARD_M)
 
 
 def test_a_floor_above_the_cameras_is_refused() -> None:

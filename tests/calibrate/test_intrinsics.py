@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import solve_lens
-from mocapd.calibrate.intrinsics.views import Choice, chosen_views, coverage, covered
+from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, coverage, covered
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
@@ -29,7 +29,7 @@ def views_at(poses: list[tuple[Floats, Floats]], noise_px: float = 0.1) -> list[
 
 
 def test_the_lens_is_found_and_its_held_out_error_is_the_noise() -> None:
-    lens = solve_lens(views_at(held_poses(24)), BOARD_M, SIZE_PX, "cam0")
+    lens = solve_intrinsics(views_at(held_poses(24)), BOARD_M, SIZE_PX, "cam0")
     assert abs(lens.K[0, 0] / CAMERA.K[0, 0] - 1) < 0.005
     assert abs(lens.K[1, 1] / CAMERA.K[1, 1] - 1) < 0.005
     assert 0.8 < lens.held_out_px / (0.1 * np.sqrt(2.0)) < 1.3
@@ -42,7 +42,7 @@ def test_views_that_contradict_the_others_are_thrown_out() -> None:
     for i in (4, 11):
         bad = views[i].corners_px + rng.normal(0, 6, views[i].corners_px.shape)
         views[i] = replace(views[i], corners_px=bad)
-    lens = solve_lens(views, BOARD_M, SIZE_PX, "cam0")
+    lens = solve_intrinsics(views, BOARD_M, SIZE_PX, "cam0")
     assert lens.thrown_out == (4, 11)
     assert abs(lens.K[0, 0] / CAMERA.K[0, 0] - 1) < 0.005
 
@@ -53,26 +53,26 @@ def test_parallel_views_are_refused() -> None:
     places = TARGET_M + rng.uniform(-0.15, 0.15, (15, 3))
     poses = [(facing, place - facing @ middle_m()) for place in places]
     with pytest.raises(ConfigError, match="tilt") as refused:
-        solve_lens(views_at(poses), BOARD_M, SIZE_PX, "cam0")
+        solve_intrinsics(views_at(poses), BOARD_M, SIZE_PX, "cam0")
     assert refused.value.where == "cam0"
 
 
 def test_too_few_views_and_a_bent_board_are_refused() -> None:
     with pytest.raises(ConfigError, match="usable in 4 pictures"):
-        solve_lens(views_at(held_poses(4)), BOARD_M, SIZE_PX, "cam0")
+        solve_intrinsics(views_at(held_poses(4)), BOARD_M, SIZE_PX, "cam0")
     bent = BOARD_M.copy()
     bent[:, 0] += 0.02 * np.sin(60.0 * bent[:, 1])
     with pytest.raises(ConfigError, match=r"fits badly|contradict"):
-        solve_lens(views_at(held_poses(20)), bent, SIZE_PX, "cam0")
+        solve_intrinsics(views_at(held_poses(20)), bent, SIZE_PX, "cam0")
 
 
 def test_blurred_views_are_left_and_the_picture_is_filled() -> None:
     views = views_at(held_poses(60))
     soft = [replace(view, sharpness=0.1) if view.index % 3 == 0 else view for view in views]
-    taken = chosen_views(soft, SIZE_PX, Choice(most=12))
+    taken = choose_views(soft, SIZE_PX, Choice(most=12))
     assert len(taken) == 12
     assert all(view.index % 3 for view in taken)
     first = [view for view in soft if view.index % 3][:12]
     assert covered(taken, SIZE_PX) >= covered(first, SIZE_PX)
     assert coverage(taken, SIZE_PX).sum() == 12 * len(BOARD_M)
-    assert chosen_views([], SIZE_PX, Choice()) == []
+    assert choose_views([], SIZE_PX, Choice()) == []

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.bump.landmarks import room_marks, seen_turn
+from mocapd.calibrate.bump.landmarks import find_landmarks, measure_turn
 from tests.calibrate.distant_scene import AXES, Room, camera, turn
 
 
@@ -11,32 +11,32 @@ from tests.calibrate.distant_scene import AXES, Room, camera, turn
 @pytest.mark.parametrize("degrees", [0.0, 0.3, 1.0, 3.0, -5.0])
 def test_a_turn_is_measured_to_a_twentieth_of_a_degree(axis: str, degrees: float) -> None:
     room = Room(camera())
-    marks = room_marks(room.picture(), room.camera)
-    seen = seen_turn(marks, room.picture(turn(axis, degrees)), room.camera)
+    marks = find_landmarks(room.picture(), room.camera)
+    seen = measure_turn(marks, room.picture(turn(axis, degrees)), room.camera)
     assert np.abs(np.degrees(seen.turn_rad - turn(axis, degrees))).max() < 0.05
     assert seen.agree > 0.6 * len(marks.places)
 
 
 def test_it_is_measured_through_a_lens_that_distorts() -> None:
     room = Room(camera(k1=-0.25))
-    marks = room_marks(room.picture(), room.camera)
-    seen = seen_turn(marks, room.picture(turn("yaw", 4.0)), room.camera)
+    marks = find_landmarks(room.picture(), room.camera)
+    seen = measure_turn(marks, room.picture(turn("yaw", 4.0)), room.camera)
     assert np.abs(np.degrees(seen.turn_rad - turn("yaw", 4.0))).max() < 0.1
 
 
 def test_who_moves_before_the_room_does_not_turn_it() -> None:
     room = Room(camera())
-    marks = room_marks(room.picture(person_px=(75, 30)), room.camera)
+    marks = find_landmarks(room.picture(person_px=(75, 30)), room.camera)
     for x in (78, 85, 100, 165):
-        seen = seen_turn(marks, room.picture(person_px=(x, 30)), room.camera)
+        seen = measure_turn(marks, room.picture(person_px=(x, 30)), room.camera)
         assert np.degrees(np.linalg.norm(seen.turn_rad)) < 0.1
 
 
 def test_nothing_agrees_where_there_is_nothing_to_see() -> None:
     room = Room(camera())
-    marks, dark = room_marks(room.picture(), room.camera), room.picture(light=0.0)
-    assert seen_turn(marks, dark, room.camera).agree < 5
-    assert seen_turn(marks, room.picture()[:120], room.camera).agree == 0
-    plain = room_marks(np.full((240, 320, 3), 90, np.uint8), room.camera)
+    marks, dark = find_landmarks(room.picture(), room.camera), room.picture(light=0.0)
+    assert measure_turn(marks, dark, room.camera).agree < 5
+    assert measure_turn(marks, room.picture()[:120], room.camera).agree == 0
+    plain = find_landmarks(np.full((240, 320, 3), 90, np.uint8), room.camera)
     assert len(plain.places) == 0
-    assert seen_turn(plain, room.picture(), room.camera).agree == 0
+    assert measure_turn(plain, room.picture(), room.camera).agree == 0

@@ -7,10 +7,10 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, moved_camera
+from mocapd.calibrate.self_calibration.body_rows import RowGatherer, camera_columns, move_camera
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
-from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
@@ -53,7 +53,7 @@ def walking(i: int) -> MotionState:
     )
 
 
-def moments(
+def observations(
     n: int = 16, fitter: Fitter = FITTER, factors: Floats | None = None
 ) -> list[dict[str, PatchSighting]]:
     """Both cameras' sightings; each judges depth wrongly by a few percent, as a lone camera does."""
@@ -61,7 +61,7 @@ def moments(
     out = []
     for i in range(n):
         state = walking(i) if factors is None else replace(walking(i), factors=factors)
-        moment: dict[str, PatchSighting] = {}
+        observation: dict[str, PatchSighting] = {}
         joints, quats = fitter.joints(state)
         for camera, drawing in zip(CAMERAS, fitter.drawings, strict=True):
             roi = drawing.region(state, 0.0, 24)
@@ -70,11 +70,11 @@ def moments(
             turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
             wrong = rotations.exp(rng.normal(0.0, 0.03, 3))
             seen = to_camera(camera, joints) * (1.0 + rng.normal(0.0, 0.03))
-            moment[camera.name] = PatchSighting(
+            observation[camera.name] = PatchSighting(
                 nanoseconds(0.3 * i), seen, rotations.multiply(wrong, turned), np.ones(N_JOINTS),
                 ids, (2 * roi[0], 2 * roi[1], 2 * roi[2], 2 * roi[3]),
             )  # fmt: skip
-        out.append(moment)
+        out.append(observation)
     return out
 
 
@@ -84,8 +84,8 @@ def lenses() -> list[Camera]:
 
 
 def test_the_room_of_a_drawn_body_is_found_upright_and_in_metres() -> None:
-    rig, report = room_from_body(
-        moments(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
+    rig, report = extrinsics_from_body(
+        observations(), lenses(), STATURE_M, SelfCalibrationParams(rounds=12, averaged=4)
     )
     true = CAMERAS[1].R @ CAMERAS[0].R.T
     found = rig.cameras[1].R @ rig.cameras[0].R.T
@@ -115,14 +115,14 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
-    seen = moments(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
+    seen = observations(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = SelfCalibrationParams(
         rounds=14, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
-    free_rig, _ = room_from_body(seen, lenses(), STATURE_M, short)
-    stiff_rig, _ = room_from_body(seen, lenses(), STATURE_M, stiff)
-    ringed_rig, report = room_from_body(
+    free_rig, _ = extrinsics_from_body(seen, lenses(), STATURE_M, short)
+    stiff_rig, _ = extrinsics_from_body(seen, lenses(), STATURE_M, stiff)
+    ringed_rig, report = extrinsics_from_body(
         seen, lenses(), STATURE_M, replace(stiff, surface_uncertainty=2.0)
     )
     assert rotation_deg(free_rig) < 2.0
@@ -163,14 +163,14 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
         .render(replace(state, root_m=moved_root, local_xyzw=local), 0.0, roi)
         .copy()
     )
-    cameras = (CAMERAS[0], moved_camera(CAMERAS[1], motion))
+    cameras = (CAMERAS[0], move_camera(CAMERAS[1], motion))
     fitter = Fitter(MODEL, cameras, [2, 2], FitParams())
     assert np.mean(fitter.drawings[1].render(state, 0.0, roi) != by_body) < 1e-3
     rows = RowGatherer(fitter, 10).gather(state, view)
     # the step that the columns ask for leads back, to first order
     T = camera_columns(rows.at_m)
     step = np.linalg.solve(T @ rows.H[:6, :6] @ T.T + 1e-3 * np.eye(6), T @ rows.b[:6])
-    back = moved_camera(cameras[1], step.astype(np.float64))
+    back = move_camera(cameras[1], step.astype(np.float64))
     before = np.linalg.norm(
         cameras[1].R @ state.root_m + cameras[1].t_m - to_camera(CAMERAS[1], state.root_m)
     )
@@ -179,6 +179,6 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
 
 
 def test_a_camera_that_never_saw_the_wearer_is_named() -> None:
-    alone = [{"left": m["left"]} for m in moments(4)]
+    alone = [{"left": m["left"]} for m in observations(4)]
     with pytest.raises(ConfigError, match="'right'"):
-        room_from_body(alone, lenses(), STATURE_M)
+        extrinsics_from_body(alone, lenses(), STATURE_M)

@@ -6,9 +6,9 @@ import numpy as np
 
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
-from mocapd.calibrate.self_calibration.body_rows import moved_camera
+from mocapd.calibrate.self_calibration.body_rows import move_camera
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
-from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, placed_by_rings
+from mocapd.calibrate.self_calibration.ring_bundle import lengths_m, place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
 from mocapd.geometry import rotations
@@ -104,12 +104,12 @@ def arms(n: int, noise: float) -> RingPairs:
 
 def test_rings_put_a_camera_back_in_its_place() -> None:
     true = CAMERAS[1]
-    wrong = moved_camera(true, np.array([0.1, -0.05, 0.08, 0.02, -0.08, 0.03]))
+    wrong = move_camera(true, np.array([0.1, -0.05, 0.08, 0.02, -0.08, 0.03]))
     loose = np.diag(np.repeat([0.3**2, 0.2**2], 3))
     pairs = arms(120, noise=2e-4)
     gross = pairs.xy.copy()
     gross[1, :6, 1] += 0.15  # rings of something else
-    found, covariance = placed_by_rings(
+    found, covariance = place_by_rings(
         RingPairs(gross, pairs.seen), CAMERAS[0], wrong, loose, STATURE_M
     )
     turn = rotations.angle_rad(rotations.from_matrix(found.R), rotations.from_matrix(true.R))
@@ -119,7 +119,7 @@ def test_rings_put_a_camera_back_in_its_place() -> None:
 
 
 def test_what_is_known_for_certain_stays() -> None:
-    wrong = moved_camera(CAMERAS[1], np.array([0.1, 0.0, 0.0, 0.0, 0.05, 0.0]))
-    found, _ = placed_by_rings(arms(40, 1e-3), CAMERAS[0], wrong, 1e-12 * np.eye(6), STATURE_M)
+    wrong = move_camera(CAMERAS[1], np.array([0.1, 0.0, 0.0, 0.0, 0.05, 0.0]))
+    found, _ = place_by_rings(arms(40, 1e-3), CAMERAS[0], wrong, 1e-12 * np.eye(6), STATURE_M)
     assert np.allclose(found.R, wrong.R, atol=1e-4)
     assert np.allclose(found.t_m, wrong.t_m, atol=1e-4)

@@ -3,12 +3,14 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.from_config import open_source
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import open_source
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
 from mocapd.config.sections import CameraSection, Config, TrackerSection
@@ -48,6 +50,15 @@ def test_a_hash_in_a_url_makes_no_folder_of_it(tmp_path: Path) -> None:
     assert isinstance(session.cameras[0].source, UrlSource)
 
 
+def test_the_daemon_and_a_setup_on_it_wait_for_a_camera_as_the_configuration_says(
+    tmp_path: Path,
+) -> None:
+    config = config_of(ADDRESS, tmp_path)
+    config = replace(config, camera=(replace(config.camera[0], wait_s=0.25),))
+    service = Service(config, open_session(config, lambda *_: None))
+    assert service.hub.bundler.camera_waits_s == {"net": 0.25}
+
+
 @pytest.fixture
 def host(tmp_path: Path) -> Iterator[DaemonHost]:
     config = config_of(ADDRESS, tmp_path)
@@ -71,7 +82,7 @@ def test_a_typing_error_in_the_scheme_does_not_show_it() -> None:
 )
 def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
     with pytest.raises(ConfigError, match=r"address.*rtsp://user:password@host") as caught:
-        open_source(address, "net")
+        open_source(address, Asked("net"))
     assert "ter2" not in str(caught.value)
 
 

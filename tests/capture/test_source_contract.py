@@ -4,6 +4,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -66,6 +67,19 @@ def test_frames_are_named_ordered_and_read_only(source: Source) -> None:
         assert frame.pixels.flags.c_contiguous
         assert not frame.pixels.flags.writeable
     assert all(a.seq < b.seq and a.t_ns < b.t_ns for a, b in pairwise(frames))
+
+
+def test_what_a_camera_delivers_as_jpeg_is_what_its_pixels_were_decoded_from(
+    source: Source,
+) -> None:
+    source.open()
+    frame = source.read()
+    source.close()
+    assert (frame.encoded is None) == source.recorded
+    if frame.encoded is not None:
+        decoded = cv2.imdecode(np.frombuffer(frame.encoded, np.uint8), cv2.IMREAD_COLOR)
+        assert decoded is not None
+        assert np.array_equal(decoded, frame.pixels)
 
 
 def test_reopening_begins_anew(source: Source) -> None:

@@ -15,8 +15,12 @@ from tests.capture.films import SIZE_PX, number_of, picture
 FRAMES = 40
 
 
+def jpeg(index: int) -> bytes:
+    return cv2.imencode(".jpg", picture(index))[1].tobytes()
+
+
 class NetworkCamera(BaseHTTPRequestHandler):
-    """Sends FRAMES numbered pictures at about 50 Hz, then hangs up."""
+    """Sends FRAMES numbered pictures at about 50 Hz, then hangs up; from /torn every third is cut short."""
 
     def do_GET(self) -> None:
         self.send_response(200)
@@ -24,7 +28,9 @@ class NetworkCamera(BaseHTTPRequestHandler):
         self.end_headers()
         pause = threading.Event()
         for index in range(FRAMES):
-            data = cv2.imencode(".jpg", picture(index))[1].tobytes()
+            data = jpeg(index)
+            if self.path.startswith("/torn") and index % 3 == 2:
+                data = data[: len(data) // 2]
             head = f"--frame\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
             try:
                 self.wfile.write(head.encode() + data + b"\r\n")
@@ -60,6 +66,24 @@ def test_frames_arrive_in_order_with_the_time_of_arrival(camera_url: str) -> Non
     times = [began_ns, *(frame.t_ns for frame in frames), monotonic_ns()]
     assert times == sorted(times)
     assert not frames[0].pixels.flags.writeable
+
+
+def test_motion_jpeg_is_handed_on_as_it_came(camera_url: str) -> None:
+    source = UrlSource("net", camera_url)
+    source.open()
+    frames = [source.read() for _ in range(3)]
+    source.close()
+    for frame in frames:
+        assert frame.encoded == jpeg(number_of(frame.pixels))
+
+
+def test_damaged_pictures_are_left_out_and_counted(camera_url: str) -> None:
+    source = UrlSource("net", camera_url.replace("/video", "/torn"))
+    source.open()
+    frames = [source.read() for _ in range(8)]
+    source.close()
+    assert all(number_of(frame.pixels) % 3 != 2 for frame in frames)
+    assert source.torn == frames[-1].seq - frames[0].seq + 1 - len(frames) > 0
 
 
 def test_the_end_of_the_stream_is_a_lost_camera(camera_url: str) -> None:

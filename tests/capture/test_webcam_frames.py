@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from mocapd.capture.pixels import delivered_jpeg
 from mocapd.capture.rate import RateMeter
 from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
@@ -30,6 +31,22 @@ def test_a_whole_jpeg_is_decoded_whatever_the_shape_of_the_buffer() -> None:
         assert pixels.shape == (48, 64, 3)
         assert not pixels.flags.writeable
         assert number_of(pixels) == 77
+
+
+def test_its_file_outlives_the_drivers_buffer() -> None:
+    buffer = jpeg(77).reshape(1, -1).copy()
+    pixels = decode(buffer, "MJPG", SIZE_PX)
+    assert pixels is not None
+    delivered = delivered_jpeg(buffer, pixels)
+    buffer[:] = 0  # the driver writes the next picture
+    assert delivered == jpeg(77).tobytes()
+
+
+def test_a_file_that_takes_more_than_its_pixels_is_not_kept() -> None:
+    stuffed = np.append(jpeg(77), np.zeros(64 * 48 * 3, np.uint8))
+    pixels = decode(stuffed, "MJPG", SIZE_PX)
+    assert pixels is not None
+    assert delivered_jpeg(stuffed, pixels) is None
 
 
 @pytest.mark.parametrize("part", [0.0, 0.1, 0.5, 0.95])

@@ -15,6 +15,8 @@ from mocapd.config.effective import Effective, load_config
 from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.outputs.registry import OscSection, zenoh_section
+from mocapd.pipeline.bundler import BundlerParams
+from mocapd.session.camera_inputs import bundler_params
 
 
 @pytest.fixture
@@ -54,6 +56,20 @@ def test_flag_beats_environment_beats_file_beats_built_in(file: Path) -> None:
     assert origin(effective, "zenoh.format") == "environment MOCAPD_ZENOH_FORMAT"
     assert origin(effective, "zenoh.connect_timeout_s") == f"{file}:4"
     assert origin(effective, "zenoh.enabled") == "built-in"
+
+
+def test_how_frames_wait_for_each_other_is_set_for_all_cameras_and_for_one(file: Path) -> None:
+    cameras = (
+        "[[camera]]\nid = 'a'\nsource = '0'\n[[camera]]\nid = 'b'\nsource = '1'\nwait_s = 0.2\n"
+    )
+    config = load(file, f"{cameras}[bundler]\nslack_periods = 0.75\n").config
+    bundler = bundler_params(config)
+    assert bundler == BundlerParams(slack_periods=0.75, camera_waits_s={"b": 0.2})
+    assert bundler_params(load(file, "").config) == BundlerParams()
+    error = error_of(file, cameras.replace("0.2", "20"))
+    assert error.what == "camera[1].wait_s = 20 does not do"
+    assert "wait_s a number from 0" in error.fix
+    assert "bundler.camera_waits_s" in error_of(file, "[bundler]\ncamera_waits_s.a = 1").what
 
 
 def test_the_users_file_comes_before_the_machines(tmp_path: Path) -> None:

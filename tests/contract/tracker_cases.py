@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.calibration.record import Calibration, Wearer
-from mocapd.session.simulation import from_scenario
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
@@ -18,6 +17,7 @@ from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
+from tests.sim.simulated_calibration import calibration_of_setup
 from tests.trackers.stepping import Stepping
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
@@ -76,7 +76,7 @@ def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) ->
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
     scenario = small.scenario(cameras=cameras)
     renderers = camera_renderers(World(scenario))
-    known = from_scenario(setup_of(scenario, renderers))
+    known = calibration_of_setup(setup_of(scenario, renderers))
     tracker = build_tracker(known, build_database(DatabaseParams(count=1600, cells=32)))
     offset_ns = {"right": 11_000_000}
     person = {r.camera.name: [r.frame(i) for i in range(N_PERSON)] for r in renderers}

@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import time
 from collections.abc import Callable, Mapping
@@ -23,10 +22,11 @@ from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
 from mocapd.web.runtime_file import Running, begin_setup, running
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.saving import save_draft
 from tests.cli.mocapd_process import COMMAND
-from tests.e2e.test_daemon import SCENARIO, free_port
+from tests.e2e.test_daemon import SCENARIO
+from tests.outputs.frames import free_port
 
 PATIENCE_S = 120.0
 INSTANCE = "replaced"
@@ -45,7 +45,7 @@ def write_calibration(folder: Path, cache_dir: Path, stature_m: float) -> None:
     draft = Draft(
         cameras=cameras,
         rig=setup.rig,
-        room=RoomQuality("board", 0.2, {one.id: 0.2 for one in cameras}, 0.5),
+        extrinsics_quality=ExtrinsicsQuality("board", 0.2, {one.id: 0.2 for one in cameras}, 0.5),
         floor_known=True,
         colours={name: DraftColours(one, np.eye(3)) for name, one in setup.scribbles.items()},
         stature_m=stature_m,
@@ -138,7 +138,7 @@ class Daemon:
     """`mocapd run` on that calibration, configured by a file that the test may change."""
 
     def __init__(self, env: Mapping[str, str], folder: Path) -> None:
-        self.folder, self.port = folder, free_port(socket.SOCK_STREAM)
+        self.folder, self.port = folder, free_port()
         runtime = folder / "runtime"
         runtime.mkdir(mode=0o700)
         own = {"XDG_RUNTIME_DIR": str(runtime)}
@@ -151,6 +151,7 @@ class Daemon:
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=self._log,
+            text=True,
         )
 
     def configure(self, *lines: str) -> None:

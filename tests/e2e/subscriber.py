@@ -45,10 +45,10 @@ def main() -> None:
                 break
         health = [
             msgspec.msgpack.decode(reply.ok.payload.to_bytes())
-            for reply in session.get("mocapd/v1/*/health", timeout=5.0)
+            for reply in session.get("mocapd/v1/*/health", timeout=30.0)
             if reply.ok
         ]
-    enough.wait(10.0)
+    enough.wait(60.0)
     server.shutdown()
     print(json.dumps({"zenoh": received, "osc": addresses, "health": health}))
 

@@ -18,7 +18,9 @@ from mocapd.evaluate.score import JOINT_SETS
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World
 from tests.cli.mocapd_process import mocapd, start
+from tests.cli.own_time import end_within
 from tests.cli.small_capture import write_capture
+from tests.outputs.frames import free_port
 
 FRAMES = 90
 SETTLED_S = 1.0  # from the first frame with a person on
@@ -69,13 +71,6 @@ yaw_deg = -15.0
 """
 
 
-def free_port(kind: socket.SocketKind) -> int:
-    """A port of 127.0.0.1 that is free just now."""
-    with socket.socket(socket.AF_INET, kind) as one:
-        one.bind(("127.0.0.1", 0))
-        return int(one.getsockname()[1])
-
-
 class Running:
     """A daemon on two simulated cameras, with ports of its own."""
 
@@ -116,7 +111,7 @@ class Running:
     def end(self, number: signal.Signals) -> tuple[int, str]:
         """Exit code and stderr after this signal; it has two seconds."""
         self.process.send_signal(number)
-        _, err = self.process.communicate(timeout=2.0)
+        err = end_within(self.process, 2.0)
         return self.process.returncode, err
 
 

@@ -1,7 +1,6 @@
 """Real footage in which nobody wears the shirt: nobody is found, live or offline."""
 
 import json
-import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from mocapd.session.tracker_setup import cached, ready_tracker
 from mocapd.types import Frame, FrameSet, Rig
 from tests.cli.mocapd_process import start
 from tests.conftest import ABSENT, SHARED
-from tests.e2e.test_daemon import free_port
+from tests.outputs.frames import free_port
 
 CLIPS = tuple(sorted(path.stem for path in SHARED.glob("realvideo/intel_asl/*.mkv")))
 RIGS = ("pose2sim_SinglePerson", "caliscope_charuco")
@@ -109,7 +108,7 @@ def test_the_daemon_publishes_lost_while_it_plays_them_at_their_own_pace(
     clean_env: dict[str, str],
     tmp_path: Path,
 ) -> None:
-    port = free_port(socket.SOCK_STREAM)
+    port = free_port()
     words: list[str | Path] = ["run", "--set", f"zenoh.port={port}", "--set", "osc.enabled=false"]
     for name in files:
         words += ["--camera", f"{name.partition('.')[0]}={real_video / folder / name}"]

@@ -47,10 +47,13 @@ def told_after(seconds: float, number: signal.Signals, env: dict[str, str]) -> t
     """Exit code and stderr of a daemon that is told so long after its first handler was in place."""
     words = ("run", "--capture", "sim:living_room", *QUIET)
     with start(env, *words) as process:
-        wait_until(lambda: catches(process.pid, signal.SIGTERM))
-        time.sleep(seconds)
-        process.send_signal(number)
-        _, err = process.communicate(timeout=WAIT_S)
+        try:
+            wait_until(lambda: catches(process.pid, signal.SIGTERM))
+            time.sleep(seconds)
+            process.send_signal(number)
+            _, err = process.communicate(timeout=WAIT_S)
+        finally:
+            process.kill()
         return process.returncode, err
 
 

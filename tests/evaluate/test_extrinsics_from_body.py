@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.evaluate.extrinsics_from_body import beside_first, score_room
+from mocapd.evaluate.extrinsics_from_body import beside_first, score_extrinsics
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats, Rig
@@ -27,7 +27,7 @@ def elsewhere(rig: Rig, turn: Floats, shift_m: Floats) -> Rig:
 
 def test_the_world_of_a_room_does_not_count() -> None:
     found = elsewhere(TRUE, np.array([0.1, 1.2, -0.3]), np.array([2.0, -0.4, 0.7]))
-    result = score_room(found, TRUE)
+    result = score_extrinsics(found, TRUE)
     assert result.rotation_deg["right"] == pytest.approx(0.0, abs=1e-5)
     assert result.distance_percent["right"] == pytest.approx(0.0, abs=1e-9)
     for placed, true in zip(beside_first(found, TRUE).cameras, TRUE.cameras, strict=True):
@@ -40,6 +40,6 @@ def test_a_turned_and_a_distant_camera_are_told() -> None:
     # turned about its own centre, then moved away from the first by a twentieth
     at_m = centre(left) + 1.05 * (centre(right) - centre(left))
     off = replace(right, R=turn @ right.R, t_m=-turn @ right.R @ at_m)
-    result = score_room(Rig((left, off)), TRUE)
+    result = score_extrinsics(Rig((left, off)), TRUE)
     assert result.rotation_deg["right"] == pytest.approx(2.0, abs=1e-6)
     assert result.distance_percent["right"] == pytest.approx(5.0, abs=1e-9)

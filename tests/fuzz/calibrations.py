@@ -8,7 +8,11 @@ from mocapd.calibration.calibration_file import COLOURS, read_calibration
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.saved_session import load_saved
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
-from mocapd.wizard.intrinsics.saved_intrinsics import lens_for, read_lenses, store_lenses
+from mocapd.wizard.intrinsics.saved_intrinsics import (
+    find_saved_intrinsics,
+    read_intrinsics,
+    store_intrinsics,
+)
 from mocapd.wizard.saving import load_draft, save_draft
 from tests.capture.films import write_capture
 from tests.fuzz.damaged_pictures import damaged_png
@@ -67,17 +71,17 @@ def pictures(place: Place) -> Attempt:
 def lenses(place: Place) -> Attempt:
     """lenses.toml."""
     draft = full_draft()
-    store_lenses(draft, place.folder, datetime(2026, 11, 22, tzinfo=UTC))
+    store_intrinsics(draft, place.folder, datetime(2026, 11, 22, tzinfo=UTC))
     path = place.folder / LENSES
     good = path.read_bytes()
-    assert lens_for(draft.cameras[0], read_lenses(place.folder)) is not None
+    assert find_saved_intrinsics(draft.cameras[0], read_intrinsics(place.folder)) is not None
 
     def attempt(random: Random, number: int) -> bool:
         path.write_bytes(mistyped(random, good, TOML_VALUES, TOML_LINES))
         for camera in draft.cameras:
-            found = lens_for(camera, read_lenses(place.folder))
+            found = find_saved_intrinsics(camera, read_intrinsics(place.folder))
             if found is not None:
-                found.lens()
+                found.intrinsics()
         return True
 
     return attempt

@@ -5,14 +5,20 @@ from random import Random
 
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
-from mocapd.capture.from_config import open_source
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import (
+    address_beside,
+    cameras_of_origin,
+    identity_of,
+    is_simulated,
+    open_source,
+    origin_of,
+)
 from mocapd.config.config_keys import shown
 from mocapd.config.effective import Effective, known_keys, load_config
 from mocapd.config.sources import env_name
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
-from mocapd.session.simulation import SIM, scenario_path
 from mocapd.sim.film import first_frame
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import rig_of
@@ -177,11 +183,11 @@ def cameras(place: Place) -> Attempt:
     texts = [one.replace("FOLDER", str(capture)).replace("FILM", str(film)) for one in _CAMERAS]
 
     def name(text: str) -> None:
-        if text.startswith(SIM):
-            scenario_path(text)
-        elif text.startswith(PREFIX):
-            parse_identity(text)
-        open_source(text, None, size_px=(64, 48))
+        identity_of(text)
+        if is_simulated(text):
+            cameras_of_origin(origin_of(text))
+        address_beside(place.folder, text)
+        open_source(text, Asked(size_px=(64, 48)))
 
     for good in (str(film), f"{capture}#cam1", "rtsp://10.0.0.2/stream", "0", texts[0]):
         name(good)

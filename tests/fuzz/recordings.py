@@ -9,7 +9,7 @@ from random import Random
 import cv2
 import numpy as np
 
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import folder_source, frame_sets, load_folder
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace

@@ -23,7 +23,7 @@ from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Frame
 from mocapd.web.wizard_link import PageCommand
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.same_port import Moved
+from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
@@ -66,7 +66,7 @@ class SetupBench:
             draft.cameras,
             lambda: tuple(_node(name) for name in NAMES),
             self._locks,
-            (Moved("cam1", source_of("cam1", "1-9"), source_of("cam1", PORTS["cam1"])),),
+            (PortChange("cam1", source_of("cam1", "1-9"), source_of("cam1", PORTS["cam1"])),),
         )
         settings = CheckSettings(TrackerSection())
         steps = dict(all_steps(cameras, settings, NewestBody(), self.deaths.append))

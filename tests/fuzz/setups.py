@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 
 from mocapd.types import Bytes, LabelledPicture
-from mocapd.wizard.colour.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.step import StepName
 from tests.fuzz.damaged_pictures import png, sample, strokes_on
@@ -125,12 +125,14 @@ def solved_strokes(place: Place) -> Attempt:
             shirt = (
                 None if random.random() < 0.7 else (_scribbled(random, strokes) > 0) * np.uint8(1)
             )
-            drawn[name] = Drawn(LabelledPicture(pixels, decode_strokes(text, size_px, name)), shirt)
-        found = solve(drawn, random.random() < 0.5, {})
+            drawn[name] = StrokeDrawing(
+                LabelledPicture(pixels, decode_strokes(text, size_px, name)), shirt
+            )
+        found = solve_colours(drawn, random.random() < 0.5, {})
         return any(one.W is not None for one in found.cameras.values())
 
-    good = Drawn(LabelledPicture(sample((64, 48)), strokes_on((64, 48))))
-    solve({"cam0": good, "cam1": good}, True, {})
+    good = StrokeDrawing(LabelledPicture(sample((64, 48)), strokes_on((64, 48))))
+    solve_colours({"cam0": good, "cam1": good}, True, {})
     for number in range(10):  # until all that is compiled for some of them is compiled
         attempt(Random(number), number)
     return attempt

@@ -1,8 +1,11 @@
 """Frames and helpers that the output tests share."""
 
+import os
 import socket
 import time
 from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
 
 import numpy as np
 
@@ -17,6 +20,9 @@ UNIX_OFFSET_NS = 1_700_000_000_000_000_000
 PUBLISH_NS = CAPTURE_NS + 15_625_000  # 1/64 s later, exact in a float32
 
 HALF = 0.5
+
+_FIRST_PORT, _PORTS = 10_000, 20_000
+_NUMBERS = count(97 * os.getpid())
 
 
 def small_frame(**changes: object) -> SkeletonFrame:
@@ -79,10 +85,17 @@ def whole_frame(seq: int = 0, person: int = 0) -> SkeletonFrame:
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
-    """A port of 127.0.0.1 that nobody has."""
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """A port of 127.0.0.1 that nobody has, and that nobody is given until it is used.
+
+    Each once, of those that the system itself gives to no connection; another process of tests begins
+    elsewhere.
+    """
+    for number in _NUMBERS:
+        port = _FIRST_PORT + number % _PORTS
+        with socket.socket(socket.AF_INET, kind) as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise AssertionError
 
 
 def eventually(holds: Callable[[], bool], within_s: float = 10.0) -> bool:

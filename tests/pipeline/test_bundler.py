@@ -144,6 +144,41 @@ def test_a_late_frame_is_counted_and_not_used() -> None:
     assert bundler.counts()["b"].late == before + 1
 
 
+def late_by(late_ns: int, params: BundlerParams) -> tuple[list[tuple[str, ...]], int]:
+    """One frame of "b" comes so late: the names of its set, and how long after its first frame's arrival
+    the set went out [ns]."""
+    bundler = Bundler(("a", "b"), params)
+    for k in range(10):
+        for name in ("a", "b"):
+            bundler.add(frame(name, k, k * PERIOD_NS), k * PERIOD_NS + 20 * MS)
+    t_ns = 10 * PERIOD_NS
+    arrival_ns = t_ns + 20 * MS
+    assert bundler.add(frame("a", 10, t_ns), arrival_ns) == ()
+    until_ns = bundler.deadline_ns
+    assert until_ns is not None
+    if arrival_ns + late_ns < until_ns:
+        sets = bundler.add(frame("b", 10, t_ns), arrival_ns + late_ns)
+        return [tuple(s.frames) for s in sets], late_ns
+    return [tuple(s.frames) for s in bundler.flush(until_ns)], until_ns - arrival_ns
+
+
+def test_a_camera_with_a_wait_of_its_own_is_waited_for_so_long_and_no_longer() -> None:
+    own = BundlerParams(camera_waits_s={"b": 0.1})
+    assert late_by(80 * MS, BundlerParams()) == ([("a",)], PERIOD_NS // 2)
+    assert late_by(80 * MS, own) == ([("a", "b")], 80 * MS)
+    assert late_by(100 * MS, own) == ([("a",)], 100 * MS)
+
+
+def test_a_camera_that_is_not_worth_a_wait_keeps_nobody_waiting() -> None:
+    bundler = Bundler(("a", "b"), BundlerParams(camera_waits_s={"b": 0.0}))
+    assert [tuple(s.frames) for s in bundler.add(frame("a", 0, 0), 20 * MS)] == [("a",)]
+
+
+def test_the_wait_of_one_camera_is_not_that_of_the_others() -> None:
+    own = BundlerParams(camera_waits_s={"a": 0.1})
+    assert late_by(80 * MS, own) == late_by(80 * MS, BundlerParams())
+
+
 def test_a_constant_offset_between_capture_times_and_now_does_not_matter() -> None:
     cameras = [FreeRunning("a", delay_ns=10**15), FreeRunning("b", 9 * MS, delay_ns=10**15)]
     released = run_live(Bundler(("a", "b")), cameras, 2 * SECOND)[1:-1]
@@ -169,13 +204,20 @@ camera = st.builds(
 )
 
 
-@given(st.lists(camera, min_size=1, max_size=4), st.integers(0, 2**32 - 1))
-def test_whatever_the_cameras_do(rough: list[FreeRunning], seed: int) -> None:
+waits_s = st.dictionaries(
+    st.sampled_from(["cam0", "cam2"]), st.sampled_from([0.0, 0.03, 0.2]), max_size=2
+)
+
+
+@given(st.lists(camera, min_size=1, max_size=4), waits_s, st.integers(0, 2**32 - 1))
+def test_whatever_the_cameras_do(
+    rough: list[FreeRunning], waits_s: dict[str, float], seed: int
+) -> None:
     cameras = [
         FreeRunning(f"cam{i}", c.phase_ns, c.period_ns, c.jitter_ns, c.delay_ns, c.drop, c.dead)
         for i, c in enumerate(rough)
     ]
-    bundler = Bundler([c.name for c in cameras])
+    bundler = Bundler([c.name for c in cameras], BundlerParams(camera_waits_s=waits_s))
     released = run_live(bundler, cameras, int(1.5 * SECOND), seed)
     sets = [r.frames for r in released]
 
@@ -195,6 +237,7 @@ def test_whatever_the_cameras_do(rough: list[FreeRunning], seed: int) -> None:
         assert s.spread_ns <= 2 * 0.65 * (2 * PERIOD_NS + 4 * MS)  # both sides of the anchor
         assert all(f.camera == name for name, f in s.frames.items())
         longest = BundlerParams().longest_wait_periods * (2 * PERIOD_NS + 4 * MS)
+        longest = max(longest, *(s * SECOND for s in (0.0, *waits_s.values())))
         assert r.at_ns - r.complete_ns <= longest or r.at_ns == int(1.5 * SECOND)
 
 
@@ -240,3 +283,5 @@ def test_an_unknown_camera_is_refused() -> None:
         Bundler(("a",)).add(frame("b", 0, 0))
     with pytest.raises(ConfigError):
         Bundler(())
+    with pytest.raises(ConfigError, match="camera 'b'"):
+        BundlerParams(camera_waits_s={"b": -1.0})

@@ -13,8 +13,8 @@ from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError
 from mocapd.session.saved_session import (
-    calibration_of,
     cameras_of_calibration,
+    configured_calibration,
     known_of_recording,
     load_saved,
 )
@@ -53,7 +53,7 @@ def test_the_saved_calibration_gives_cameras_rig_and_wearer(config: Config) -> N
 
 
 def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:
-    saved = calibration_of(config)
+    saved = configured_calibration(config)
     assert saved is not None
     draft = full_draft()
     assert saved.known.wearer.shape_factors is not None
@@ -73,7 +73,7 @@ def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config
 
 def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureFixture) -> None:
     other = CameraSection("cam0", "/dev/video7")
-    assert calibration_of(replace(config, camera=(other,))) is None
+    assert configured_calibration(replace(config, camera=(other,))) is None
     assert "other cameras" in caplog.text
 
 
@@ -90,7 +90,7 @@ def network_config(config: Config) -> Config:
 
 
 def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
-    saved = calibration_of(network_config(config))
+    saved = configured_calibration(network_config(config))
     assert saved is not None
     assert cameras_of_calibration(saved)[0].source == URL
 
@@ -98,7 +98,7 @@ def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
 def test_a_password_may_come_from_the_configuration(config: Config) -> None:
     config = network_config(config)
     (config.state_dir / SECRETS).unlink()
-    saved = calibration_of(replace(config, camera=(CameraSection("cam0", URL),)))
+    saved = configured_calibration(replace(config, camera=(CameraSection("cam0", URL),)))
     assert saved is not None
 
 
@@ -115,7 +115,7 @@ def test_other_cameras_are_told_of_without_a_password(
     config: Config, caplog: pytest.LogCaptureFixture
 ) -> None:
     other = CameraSection("cam0", "rtsp://other/")
-    assert calibration_of(replace(network_config(config), camera=(other,))) is None
+    assert configured_calibration(replace(network_config(config), camera=(other,))) is None
     assert "admin:***@" in caplog.text
     assert "hunter2" not in caplog.text
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from mocapd.body.shape import skeleton_of
-from mocapd.calibration.from_capture import from_capture
-from mocapd.calibration.shirt_pictures import read_model, stroked_folder
+from mocapd.calibration.from_origin import from_capture
+from mocapd.calibration.shirt_pictures import stroked_folder
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.effective import load_config
 from mocapd.config.sections import CameraSection, Config, ShirtSection, TrackerSection
@@ -15,6 +15,7 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cached
+from mocapd.shirt.colour.model_pictures import read_model
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.registry import TRACKERS

@@ -2,12 +2,14 @@
 
 import os
 import random
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import msgspec
 import pytest
 
-from mocapd.sim.cache_file import read_cached, write_cached
+from mocapd.sim.cache_file import read_cached, read_or_make, write_cached
 
 
 class Kept(msgspec.Struct, frozen=True):
@@ -47,6 +49,21 @@ def test_any_changed_byte_is_found(path: Path) -> None:
         assert read_cached(path, KEPT.key, Kept) is None
     path.write_bytes(whole + b"\0")
     assert read_cached(path, KEPT.key, Kept) is None
+
+
+def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
+    path, both_asked, made = tmp_path / "cache" / "a.film", threading.Event(), []
+
+    def make() -> Kept:
+        assert both_asked.wait(30.0)
+        made.append(KEPT)
+        return KEPT
+
+    with ThreadPoolExecutor(2) as pool:
+        both = [pool.submit(read_or_make, path, "a.lock", KEPT.key, Kept, make) for _ in range(2)]
+        both_asked.set()
+        assert [one.result() for one in both] == [KEPT, KEPT]
+    assert len(made) == 1
 
 
 def test_what_is_no_file_is_nothing(path: Path) -> None:

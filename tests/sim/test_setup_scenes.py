@@ -10,10 +10,10 @@ import pytest
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
-from mocapd.calibrate.extrinsics.bundle_adjustment import adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
-from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in, world_on_floor
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_lens
+from mocapd.calibrate.extrinsics.bundle_adjustment import adjust_bundle
+from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
+from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in_world, world_on_floor
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import covered
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
 from mocapd.geometry.camera_model import centre, project
@@ -79,7 +79,7 @@ def lens_views(clips: dict[SetupScene, Clip]) -> Views:
 @pytest.fixture(scope="module")
 def lenses(lens_views: Views) -> dict[str, Intrinsics]:
     return {
-        name: solve_lens(list(views.values()), BOARD_M, (640, 480), name)
+        name: solve_intrinsics(list(views.values()), BOARD_M, (640, 480), name)
         for name, views in lens_views.items()
     }
 
@@ -128,11 +128,11 @@ def test_the_room_places_and_the_floor_give_the_room(
         assert len(views[name]) == n
         assert len(floor[name]) == 1
         views[name] |= floor[name]
-    scene, indices = first_scene(rig().names, lenses, views, BOARD_M)
+    scene, indices = initial_scene(rig().names, lenses, views, BOARD_M)
     seen = observations(rig().names, views, indices, BOARD_M)
-    bundle = adjust(scene, indices, seen, np.array([[640.0, 480.0]] * 2))
+    bundle = adjust_bundle(scene, indices, seen, np.array([[640.0, 480.0]] * 2))
     world = world_on_floor(bundle.scene, indices.index(n), centre_m(SPEC), "the floor")
-    found = rig_in(world, bundle.scene, rig().names, [(640, 480)] * 2)
+    found = rig_in_world(world, bundle.scene, rig().names, [(640, 480)] * 2)
     # +Z of the world that is found points to the middle of the directions to the cameras
     true_m, found_m = (np.stack([centre(c) for c in one.cameras]) for one in (rig(), found))
     level = true_m[:, [0, 2]] / np.linalg.norm(true_m[:, [0, 2]], axis=1, keepdims=True)

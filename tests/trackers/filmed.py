@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.session.simulation import from_scenario
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
@@ -14,6 +13,7 @@ from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
+from tests.sim.simulated_calibration import calibration_of_setup
 from tests.trackers.stepping import Stepping
 
 N = 36
@@ -74,5 +74,5 @@ def _still(pixels: Bytes) -> Bytes:
 
 def tracker_of(filmed: Filmed, database: PoseDatabase) -> Stepping:
     """The full colour tracker, calibrated on the film's own room as a user would."""
-    known = from_scenario(setup_of(filmed.scenario, filmed.renderers))
+    known = calibration_of_setup(setup_of(filmed.scenario, filmed.renderers))
     return Stepping(build_colour_tracker(known, database), known_shape(known))

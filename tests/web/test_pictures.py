@@ -88,6 +88,56 @@ def test_nothing_is_encoded_when_nobody_asks(
         assert server.encoder.encoded == 1
 
 
+def jpeg_of(width: int, height: int) -> bytes:
+    pixels = np.random.default_rng(7).integers(0, 256, (height, width, 3), dtype=np.uint8)
+    return bytes(cv2.imencode(".jpg", pixels)[1])
+
+
+@pytest.mark.parametrize("width", [640, 1280])
+def test_the_cameras_own_jpeg_is_handed_on_as_it_is(
+    host: TinyHost, server: WebServer, pictures: Pictures, width: int
+) -> None:
+    delivered = jpeg_of(640, 480)
+    host.show("cam0", 1, encoded=delivered)
+    header, jpeg = pictures.picture("cam0", width=width)
+    assert header["size_px"] == [640, 480]
+    assert jpeg == delivered
+    assert server.encoder.encoded == 0
+
+
+def test_a_smaller_picture_is_not_the_cameras_own(host: TinyHost, pictures: Pictures) -> None:
+    host.show("cam0", 1, encoded=jpeg_of(640, 480))
+    assert decoded(pictures.picture("cam0", width=320)[1]).shape == (240, 320, 3)
+
+
+def without_tables(jpeg: bytes) -> bytes:
+    """As some webcams send it: the usual Huffman tables are meant."""
+    while (at := jpeg.find(b"\xff\xc4")) >= 0:
+        jpeg = jpeg[:at] + jpeg[at + 2 + int.from_bytes(jpeg[at + 2 : at + 4], "big") :]
+    return jpeg
+
+
+@pytest.mark.parametrize(
+    "encoded",
+    [
+        b"",
+        b"<html><script>alert(1)</script>",
+        jpeg_of(640, 481),
+        jpeg_of(640, 480)[:200],
+        without_tables(jpeg_of(640, 480)),
+        bytes(cv2.imencode(".png", np.zeros((480, 640, 3), np.uint8))[1]),
+    ],
+    ids=["empty", "page", "other size", "cut", "without tables", "png"],
+)
+def test_what_a_browser_might_not_show_is_encoded_from_the_pixels(
+    host: TinyHost, server: WebServer, pictures: Pictures, encoded: bytes
+) -> None:
+    host.show("cam0", 9, encoded=encoded)
+    _, jpeg = pictures.picture("cam0", width=640)
+    assert decoded(jpeg).mean() == pytest.approx(9, abs=2)
+    assert server.encoder.encoded == 1
+
+
 def test_two_pages_cost_one_encoding(
     host: TinyHost, server: WebServer, pictures: Pictures, other_pictures: Pictures
 ) -> None:

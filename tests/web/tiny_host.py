@@ -93,10 +93,12 @@ class TinyHost:
         self._state_dir = state_dir
         self._died: list[BaseException] = []
 
-    def show(self, camera: str, seq: int, t_ns: int | None = None) -> Frame:
+    def show(
+        self, camera: str, seq: int, t_ns: int | None = None, encoded: bytes | None = None
+    ) -> Frame:
         """Hand in a picture: grey, as bright as `seq`, 640x480."""
         pixels = np.full((480, 640, 3), seq % 256, dtype=np.uint8)
-        frame = Frame(camera, seq, monotonic_ns() if t_ns is None else t_ns, pixels)
+        frame = Frame(camera, seq, monotonic_ns() if t_ns is None else t_ns, pixels, encoded)
         assert self.hub is not None
         self.hub.put(frame)
         return frame

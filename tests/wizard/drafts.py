@@ -11,7 +11,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.types import Camera, LabelledPicture, Rig
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 
 SIZE_PX = (64, 48)
 NAMES = ("cam0", "cam1")
@@ -51,7 +51,7 @@ def full_draft() -> Draft:
             for name in NAMES
         ),
         board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
-        lenses={
+        intrinsics={
             camera.name: Intrinsics(
                 SIZE_PX, K, camera.dist, np.array([True, True, False, False, False]),
                 0.25, 0.3, tuple(range(12)), (), 0.001,
@@ -59,7 +59,7 @@ def full_draft() -> Draft:
             for camera in rig.cameras
         },
         rig=rig,
-        room=RoomQuality("wearer", float("nan"), {"cam0": 0.3, "cam1": 0.4}, 0.5),
+        extrinsics_quality=ExtrinsicsQuality("wearer", float("nan"), {"cam0": 0.3, "cam1": 0.4}, 0.5),
         floor_known=True,
         colours={name: DraftColours(LabelledPicture(pixels, strokes), np.eye(3) * 1.1) for name in NAMES},
         personal=True,

@@ -25,14 +25,14 @@ from mocapd.web.shown_json import as_json
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
-from mocapd.wizard.cameras.same_port import AsksForPorts, Moved
+from mocapd.wizard.cameras.same_port import AsksForPorts, PortChange
 from mocapd.wizard.check.check_step import CheckStep
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
-from mocapd.wizard.intrinsics.intrinsics_step import LensStep
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
+from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import StepName, Tell
 from tests.wizard.context import FakeContext, do
@@ -134,10 +134,10 @@ def makers(webcams: tuple[FakeWebcam, ...]) -> Mapping[StepName, Callable[[Conte
         StepName.CAMERAS: lambda context: AsksForPorts(
             context,
             lambda inner: CamerasStep(inner, cameras, lambda: (), locks),
-            [Moved("cam1", cameras[1].source, "usb:9-9:046d:0825:cam1")],
+            [PortChange("cam1", cameras[1].source, "usb:9-9:046d:0825:cam1")],
         ),
-        StepName.LENS: LensStep,
-        StepName.ROOM: RoomStep,
+        StepName.LENS: IntrinsicsStep,
+        StepName.ROOM: ExtrinsicsStep,
         StepName.COLOUR: lambda context: ColourStep(context, no_database),
         StepName.BODY: lambda context: BodyStep(context, no_tracker),
         StepName.CHECK: lambda context: CheckStep(
@@ -231,4 +231,4 @@ def attack_at_random(
 
 def without_room(draft: Draft) -> Draft:
     """So that no tracker is prepared."""
-    return replace(draft, rig=None, room=None)
+    return replace(draft, rig=None, extrinsics_quality=None)

@@ -19,8 +19,8 @@ from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import Frame, FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
-from mocapd.wizard.colour.colour_solving import Drawn, solve
-from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, RoomQuality
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Scene, StepState, Tell
 from tests.trackers.stepping import Stepping
@@ -50,7 +50,7 @@ def bends(person: SimulatedWearer) -> list[FrameSet]:
 @pytest.fixture(scope="module")
 def draft(person: SimulatedWearer) -> Draft:
     """Room and colours are done."""
-    solved = solve({n: Drawn(one) for n, one in person.scribbles.items()}, True, {})
+    solved = solve_colours({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
     colours = {
         name: DraftColours(one.drawn.picture, one.W)
         for name, one in solved.cameras.items()
@@ -59,7 +59,7 @@ def draft(person: SimulatedWearer) -> Draft:
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
         rig=person.rig,
-        room=RoomQuality("board", 0.3, {}, 0.2),
+        extrinsics_quality=ExtrinsicsQuality("board", 0.3, {}, 0.2),
         floor_known=True,
         colours=colours,
         personal=solved.personal,

@@ -15,7 +15,7 @@ from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes, Rig
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,
@@ -56,7 +56,7 @@ class Room:
 
     def __init__(self, folder: Path, draft: Draft) -> None:
         self.context = FakeContext(folder, draft)
-        self.step = RoomStep(self.context)
+        self.step = ExtrinsicsStep(self.context)
         self.step.enter()
 
     def show(self, pictures: Iterable[Mapping[str, Bytes]], seconds: float = STILL_S) -> None:
@@ -72,7 +72,7 @@ class Room:
 
 def drafted(cameras: int = 2, off: float = 0.0, **more: object) -> Draft:
     lenses = {RIG[i].name: lens(i, off) for i in range(cameras)}
-    draft = Draft(cameras=draft_cameras(RIG[:cameras]), board=SPEC, lenses=lenses)
+    draft = Draft(cameras=draft_cameras(RIG[:cameras]), board=SPEC, intrinsics=lenses)
     return replace(draft, **more)  # type: ignore[arg-type]
 
 
@@ -106,7 +106,7 @@ def test_the_room_and_its_floor_are_found_by_themselves(solved: Room) -> None:
     assert room.context.scenes[-1] is Scene.EMPTY
     draft = room.context.draft
     assert draft.rig is not None
-    assert draft.room is not None
+    assert draft.extrinsics_quality is not None
     for true, found in zip(RIG, draft.rig.cameras, strict=True):
         focal = np.diag(found.K)[:2] / np.diag(true.K)[:2] - 1.0
         off_m = np.linalg.norm(centre(true) - centre(found))
@@ -116,10 +116,10 @@ def test_the_room_and_its_floor_are_found_by_themselves(solved: Room) -> None:
     print(f"triangulated point: {off_cm(draft.rig):.3f} cm")
     assert off_cm(draft.rig) <= 0.5
     assert draft.floor_known
-    assert draft.room.method == "board"
-    assert draft.room.play_area_cm < 0.5
-    assert draft.room.rms_px < 0.3
-    assert set(draft.room.camera_rms_px) == {"cam0", "cam1"}
+    assert draft.extrinsics_quality.method == "board"
+    assert draft.extrinsics_quality.play_area_cm < 0.5
+    assert draft.extrinsics_quality.rms_px < 0.3
+    assert set(draft.extrinsics_quality.camera_rms_px) == {"cam0", "cam1"}
     assert json.dumps(view.details)
 
 
@@ -241,8 +241,8 @@ def test_one_camera_is_placed_by_the_floor_alone(tmp_path: Path) -> None:
     draft = room.context.draft
     assert room.step.view().state is StepState.DONE
     assert draft.rig is not None
-    assert draft.room is not None
-    assert np.isnan(draft.room.play_area_cm)
+    assert draft.extrinsics_quality is not None
+    assert np.isnan(draft.extrinsics_quality.play_area_cm)
     assert np.linalg.norm(centre(draft.rig.cameras[0])[1] - centre(RIG[0])[1]) <= 0.01
     assert json.dumps(room.step.view().details, allow_nan=False)
 
@@ -275,7 +275,7 @@ def test_fewer_places_are_solved_when_asked_for(tmp_path: Path) -> None:
 def test_a_room_without_lenses_is_refused(tmp_path: Path) -> None:
     draft = drafted()
     with pytest.raises(InputError, match="the lens of cam1 is not known"):
-        RoomStep(FakeContext(tmp_path, replace(draft, lenses={"cam0": lens(0)})))
+        ExtrinsicsStep(FakeContext(tmp_path, replace(draft, intrinsics={"cam0": lens(0)})))
 
 
 def test_commands_and_methods_that_are_not_there_are_refused(tmp_path: Path) -> None:

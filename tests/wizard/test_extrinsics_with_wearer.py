@@ -17,10 +17,10 @@ from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.types import Frame, FrameSet
-from mocapd.wizard.colour.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
-from mocapd.wizard.extrinsics.extrinsics_step import RoomStep
-from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
@@ -28,7 +28,7 @@ from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 SHORT = WalkParams(
     good_s=3.0, facings=1, places=1, patience_s=25.0,
-    room=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
+    extrinsics=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
 )  # fmt: skip
 
 
@@ -41,10 +41,10 @@ def database() -> PoseDatabase:
 def draft() -> Draft:
     """Lenses, colours and stature are known, the room is not."""
     person = wearer()
-    solved = solve({n: Drawn(one) for n, one in person.scribbles.items()}, True, {})
+    solved = solve_colours({n: StrokeDrawing(one) for n, one in person.scribbles.items()}, True, {})
     return Draft(
         cameras=tuple(DraftCamera(c.name, "sim", c.size_px) for c in person.rig.cameras),
-        lenses={
+        intrinsics={
             c.name: Intrinsics(c.size_px, c.K, c.dist, np.ones(5, bool), 0.2, 0.2, (), (), 0.002)
             for c in person.rig.cameras
         },
@@ -83,9 +83,11 @@ def playing(context: FakeContext, frame_set: Callable[[int], FrameSet]) -> Itera
         thread.join()
 
 
-def walking(context: FakeContext, database: PoseDatabase, params: WalkParams = SHORT) -> WearerRoom:
+def walking(
+    context: FakeContext, database: PoseDatabase, params: WalkParams = SHORT
+) -> ExtrinsicsWithWearer:
     """The wearer was asked to walk, and the job waits."""
-    step = WearerRoom(context, lambda _cache, _tell: database, params)
+    step = ExtrinsicsWithWearer(context, lambda _cache, _tell: database, params)
     step.enter()
     do(step, "walk", {})
     step.tick(0)
@@ -119,14 +121,14 @@ def test_the_room_of_a_wearer(tmp_path: Path, draft: Draft, database: PoseDataba
     assert shares == sorted(shares)
     found = kept(context)
     assert found.rig is not None
-    assert found.room is not None
-    assert (found.room.method, found.floor_known) == ("wearer", True)
-    assert set(found.room.camera_rms_px) == set(found.rig.names)
+    assert found.extrinsics_quality is not None
+    assert (found.extrinsics_quality.method, found.floor_known) == ("wearer", True)
+    assert set(found.extrinsics_quality.camera_rms_px) == set(found.rig.names)
     apart_m = [
         np.linalg.norm(centre(rig.cameras[1]) - centre(rig.cameras[0]))
         for rig in (found.rig, person.rig)
     ]
-    # three seconds on the spot, small pictures: the figures are those of evaluate.room_from_body
+    # three seconds on the spot, small pictures: the figures are those of evaluate.extrinsics_from_body
     assert apart_m[0] == pytest.approx(apart_m[1], rel=0.25)
     for camera, true in zip(found.rig.cameras, person.rig.cameras, strict=True):
         assert centre(camera)[1] == pytest.approx(centre(true)[1], abs=0.3)
@@ -164,7 +166,7 @@ def test_what_must_be_known_first(
     tmp_path: Path, draft: Draft, change: dict[str, object], where: str
 ) -> None:
     context = FakeContext(tmp_path, replace(draft, **change))  # type: ignore[arg-type]
-    step = RoomStep(context)
+    step = ExtrinsicsStep(context)
     step.enter()
     do(step, "method", {"method": "wearer"})
     view = step.view()

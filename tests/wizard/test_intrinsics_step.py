@@ -15,8 +15,13 @@ from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.types import Bytes
 from mocapd.wizard.board.board_form import usual_board
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.intrinsics.intrinsics_step import LensStep
-from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME, lens_for, read_lenses, store_lenses
+from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
+from mocapd.wizard.intrinsics.saved_intrinsics import (
+    FILE_NAME,
+    find_saved_intrinsics,
+    read_intrinsics,
+    store_intrinsics,
+)
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
     EMPTY,
@@ -36,7 +41,7 @@ class Shown:
 
     def __init__(self, folder: Path, board: BoardSpec = SPEC, cameras: int = 2) -> None:
         self.context = FakeContext(folder, Draft(cameras=draft_cameras(RIG[:cameras]), board=board))
-        self.step = LensStep(self.context)
+        self.step = IntrinsicsStep(self.context)
         self.step.enter()
 
     def show(self, pictures: Iterable[dict[str, Bytes]], seconds: float = STILL_S) -> None:
@@ -73,12 +78,12 @@ def test_lenses_are_found_by_themselves(tmp_path: Path) -> None:
     assert view.progress == 1.0
     assert shown.context.scenes == [Scene.LENS]
     for true in RIG:
-        lens = shown.context.draft.lenses[true.name]
+        lens = shown.context.draft.intrinsics[true.name]
         focal = np.diag(lens.K)[:2] / np.diag(true.K)[:2] - 1.0
         print(true.name, 100 * focal, "%", lens.rms_px, lens.held_out_px)
         assert np.abs(focal).max() <= 0.005
         assert 0.0 < lens.rms_px <= lens.held_out_px * 1.05 < 0.5
-    assert shown.context.draft.lens_saved == frozenset()
+    assert shown.context.draft.intrinsics_saved == frozenset()
     assert len(shown.context.draft.board_views["cam0"]) >= 10
 
 
@@ -214,7 +219,7 @@ def test_the_ruler_scales_the_board_and_keeps_the_pictures(tmp_path: Path) -> No
 
 def test_without_a_board_the_one_that_is_printed_is_expected(tmp_path: Path) -> None:
     context = FakeContext(tmp_path, Draft(cameras=draft_cameras()))
-    board = LensStep(context).view().details["board"]
+    board = IntrinsicsStep(context).view().details["board"]
     usual = usual_board()
     assert isinstance(board, dict)
     assert board["columns"] == usual.columns
@@ -277,10 +282,10 @@ WHEN = datetime(2026, 11, 20, 9, 30, tzinfo=UTC)
 
 def test_a_lens_is_offered_to_the_camera_that_it_was_measured_of(tmp_path: Path) -> None:
     context = FakeContext(tmp_path, Draft(cameras=(WEBCAM,), board=SPEC))
-    store_lenses(replace(context.draft, lenses={"cam0": LENS}), context.state_dir, WHEN)
+    store_intrinsics(replace(context.draft, intrinsics={"cam0": LENS}), context.state_dir, WHEN)
     moved = replace(WEBCAM, id="left", source="usb:2-1:046d:0825:5F2A")
     context = FakeContext(tmp_path, Draft(cameras=(moved,), board=SPEC))
-    step = LensStep(context)
+    step = IntrinsicsStep(context)
     step.enter()
     cameras = step.view().details["cameras"]
     assert isinstance(cameras, dict)
@@ -288,21 +293,21 @@ def test_a_lens_is_offered_to_the_camera_that_it_was_measured_of(tmp_path: Path)
     assert step.view().state is StepState.WAITING
     do(step, "use_saved", {"camera": "left"})
     assert step.view().state is StepState.DONE
-    np.testing.assert_allclose(context.draft.lenses["left"].K, RIG[0].K, rtol=1e-6)
-    np.testing.assert_allclose(context.draft.lenses["left"].dist, RIG[0].dist, atol=1e-6)
-    assert context.draft.lens_saved == {"left"}
+    np.testing.assert_allclose(context.draft.intrinsics["left"].K, RIG[0].K, rtol=1e-6)
+    np.testing.assert_allclose(context.draft.intrinsics["left"].dist, RIG[0].dist, atol=1e-6)
+    assert context.draft.intrinsics_saved == {"left"}
     do(step, "measure", {"camera": "left"})
     assert step.view().state is StepState.WAITING
 
 
 def test_saved_lenses_are_of_one_camera_and_one_mode(tmp_path: Path) -> None:
-    draft = Draft(cameras=(WEBCAM,), lenses={"cam0": LENS})
-    store_lenses(draft, tmp_path, WHEN)
-    saved = read_lenses(tmp_path)
-    assert lens_for(WEBCAM, saved) is not None
-    assert lens_for(replace(WEBCAM, size_px=(1280, 720)), saved) is None
-    assert lens_for(replace(WEBCAM, source="usb:1-3:046d:0825:other"), saved) is None
-    assert lens_for(replace(WEBCAM, source="/dev/video0"), saved) is None
+    draft = Draft(cameras=(WEBCAM,), intrinsics={"cam0": LENS})
+    store_intrinsics(draft, tmp_path, WHEN)
+    saved = read_intrinsics(tmp_path)
+    assert find_saved_intrinsics(WEBCAM, saved) is not None
+    assert find_saved_intrinsics(replace(WEBCAM, size_px=(1280, 720)), saved) is None
+    assert find_saved_intrinsics(replace(WEBCAM, source="usb:1-3:046d:0825:other"), saved) is None
+    assert find_saved_intrinsics(replace(WEBCAM, source="/dev/video0"), saved) is None
     text = (tmp_path / FILE_NAME).read_text()
     assert 'camera = "046d:0825:5F2A"' in text
     assert "size_px = [640, 480]" in text
@@ -310,15 +315,15 @@ def test_saved_lenses_are_of_one_camera_and_one_mode(tmp_path: Path) -> None:
 
 def test_storing_replaces_the_same_and_keeps_the_others(tmp_path: Path) -> None:
     other = replace(WEBCAM, id="cam1", source="usb:1-4:046d:0825:77")
-    draft = Draft(cameras=(WEBCAM, other), lenses={"cam0": LENS, "cam1": LENS})
-    store_lenses(draft, tmp_path, WHEN)
+    draft = Draft(cameras=(WEBCAM, other), intrinsics={"cam0": LENS, "cam1": LENS})
+    store_intrinsics(draft, tmp_path, WHEN)
     better = replace(LENS, rms_px=0.1)
-    store_lenses(replace(draft, lenses={"cam0": better, "cam1": LENS}), tmp_path, WHEN)
-    assert sorted(one.rms_px for one in read_lenses(tmp_path)) == [0.1, 0.2]
+    store_intrinsics(replace(draft, intrinsics={"cam0": better, "cam1": LENS}), tmp_path, WHEN)
+    assert sorted(one.rms_px for one in read_intrinsics(tmp_path)) == [0.1, 0.2]
     # a lens that was taken over is not stored as new
-    worse = replace(draft, lenses={"cam0": LENS}, lens_saved=frozenset({"cam0"}))
-    store_lenses(worse, tmp_path, WHEN)
-    assert sorted(one.rms_px for one in read_lenses(tmp_path)) == [0.1, 0.2]
+    worse = replace(draft, intrinsics={"cam0": LENS}, intrinsics_saved=frozenset({"cam0"}))
+    store_intrinsics(worse, tmp_path, WHEN)
+    assert sorted(one.rms_px for one in read_intrinsics(tmp_path)) == [0.1, 0.2]
 
 
 @pytest.mark.parametrize("text", ["schema = ", "schema = 9", 'schema = 1\nlens = "none"'])
@@ -326,8 +331,8 @@ def test_a_damaged_file_of_lenses_is_told_and_the_step_goes_on(tmp_path: Path, t
     context = FakeContext(tmp_path, Draft(cameras=(WEBCAM,), board=SPEC))
     (context.state_dir / FILE_NAME).write_text(text)
     with pytest.raises(ConfigError, match=FILE_NAME):
-        read_lenses(context.state_dir)
-    view = LensStep(context).view()
+        read_intrinsics(context.state_dir)
+    view = IntrinsicsStep(context).view()
     assert FILE_NAME in view.problems[0].where
     assert view.state is StepState.WAITING
 
@@ -347,24 +352,24 @@ def test_a_damaged_file_of_lenses_is_told_and_the_step_goes_on(tmp_path: Path, t
     ],
 )
 def test_numbers_that_cannot_be_are_damage(tmp_path: Path, was: str, becomes: str) -> None:
-    store_lenses(Draft(cameras=(WEBCAM,), lenses={"cam0": LENS}), tmp_path, WHEN)
+    store_intrinsics(Draft(cameras=(WEBCAM,), intrinsics={"cam0": LENS}), tmp_path, WHEN)
     path = tmp_path / FILE_NAME
     text = path.read_text()
     assert was in text
     path.write_text(text.replace(was, becomes))
     with pytest.raises(ConfigError, match=FILE_NAME):
-        read_lenses(tmp_path)
+        read_intrinsics(tmp_path)
 
 
 def test_a_file_of_lenses_that_is_none_is_told(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / FILE_NAME)  # opening it would wait for a writer
     with pytest.raises(ConfigError, match="no regular file"):
-        read_lenses(tmp_path)
+        read_intrinsics(tmp_path)
 
 
 def test_a_step_without_cameras_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no camera"):
-        LensStep(FakeContext(tmp_path, Draft()))
+        IntrinsicsStep(FakeContext(tmp_path, Draft()))
 
 
 def test_the_usual_board_is_charuco() -> None:

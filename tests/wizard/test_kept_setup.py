@@ -160,7 +160,7 @@ def test_a_camera_left_out_then_may_be_there_now(tmp_path: Path) -> None:
 
 
 def test_webcams_are_set_to_what_was_found_and_others_must_fit(tmp_path: Path) -> None:
-    draft = replace(drafted(), lens_saved=frozenset({"cam1"}))
+    draft = replace(drafted(), intrinsics_saved=frozenset({"cam1"}))
     keep(tmp_path, draft)
     webcam = FakeWebcam("cam0")
     locks = CameraLocks((webcam,))
@@ -175,7 +175,7 @@ def test_webcams_are_set_to_what_was_found_and_others_must_fit(tmp_path: Path) -
     assert webcam.values[Control.AUTO_EXPOSURE] == 1
     assert webcam.values[Control.EXPOSURE] == one.controls.exposure
     assert other.size_px == (640, 480)
-    assert set(found.lenses) == set(found.colours) == {"cam0"}
+    assert set(found.intrinsics) == set(found.colours) == {"cam0"}
     assert found.rig is None
     locks.restore()
     assert webcam.values[Control.AUTO_EXPOSURE] == 3  # as it was before the setup
@@ -204,3 +204,9 @@ def test_every_part_of_a_draft_has_its_place_in_the_file() -> None:
     assert told == {"schema", "when", "done", "draft"}
     kept = next(f.type for f in msgspec.structs.fields(_Kept) if f.name == "draft")
     assert {f.name for f in msgspec.structs.fields(kept)} == {f.name for f in fields(Draft)}
+
+
+def test_the_file_keeps_the_words_that_earlier_versions_wrote() -> None:
+    kept = next(f.type for f in msgspec.structs.fields(_Kept) if f.name == "draft")
+    words = {f.encode_name for f in msgspec.structs.fields(kept)}
+    assert {"lenses", "lens_saved", "room", "board_views", "stature_m"} <= words

@@ -9,7 +9,7 @@ import pytest
 
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame, LabelledPicture
-from mocapd.wizard.colour.colour_solving import Drawn, solve
+from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.commands import OF_WIZARD
 from mocapd.wizard.step import StepName
 from mocapd.wizard.wizard import Wizard
@@ -104,6 +104,8 @@ def test_strokes_of_any_kind_on_any_picture_are_judged(seed: int) -> None:
     for colour in random.permutation(np.arange(1, 11))[: random.integers(1, 11)]:
         x, y = random.integers(0, w - 1), random.integers(0, h - 1)
         strokes[y : y + random.integers(1, 20), x : x + random.integers(1, 20)] = colour
-    solution = solve({"cam0": Drawn(LabelledPicture(pixels, strokes))}, bool(seed % 2), {})
+    solution = solve_colours(
+        {"cam0": StrokeDrawing(LabelledPicture(pixels, strokes))}, bool(seed % 2), {}
+    )
     for one in solution.cameras.values():
         assert one.W is None or np.isfinite(one.W).all()

@@ -10,7 +10,7 @@ from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
 from mocapd.wizard.cameras.found_cameras import plugged_cameras, where_now
-from mocapd.wizard.cameras.same_port import AsksForPorts, moved_cameras
+from mocapd.wizard.cameras.same_port import AsksForPorts, find_port_changes
 from mocapd.wizard.commands import CAMERAS, Command, Lock
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
@@ -59,7 +59,7 @@ def asking(folder: Path) -> tuple[FakeContext, AsksForPorts]:
     draft = full_draft()
     context = FakeContext(folder, draft)
     save_draft(draft, context.state_dir)
-    moved = list(moved_cameras(draft.cameras, present(STAYED, MOVED)))
+    moved = list(find_port_changes(draft.cameras, present(STAYED, MOVED)))
     return context, AsksForPorts(context, Done, moved)
 
 
@@ -76,7 +76,7 @@ def test_a_camera_in_another_port_is_asked_about_and_remembered(tmp_path: Path) 
     assert [camera.source for camera in saved.camera] == [STAYED, MOVED]
     assert [camera.source for camera in context.draft.cameras] == [STAYED, MOVED]
     assert context.draft.rig is not None
-    assert not moved_cameras(context.draft.cameras, present(STAYED, MOVED))
+    assert not find_port_changes(context.draft.cameras, present(STAYED, MOVED))
 
 
 def test_another_camera_in_its_place_is_calibrated_anew(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_another_camera_in_its_place_is_calibrated_anew(tmp_path: Path) -> None:
     before = (context.state_dir / "calibration.toml").read_bytes()
     do(step, "same_port", {"camera": "cam1", "same": False})
     assert context.draft.rig is None
-    assert set(context.draft.lenses) == {"cam0"}
+    assert set(context.draft.intrinsics) == {"cam0"}
     assert set(context.draft.colours) == {"cam0"}
     assert (context.state_dir / "calibration.toml").read_bytes() == before
 
@@ -100,9 +100,9 @@ def test_nothing_else_is_answered_and_the_rest_is_the_steps_own(tmp_path: Path) 
 
 def test_who_is_not_plugged_in_or_may_be_a_twin_is_not_asked_about() -> None:
     draft = full_draft()
-    assert not moved_cameras(draft.cameras, present(STAYED))
+    assert not find_port_changes(draft.cameras, present(STAYED))
     twins = [source_of("cam1", "2-4"), source_of("cam1", "2-5")]
-    assert not moved_cameras(draft.cameras, present(STAYED, *twins))
+    assert not find_port_changes(draft.cameras, present(STAYED, *twins))
 
 
 def test_cameras_keep_their_names_and_new_ones_get_free_ones() -> None:

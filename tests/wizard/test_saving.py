@@ -22,11 +22,11 @@ def test_a_saved_draft_can_be_gone_on_with(tmp_path: Path) -> None:
     assert draft.factors is not None
     assert loaded.factors is not None
     assert np.array_equal(loaded.factors, draft.factors)
-    assert loaded.room is not None
-    assert draft.room is not None
-    assert np.isnan(loaded.room.rms_px)
-    assert loaded.room.camera_rms_px == draft.room.camera_rms_px
-    assert loaded.lens_saved == {"cam0", "cam1"}
+    assert loaded.extrinsics_quality is not None
+    assert draft.extrinsics_quality is not None
+    assert np.isnan(loaded.extrinsics_quality.rms_px)
+    assert loaded.extrinsics_quality.camera_rms_px == draft.extrinsics_quality.camera_rms_px
+    assert loaded.intrinsics_saved == {"cam0", "cam1"}
     assert loaded.rig is not None
     assert draft.rig is not None
     for read, wrote in zip(loaded.rig.cameras, draft.rig.cameras, strict=True):

@@ -47,7 +47,7 @@ class BoardView:
 
 
 @dataclass(frozen=True, slots=True)
-class NotSeen:
+class DetectionFailure:
     """No usable board in this picture. `detail` adds what was seen instead."""
 
     index: int
@@ -176,7 +176,7 @@ def _first_is_black(grey: Bytes, corners_px: Floats) -> bool:
     return bool(values[same].mean() < values[~same].mean())
 
 
-def settled(spec: BoardSpec, pictures: Sequence[Bytes]) -> BoardSpec:
+def settle_variant(spec: BoardSpec, pictures: Sequence[Bytes]) -> BoardSpec:
     """The spec, inverted or in the other layout where the pictures show that board instead.
 
     As given when that is found in any of them, and when nothing is.

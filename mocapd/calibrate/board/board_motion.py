@@ -9,7 +9,7 @@ from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 
-def paths(scene: ReprojectionProblem, indices: Sequence[int]) -> Floats:
+def board_paths(scene: ReprojectionProblem, indices: Sequence[int]) -> Floats:
     """(V,2,6): velocity [per frame] and half the acceleration [per frame^2] of turn [rad] and shift [m].
 
     The parabola through the positions one frame before and after; where one of them is unknown the

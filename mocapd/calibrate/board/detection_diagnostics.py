@@ -9,7 +9,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
-from mocapd.calibrate.board.board_detection import BoardDetector, NotSeen, Reason, as_grey
+from mocapd.calibrate.board.board_detection import BoardDetector, DetectionFailure, Reason, as_grey
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, dictionaries, first_markers
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Ints
@@ -31,12 +31,12 @@ FIX: Mapping[Reason, str] = {
 }
 
 
-def why_not_seen(detector: BoardDetector, pixels: Bytes, index: int = 0) -> NotSeen:
+def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -> DetectionFailure:
     """The reason why `detector` finds no board in this picture, the likeliest first."""
     grey = detector.as_printed(pixels)
     lit = as_grey(pixels)
     if np.percentile(lit, 98) < _DARK:
-        return NotSeen(index, Reason.TOO_DARK)
+        return DetectionFailure(index, Reason.TOO_DARK)
     spec = detector.spec
     if spec.kind is BoardKind.CHARUCO:
         told = _of_markers(detector, grey, index)
@@ -47,30 +47,30 @@ def why_not_seen(detector: BoardDetector, pixels: Bytes, index: int = 0) -> NotS
     small = cv2.resize(lit, (640, max(1, round(640 * lit.shape[0] / lit.shape[1]))))
     fine = cv2.Laplacian(cv2.GaussianBlur(small, (0, 0), 1.0), cv2.CV_32F)
     if float(fine.var()) < _SHARP:
-        return NotSeen(index, Reason.BLURRED)
-    return NotSeen(index, Reason.NOTHING)
+        return DetectionFailure(index, Reason.BLURRED)
+    return DetectionFailure(index, Reason.NOTHING)
 
 
-def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> NotSeen | None:
+def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFailure | None:
     spec = detector.spec
     ids = detector.markers(grey)
     on_board = spec.columns * spec.rows // 2
     # first, since a mirrored marker may well be another marker of a large dictionary
     if detector.find(grey_of(spec, grey[:, ::-1].copy())) is not None:
-        return NotSeen(index, Reason.MIRRORED)
+        return DetectionFailure(index, Reason.MIRRORED)
     if len(ids) >= _CERTAIN:
         foreign = ids[ids >= on_board]
         if len(foreign):
             detail = f"marker {foreign[-1]} is seen; {spec} has markers 0 to {on_board - 1}"
-            return NotSeen(index, Reason.OTHER_SIZE, detail)
+            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
         return _misfit(spec, ids, grey, index)
     other = _other_dictionary(spec, grey, index)
     if other is None and len(ids):
-        return NotSeen(index, Reason.FEW, f"{len(ids)} of {on_board} markers")
+        return DetectionFailure(index, Reason.FEW, f"{len(ids)} of {on_board} markers")
     return other
 
 
-def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> NotSeen:
+def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
     """Known markers in sight and no corners: too few of them, or in other places than given."""
     sizes = [
         (columns, rows)
@@ -84,8 +84,10 @@ def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> NotSeen:
     for columns, rows in sizes:
         if _shows(_resized(spec, columns, rows), grey):
             detail = f"it fits rows of {columns} squares, {spec.columns}x{spec.rows} was given"
-            return NotSeen(index, Reason.OTHER_SIZE, detail)
-    return NotSeen(index, Reason.FEW, f"{len(ids)} of {spec.columns * spec.rows // 2} markers")
+            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
+    return DetectionFailure(
+        index, Reason.FEW, f"{len(ids)} of {spec.columns * spec.rows // 2} markers"
+    )
 
 
 def _resized(spec: BoardSpec, columns: int, rows: int) -> BoardSpec | None:
@@ -108,7 +110,7 @@ def grey_of(spec: BoardSpec, as_printed: Bytes) -> Bytes:
     return 255 - as_printed if spec.inverted else as_printed
 
 
-def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | None:
+def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
     """The family of dictionaries with the most markers in sight."""
     best, name = 0, ""
     for one in dictionaries():
@@ -122,10 +124,10 @@ def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | Non
             best, name = len(ids), one
     if best < _CERTAIN:
         return None
-    return NotSeen(index, Reason.OTHER_DICTIONARY, f"{best} markers of {name}")
+    return DetectionFailure(index, Reason.OTHER_DICTIONARY, f"{best} markers of {name}")
 
 
-def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | None:
+def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
     """A plain board of another size: turned, or its inner corners counted in place of squares."""
     c, r = spec.columns, spec.rows
     others = [(r, c), (c + 1, r + 1), (c - 1, r - 1), (r + 1, c + 1), (r - 1, c - 1)]
@@ -133,5 +135,5 @@ def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> NotSeen | None:
     for columns, rows in dict.fromkeys(others):
         if {columns, rows} != {c, r} and _shows(_resized(spec, columns, rows), grey):
             detail = f"{columns}x{rows} squares are seen, {c}x{r} were given (squares, not corners)"
-            return NotSeen(index, Reason.OTHER_SIZE, detail)
+            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
     return None

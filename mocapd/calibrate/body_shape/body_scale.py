@@ -49,7 +49,7 @@ def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
 
 
 def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> ScaleTrouble | None:
-    """None when all agree. by_wearer: the room's scale came from the stature, not from a board."""
+    """None when all agree. by_wearer: the rig's scale came from the stature, not from a board."""
     off = abs(scale.bones - 1.0) > TOLERATED
     low = bool(np.isfinite(scale.height)) and abs(scale.height - 1.0) > TOLERATED
     if off and low and abs(scale.bones - scale.height) > 2.0 * _ALIKE:

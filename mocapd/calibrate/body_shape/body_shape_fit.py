@@ -1,7 +1,7 @@
 """The wearer's proportions from a few seconds of movement, with the cameras known.
 
-One Gauss-Newton over the body's shape and the pose of every moment, from the rows of the tracker's own
-alignment; the poses are eliminated from each step (Schur complement), so that what a moment says of
+One Gauss-Newton over the body's shape and the pose of every observation, from the rows of the tracker's own
+alignment; the poses are eliminated from each step (Schur complement), so that what an observation says of
 lengths is only what no other pose explains. The tracker's own learning goes frame by frame and cannot
 take back what it took from a poor one.
 """
@@ -42,15 +42,15 @@ class ShapeParams:
     radius_px: int = 7  # work px within which colours are looked for: the poses are known
     loose_s: float = 0.1  # a pose is held to as loosely as a prediction over this time
     joint_sd_rad: float = 0.5  # how far a pose may yield to a change of shape
-    least_match: float = 0.6  # of a moment that counts
+    least_match: float = 0.6  # of an observation that counts
     tolerated_cost: float = 1.5  # and its cost, against that of the middle one
-    fewest_moments: int = 6
+    fewest_observations: int = 6
     # how many of them count in full against what is known of people: their errors are alike
-    independent_moments: float = 32.0
+    independent_observations: float = 32.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ShapeMoment:
+class BodyObservation:
     """The body as it was tracked at one instant, and what the cameras saw: views at work resolution."""
 
     t_ns: int
@@ -62,7 +62,7 @@ class ShapeMoment:
 class ShapeFit:
     """factors (N,) of `body.shape`. seen (N,) and information (N,N): what the
     pictures alone say, without what is known of people; match: share of the drawn shirt that they
-    confirm; states: every moment's pose in this shape; counted: which of them were believed."""
+    confirm; states: every observation's pose in this shape; counted: which of them were believed."""
 
     factors: Floats
     seen: Floats
@@ -72,14 +72,14 @@ class ShapeFit:
     counted: tuple[int, ...]
 
 
-def moment_of(
+def observe_body(
     track: Track,
     frames: FrameSet,
     model: BodyModel,
     cameras: Sequence[Camera],
-    before: ShapeMoment | None,
-) -> ShapeMoment | None:
-    """A moment of a tracked frame set; None when nothing was seen. before: the last one, for velocity."""
+    before: BodyObservation | None,
+) -> BodyObservation | None:
+    """An observation of a tracked frame set; None when nothing was seen. before: the last one, for velocity."""
     body = track.body
     if body.pose is None or not track.evidence:
         return None
@@ -105,24 +105,25 @@ def moment_of(
         np.ones(model.n_shape),
         initial_information(model.space),
     )
-    return ShapeMoment(body.t_ns, state, tuple(views))
+    return BodyObservation(body.t_ns, state, tuple(views))
 
 
 def fit_shape(
-    moments: Sequence[ShapeMoment],
+    observations: Sequence[BodyObservation],
     model: BodyModel,
     cameras: Sequence[Camera],
     params: ShapeParams | None = None,
 ) -> ShapeFit:
-    """The proportions that agree best with all moments. Raises InputError when too few agree."""
+    """The proportions that agree best with all observations. Raises InputError when too few agree."""
     p = params if params is not None else ShapeParams()
     tracker = FitParams()
     fitter = Fitter(model, cameras, image_scales(cameras, tracker.work_width_px), tracker)
     gatherer = RowGatherer(fitter, p.radius_px)
-    if len(moments) < p.fewest_moments:
-        raise _too_few(len(moments), p)
+    if len(observations) < p.fewest_observations:
+        raise _too_few(len(observations), p)
     states = [
-        fitter.fit(m.state, m.views, p.loose_s, p.settling, learn_shape=True).state for m in moments
+        fitter.fit(m.state, m.views, p.loose_s, p.settling, learn_shape=True).state
+        for m in observations
     ]
     factors = np.median([state.factors for state in states], axis=0)
     kept: list[Floats] = []
@@ -130,7 +131,7 @@ def fit_shape(
         states = [replace(state, factors=factors) for state in states]
         rows = [
             [gatherer.gather(state, view) for view in m.views]
-            for state, m in zip(states, moments, strict=True)
+            for state, m in zip(states, observations, strict=True)
         ]
         # before the first steps a wearer of odd proportions agrees with no picture well
         counted = _counted(rows, p, p.least_match if i == p.rounds else 0.0)
@@ -139,7 +140,7 @@ def fit_shape(
             break
         step = evidence.step(factors)
         states = [
-            state if follow is None else _followed(model, state, follow, step)
+            state if follow is None else _follow_shape(model, state, follow, step)
             for state, follow in zip(states, evidence.follows, strict=True)
         ]
         factors = np.clip(factors + step, _SMALLEST, _LARGEST)
@@ -160,7 +161,7 @@ _Follow = tuple[Floats, Floats]  # how a pose answers to a step of the shape, an
 
 
 class _Evidence:
-    """What all moments together say of the shape: H (N,N), b (N,) without the poses."""
+    """What all observations together say of the shape: H (N,N), b (N,) without the poses."""
 
     def __init__(
         self,
@@ -185,7 +186,7 @@ class _Evidence:
             self.H += H[n:, n:] - Hps.T @ back
             self.b += b[n:] - Hps.T @ own
             self.follows[k] = back, own
-        gain = min(1.0, p.independent_moments / len(counted))
+        gain = min(1.0, p.independent_observations / len(counted))
         self.H, self.b = self.H * gain, self.b * gain
 
     def step(self, factors: Floats) -> Floats:
@@ -198,39 +199,41 @@ class _Evidence:
         return step
 
 
-def _followed(model: BodyModel, state: MotionState, follow: _Follow, step: Floats) -> MotionState:
+def _follow_shape(
+    model: BodyModel, state: MotionState, follow: _Follow, step: Floats
+) -> MotionState:
     root, local = stepped(model, state.root_m, state.local_xyzw, follow[1] - follow[0] @ step)
     return replace(state, root_m=root, local_xyzw=local)
 
 
 def _counted(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: float) -> list[int]:
-    """The moments in which body and pictures agree. Raises InputError when they are too few."""
-    costs = [_cost(moment) for moment in rows]
+    """The observations in which body and pictures agree. Raises InputError when they are too few."""
+    costs = [_cost(observation) for observation in rows]
     tolerable = p.tolerated_cost * float(np.median(costs))
     counted = [
         k
-        for k, moment in enumerate(rows)
-        if _match(moment) >= least_match and costs[k] <= tolerable
+        for k, observation in enumerate(rows)
+        if _match(observation) >= least_match and costs[k] <= tolerable
     ]
-    if len(counted) < p.fewest_moments:
+    if len(counted) < p.fewest_observations:
         raise _too_few(len(counted), p)
     return counted
 
 
 def _too_few(count: int, p: ShapeParams) -> InputError:
     return InputError(
-        f"body and pictures agree in {count} moments only, {p.fewest_moments} are needed",
+        f"body and pictures agree in {count} moments only, {p.fewest_observations} are needed",
         "body",
         "check the colours, then stand where all cameras see the whole shirt and measure again",
     )
 
 
-def _cost(moment: Sequence[BodyRows]) -> float:
+def _cost(observation: Sequence[BodyRows]) -> float:
     """Cost for each drawn pixel of the shirt."""
-    drawn = sum(float(row.visible.sum()) for row in moment)
-    return sum(row.cost for row in moment) / max(drawn, 1.0)
+    drawn = sum(float(row.visible.sum()) for row in observation)
+    return sum(row.cost for row in observation) / max(drawn, 1.0)
 
 
-def _match(moment: Sequence[BodyRows]) -> float:
+def _match(observation: Sequence[BodyRows]) -> float:
     """Share of the drawn shirt that is confirmed, in the camera that confirms least."""
-    return min(row.match for row in moment)
+    return min(row.match for row in observation)

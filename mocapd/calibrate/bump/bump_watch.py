@@ -11,7 +11,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from mocapd.calibrate.bump.landmarks import RoomMarks, room_marks, seen_turn
+from mocapd.calibrate.bump.landmarks import Landmarks, find_landmarks, measure_turn
 from mocapd.clock import nanoseconds
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Camera, Floats
@@ -41,12 +41,12 @@ class BumpParams:
 class _Anchor:
     """Marks, and how far the camera was turned when they were made (4,)."""
 
-    marks: RoomMarks
+    marks: Landmarks
     turned_xyzw: Floats
 
 
 @dataclass(slots=True, eq=False)
-class _Watched:
+class _CameraMemory:
     """What is remembered of one camera. anchors: the first marks, and the latest while it was steady."""
 
     camera: Camera
@@ -68,7 +68,7 @@ class BumpWatch:
 
     def __init__(self, cameras: Sequence[Camera], params: BumpParams | None = None) -> None:
         self._p = params if params is not None else BumpParams()
-        self._watched = {camera.name: _Watched(camera) for camera in cameras}
+        self._watched = {camera.name: _CameraMemory(camera) for camera in cameras}
 
     def mounting(self, camera: str) -> Mounting:
         """As last seen; `unknown` for a camera that is not watched."""
@@ -96,16 +96,16 @@ class BumpWatch:
             self._renew(one, t_ns, pixels, turned)
         return one.mounting
 
-    def _turned(self, one: _Watched, pixels: Bytes) -> Floats | None:
+    def _turned(self, one: _CameraMemory, pixels: Bytes) -> Floats | None:
         """(4,) since the first picture, by the first marks of which enough are seen."""
         p = self._p
         for anchor in one.anchors:
-            seen = seen_turn(anchor.marks, pixels, one.camera)
+            seen = measure_turn(anchor.marks, pixels, one.camera)
             if seen.agree >= max(p.least_marks, p.least_share * len(anchor.marks.places)):
                 return rotations.multiply(rotations.exp(seen.turn_rad), anchor.turned_xyzw)
         return None
 
-    def _judge(self, one: _Watched, t_ns: int) -> None:
+    def _judge(self, one: _CameraMemory, t_ns: int) -> None:
         """What is seen for long enough becomes the mounting."""
         limit_deg = self._p.least_turn_deg
         if one.mounting is Mounting.BUMPED:
@@ -116,18 +116,18 @@ class BumpWatch:
         if t_ns - one.since_ns >= nanoseconds(self._p.lasting_s):
             one.mounting, one.told = seems, True
 
-    def _begin(self, one: _Watched, t_ns: int, pixels: Bytes) -> None:
+    def _begin(self, one: _CameraMemory, t_ns: int, pixels: Bytes) -> None:
         """The first marks, once there are enough."""
-        marks = room_marks(pixels, one.camera)
+        marks = find_landmarks(pixels, one.camera)
         if len(marks.places) >= 2 * self._p.least_marks:
             one.anchors = [_Anchor(marks, rotations.IDENTITY_XYZW)]
             one.seen_ns = one.renewed_ns = t_ns
 
-    def _renew(self, one: _Watched, t_ns: int, pixels: Bytes, turned: Floats) -> None:
+    def _renew(self, one: _CameraMemory, t_ns: int, pixels: Bytes, turned: Floats) -> None:
         """Marks of now, for when the light has changed so much that the first ones are not found."""
         if t_ns - one.renewed_ns < nanoseconds(self._p.renewed_s):
             return
         one.renewed_ns = t_ns
-        marks = room_marks(pixels, one.camera)
+        marks = find_landmarks(pixels, one.camera)
         if len(marks.places) >= 2 * self._p.least_marks:
             one.anchors = [one.anchors[0], _Anchor(marks, turned)]

@@ -29,7 +29,7 @@ _TRIES, _ROUNDS = 64, 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RoomMarks:
+class Landmarks:
     """A small picture (h,w), and the marks in it: places (N,2) [px] and rays (N,3)."""
 
     picture: Bytes
@@ -46,20 +46,20 @@ class CameraTurn:
     agree: int
 
 
-def room_marks(pixels: Bytes, camera: Camera) -> RoomMarks:
+def find_landmarks(pixels: Bytes, camera: Camera) -> Landmarks:
     """The marks of a picture (height,width,3) BGR; there may be none."""
     picture = _small(pixels)
     # None when there is none, whatever OpenCV's stubs say
     found: Any = cv2.goodFeaturesToTrack(picture, 0, _QUALITY, _APART_PX, blockSize=5)
     places = np.asarray([] if found is None else found, dtype=np.float32).reshape(-1, 2)
     places = _spread(places)
-    return RoomMarks(picture, places, _rays(places, camera))
+    return Landmarks(picture, places, _rays(places, camera))
 
 
-def seen_turn(marks: RoomMarks, pixels: Bytes, camera: Camera) -> CameraTurn:
+def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     """How far the camera is turned in a later picture. None is a turn as likely as another one that
     twice as many marks say."""
-    before, now = _followed(marks, _small(pixels), camera)
+    before, now = _track(marks, _small(pixels), camera)
     focal_px = float(camera.K[0, 0]) * _WIDTH_PX / camera.size_px[0]
     limit = _AGREE_PX / focal_px
     if len(before) < 2:
@@ -98,7 +98,7 @@ def _small(pixels: Bytes) -> Bytes:
     return np.clip(128.0 + 48.0 * detail / contrast, 0, 255).astype(np.uint8)
 
 
-def _followed(marks: RoomMarks, picture: Bytes, camera: Camera) -> tuple[Floats, Floats]:
+def _track(marks: Landmarks, picture: Bytes, camera: Camera) -> tuple[Floats, Floats]:
     """Rays (M,3) of the marks that are found in a small picture, before and now."""
     if len(marks.places) == 0 or picture.shape != marks.picture.shape:
         return np.empty((0, 3)), np.empty((0, 3))

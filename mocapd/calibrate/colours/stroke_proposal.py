@@ -42,7 +42,7 @@ def propose_strokes(
 ) -> Proposal:
     """Strokes for one picture (H,W,3) BGR of a person in the shirt.
 
-    camera: its lens is used, its place is not; None: a usual webcam lens is assumed. Raises
+    camera: its intrinsics are used, its place is not; None: those of a usual webcam are assumed. Raises
     InputError when no shirt is found under any light.
     """
     h, w = pixels.shape[:2]

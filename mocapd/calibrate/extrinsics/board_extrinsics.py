@@ -12,15 +12,15 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
     ReprojectionProblem,
     residuals_px,
-    stepped_problem,
+    with_steps,
 )
-from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust
-from mocapd.calibrate.extrinsics.pose_graph import first_scene, observations
+from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust_bundle
+from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
+    guess_world,
     play_area_error,
-    rig_in,
-    world_guessed,
+    rig_in_world,
     world_on_floor,
 )
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
@@ -32,7 +32,7 @@ from mocapd.types import Floats, Rig
 
 
 class ContradictionError(ConfigError):
-    """The views of the cameras do not fit together, whatever the room."""
+    """The views of the cameras do not fit together, whatever the extrinsics."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class BoardExtrinsicsParams:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SolvedRoom:
+class SceneExtrinsics:
     """Cameras and board positions in the first camera's frame; `indices`: of the positions."""
 
     names: tuple[str, ...]
@@ -69,8 +69,8 @@ class CameraFit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlacedRoom:
-    """The room in the world; `note`: what must be said of the floor ("": nothing)."""
+class WorldExtrinsics:
+    """The extrinsics in the world; `note`: what must be said of the floor ("": nothing)."""
 
     rig: Rig
     rms_px: float
@@ -80,82 +80,86 @@ class PlacedRoom:
     note: str
 
 
-def solve_room(
+def solve_extrinsics(
     names: Sequence[str],
     sizes_px: Sequence[tuple[int, int]],
-    lenses: Mapping[str, Intrinsics],
+    intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     spec: BoardSpec,
     params: BoardExtrinsicsParams,
-) -> SolvedRoom:
-    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one moment.
+) -> SceneExtrinsics:
+    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one instant.
 
     Raises ConfigError naming the cameras that share no positions with the others.
     """
     board_m = corners_m(spec)
-    # a view that contradicted its own lens tells nothing of the room either
+    # a view that contradicted its own camera's intrinsics tells nothing of the extrinsics either
     trusted = {
-        name: {i: view for i, view in views[name].items() if i not in lenses[name].thrown_out}
+        name: {
+            i: view for i, view in views[name].items() if i not in intrinsics_of[name].thrown_out
+        }
         for name in names
     }
-    scene, indices = first_scene(names, lenses, trusted, board_m)
+    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m)
     seen = observations(names, trusted, indices, board_m)
-    bundle = adjust(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
-    return SolvedRoom(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
+    bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
+    return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
 
 
 def lone_camera(
-    name: str, size_px: tuple[int, int], lens: Intrinsics, spec: BoardSpec
-) -> SolvedRoom:
+    name: str, size_px: tuple[int, int], intrinsics: Intrinsics, spec: BoardSpec
+) -> SceneExtrinsics:
     """One camera and no board yet: what `with_board` then adds gives it a place."""
     none = np.zeros(0, np.int64)
     scene = ReprojectionProblem(
-        intrinsics_row(lens.K, lens.dist)[None],
+        intrinsics_row(intrinsics.K, intrinsics.dist)[None],
         stack([IDENTITY]),
         stack([]),
         np.zeros(1),
         np.zeros((0, 2, POSE)),
     )
     seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)))
-    bundle = Bundle(scene, np.zeros(0, bool), np.array([lens.focal_deviation]))
-    return SolvedRoom((name,), (size_px,), spec, (), seen, bundle)
+    bundle = Bundle(scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]))
+    return SceneExtrinsics((name,), (size_px,), spec, (), seen, bundle)
 
 
-def with_board(room: SolvedRoom, index: int, views: Mapping[str, BoardView]) -> SolvedRoom:
-    """The room with one more position of the board, which moves no camera."""
-    board_m, scene = corners_m(room.spec), room.bundle.scene
+def with_board(
+    extrinsics: SceneExtrinsics, index: int, views: Mapping[str, BoardView]
+) -> SceneExtrinsics:
+    """The same with one more position of the board, which moves no camera."""
+    board_m, scene = corners_m(extrinsics.spec), extrinsics.bundle.scene
     seen = observations(
-        room.names, {n: _only(views, n, index) for n in room.names}, [index], board_m
+        extrinsics.names, {n: _only(views, n, index) for n in extrinsics.names}, [index], board_m
     )
     best, best_px = None, np.inf
     for name, view in views.items():
-        i = room.names.index(name)
+        i = extrinsics.names.index(name)
         row = scene.intrinsics[i]
         camera_from_board = board_pose(view, board_m, camera_matrix(row), row[4:])
         if camera_from_board is None:
             continue
         guess = _with(scene, scene.camera_from_scene[i].inverse() @ camera_from_board)
-        found, error_px = _fitted(guess, seen)
+        found, error_px = _fit_position(guess, seen)
         # one camera alone may take the mirror image of a board that it sees small
         if error_px < best_px:
             best, best_px = found, error_px
     if best is None:
         raise ConfigError("the board cannot be placed", "the room", "show more of the board")
-    both = room.bundle.scene
+    both = extrinsics.bundle.scene
     scene = replace(
         both,
         scene_from_board=concatenate(both.scene_from_board, best.scene_from_board),
         path=np.concatenate([both.path, best.path]),
     )
     merged = Observations(
-        np.concatenate([room.seen.camera, seen.camera]),
-        np.concatenate([room.seen.view, np.full_like(seen.view, len(room.indices))]),
-        np.concatenate([room.seen.point_m, seen.point_m]),
-        np.concatenate([room.seen.pixels, seen.pixels]),
+        np.concatenate([extrinsics.seen.camera, seen.camera]),
+        np.concatenate([extrinsics.seen.view, np.full_like(seen.view, len(extrinsics.indices))]),
+        np.concatenate([extrinsics.seen.point_m, seen.point_m]),
+        np.concatenate([extrinsics.seen.pixels, seen.pixels]),
     )
-    used = np.concatenate([room.bundle.used, np.ones(len(seen.camera), bool)])
-    bundle = replace(room.bundle, scene=scene, used=used)
-    return replace(room, indices=(*room.indices, index), seen=merged, bundle=bundle)
+    used = np.concatenate([extrinsics.bundle.used, np.ones(len(seen.camera), bool)])
+    bundle = replace(extrinsics.bundle, scene=scene, used=used)
+    return replace(extrinsics, indices=(*extrinsics.indices, index), seen=merged, bundle=bundle)
 
 
 def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, BoardView]:
@@ -172,13 +176,15 @@ def _with(scene: ReprojectionProblem, scene_from_board: RigidTransform) -> Repro
     )
 
 
-def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[ReprojectionProblem, float]:
+def _fit_position(
+    scene: ReprojectionProblem, seen: Observations
+) -> tuple[ReprojectionProblem, float]:
     """Its one position fitted, and the root mean square error [px]."""
     cameras = len(scene.delay)
     still = np.zeros((cameras, INTRINSICS)), np.zeros((cameras, POSE))
 
     def stepped(x: Floats) -> ReprojectionProblem:
-        return stepped_problem(scene, *still, x[None], np.zeros(cameras))
+        return with_steps(scene, *still, x[None], np.zeros(cameras))
 
     solution = scipy.optimize.least_squares(
         lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01
@@ -187,26 +193,28 @@ def _fitted(scene: ReprojectionProblem, seen: Observations) -> tuple[Reprojectio
     return found, _rms(np.linalg.norm(residuals_px(found, seen), axis=1))
 
 
-def placed(
-    room: SolvedRoom, floor: int | None, where: str, params: BoardExtrinsicsParams
-) -> PlacedRoom:
-    """The room in the world of the board that lies on the floor at index `floor`; None: guessed.
+def place_in_world(
+    extrinsics: SceneExtrinsics, floor: int | None, where: str, params: BoardExtrinsicsParams
+) -> WorldExtrinsics:
+    """The extrinsics in the world of the board that lies on the floor at index `floor`; None: guessed.
 
-    `where` names that picture in an error. Raises ContradictionError, or ConfigError: a lens is not
-    known well enough, or cameras are under the floor.
+    `where` names that picture in an error. Raises ContradictionError, or ConfigError: a focal length is
+    not known well enough, or cameras are under the floor.
     """
-    scene, seen = room.bundle.scene, room.seen
+    scene, seen = extrinsics.bundle.scene, extrinsics.seen
     if floor is None:
-        world = world_guessed(scene, corners_m(room.spec))
+        world = guess_world(scene, corners_m(extrinsics.spec))
     else:
-        world = world_on_floor(scene, room.indices.index(floor), centre_m(room.spec), where)
-    rig = rig_in(world, scene, room.names, room.sizes_px)
-    kept = seen.of(room.bundle.used)
-    made = PlacedRoom(
+        world = world_on_floor(
+            scene, extrinsics.indices.index(floor), centre_m(extrinsics.spec), where
+        )
+    rig = rig_in_world(world, scene, extrinsics.names, extrinsics.sizes_px)
+    kept = seen.of(extrinsics.bundle.used)
+    made = WorldExtrinsics(
         rig,
         _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
-        {name: _fit(room, i) for i, name in enumerate(room.names)},
-        len(room.indices),
+        {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)},
+        len(extrinsics.indices),
         play_area_error(rig, kept),
         world.note,
     )
@@ -218,8 +226,8 @@ def _rms(error_px: Floats) -> float:
     return float(np.sqrt(np.mean(error_px**2))) if len(error_px) else float("nan")
 
 
-def _fit(room: SolvedRoom, i: int) -> CameraFit:
-    bundle, seen = room.bundle, room.seen
+def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
+    bundle, seen = extrinsics.bundle, extrinsics.seen
     own = seen.camera == i
     kept = own & bundle.used
     return CameraFit(
@@ -231,7 +239,7 @@ def _fit(room: SolvedRoom, i: int) -> CameraFit:
     )
 
 
-def _refuse_bad(made: PlacedRoom, params: BoardExtrinsicsParams) -> None:
+def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams) -> None:
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(

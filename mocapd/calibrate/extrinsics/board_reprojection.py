@@ -39,7 +39,7 @@ class ReprojectionProblem:
 
     intrinsics (C,9); camera_from_scene (C,); scene_from_board (V,); delay (C,): how much later a camera
     exposes than the first, in frames; path (V,2,6): how the board moves on from each position, see
-    `board_motion.paths`.
+    `board_motion.board_paths`.
     """
 
     intrinsics: Floats
@@ -49,7 +49,7 @@ class ReprojectionProblem:
     path: Floats
 
 
-def stepped_problem(
+def with_steps(
     scene: ReprojectionProblem, intrinsics: Floats, cameras: Floats, boards: Floats, delay: Floats
 ) -> ReprojectionProblem:
     """The scene with steps added: intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,)."""

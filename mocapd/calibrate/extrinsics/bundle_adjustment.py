@@ -13,16 +13,16 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
-from mocapd.calibrate.board.board_motion import paths
+from mocapd.calibrate.board.board_motion import board_paths
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
     ReprojectionProblem,
     jacobians,
     residuals_px,
-    stepped_problem,
+    with_steps,
 )
-from mocapd.calibrate.intrinsics.intrinsics_priors import LensPriors
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.types import Floats, Ints
 
@@ -42,7 +42,7 @@ class BundleParams:
     delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
     rounds: int = 2  # of the board's motion, taken from the solution before
     evaluations: int = 15
-    priors: LensPriors = field(default_factory=LensPriors)
+    priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +87,7 @@ class _Problem:
 
     def error(self, x: Floats) -> Floats:
         """(2N + priors + C - 1,)."""
-        scene = stepped_problem(self.scene, *self.steps(x))
+        scene = with_steps(self.scene, *self.steps(x))
         priors = self.params.priors.residuals(scene.intrinsics, self.size_px)
         return np.concatenate(
             [
@@ -100,7 +100,7 @@ class _Problem:
     def slope(self, x: Floats) -> scipy.sparse.csr_matrix:
         """d error by x."""
         intrinsics, cameras, boards, delay = self.steps(x)
-        scene = stepped_problem(self.scene, intrinsics, cameras, boards, delay)
+        scene = with_steps(self.scene, intrinsics, cameras, boards, delay)
         values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
         columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
         rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
@@ -131,7 +131,7 @@ class _Problem:
         )
 
 
-def adjust(
+def adjust_bundle(
     scene: ReprojectionProblem,
     indices: Sequence[int],
     seen: Observations,
@@ -145,16 +145,16 @@ def adjust(
     outliers.
     """
     params = params or BundleParams()
-    scene = _solved(_Problem(scene, seen, size_px, params), robust=True)
+    scene = _solve(_Problem(scene, seen, size_px, params), robust=True)
     for _ in range(params.rounds):
-        scene = replace(scene, path=paths(scene, indices))
+        scene = replace(scene, path=board_paths(scene, indices))
         params = replace(params, corner_px=_deviation_px(scene, seen, params))
-        scene = _solved(_Problem(scene, seen, size_px, params), robust=True)
+        scene = _solve(_Problem(scene, seen, size_px, params), robust=True)
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
     limit_px = params.outlier_sigmas * _deviation_px(scene, seen, params)
     used = error_px <= max(limit_px, params.least_outlier_px)
     problem = _Problem(scene, seen.of(used), size_px, params)
-    scene = _solved(problem, robust=False)
+    scene = _solve(problem, robust=False)
     return Bundle(scene, used, _focal_deviation(replace(problem, scene=scene)))
 
 
@@ -165,7 +165,7 @@ def _deviation_px(scene: ReprojectionProblem, seen: Observations, params: Bundle
     return max(float(np.median(error_px)) / 1.18, params.least_corner_px)
 
 
-def _solved(problem: _Problem, robust: bool) -> ReprojectionProblem:
+def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
     """Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
 
     In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
@@ -199,7 +199,7 @@ def _solved(problem: _Problem, robust: bool) -> ReprojectionProblem:
         ftol=1e-5,
         max_nfev=problem.params.evaluations,
     )
-    return stepped_problem(problem.scene, *problem.steps(step(solution.x)))
+    return with_steps(problem.scene, *problem.steps(step(solution.x)))
 
 
 def _lower(normal: Floats) -> Floats:

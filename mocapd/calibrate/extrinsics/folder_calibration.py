@@ -5,18 +5,23 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, NotSeen, settled
-from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
+from mocapd.calibrate.board.board_detection import (
+    BoardDetector,
+    BoardView,
+    DetectionFailure,
+    settle_variant,
+)
+from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibrate.board.recordings import Recording, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
-    placed,
-    solve_room,
+    place_in_world,
+    solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
-from mocapd.calibrate.intrinsics.views import Choice, chosen_views, covered
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Floats, Rig
@@ -24,17 +29,17 @@ from mocapd.types import Bytes, Floats, Rig
 Progress = Callable[[str, int, int], None]
 _PROBES = 6  # pictures per camera that the board's variant is settled with
 _ASKED = 2  # pictures per camera that are asked why there is no board
-# A lens alone may leave its focal length open where the room then settles it.
-_ALONE = LensLimits(focal_deviation=0.25)
+# One camera alone may leave its focal length open where all together then settle it.
+_ALONE = IntrinsicsLimits(focal_deviation=0.25)
 
 
 @dataclass(frozen=True, slots=True)
 class FolderParams:
-    """How much of the recordings is looked at, and how the room is solved."""
+    """How much of the recordings is looked at, and how the extrinsics are solved."""
 
     most_pictures: int = 200  # per camera, evenly over the recording
     choice: Choice = field(default_factory=Choice)
-    room: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
+    extrinsics: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,12 +49,12 @@ class BoardSighting:
     recording: Recording
     views: Mapping[int, BoardView]
     pictures: int
-    not_seen: tuple[NotSeen, ...]
+    not_seen: tuple[DetectionFailure, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraReport:
-    """One camera: `rms_px` in the joint solution, `held_out_px` of its lens, pictures with the board."""
+    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, pictures with the board."""
 
     rms_px: float
     held_out_px: float
@@ -85,7 +90,7 @@ def calibrate_folder(
     """The rig of the cameras that recorded `folder`. `floor_frame`: index at which the board lies on the floor.
 
     Raises InputError (recordings missing or damaged) or ConfigError: what of the board, a camera or
-    the room does not fit, and what to do.
+    the extrinsics do not fit, and what to do.
     """
     params = params or FolderParams()
     recordings = find_recordings(folder)
@@ -106,12 +111,12 @@ def calibrate_folder(
         sightings.append(sighting)
     _refuse_blind(sightings)
     board_m = corners_m(spec)
-    lenses = {}
+    intrinsics_of = {}
     for done, one in enumerate(sightings):
         progress("lenses", done, len(sightings))
-        lenses[one.recording.name] = _lens(one, board_m, params)
+        intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
     progress("lenses", len(sightings), len(sightings))
-    return _room(sightings, lenses, spec, floor_frame, params, notes, progress)
+    return _solve_rig(sightings, intrinsics_of, spec, floor_frame, params, notes, progress)
 
 
 def _sighting(
@@ -119,7 +124,7 @@ def _sighting(
 ) -> tuple[BoardSighting, BoardSpec]:
     step = max(1, recording.frames // (stride * _PROBES)) * stride
     probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
-    spec = settled(spec, probes)
+    spec = settle_variant(spec, probes)
     detector = BoardDetector(spec)
     views: dict[int, BoardView] = {}
     blank: list[tuple[int, Bytes]] = []
@@ -133,9 +138,9 @@ def _sighting(
             blank.append((index, pixels))
         count += 1
         progress(f"board in {recording.name}", min(count, total), total)
-    reasons: tuple[NotSeen, ...] = ()
+    reasons: tuple[DetectionFailure, ...] = ()
     if len(views) < _ALONE.fewest_views:
-        reasons = tuple(why_not_seen(detector, pixels, index) for index, pixels in blank)
+        reasons = tuple(diagnose_detection(detector, pixels, index) for index, pixels in blank)
     return BoardSighting(recording, views, count, reasons), spec
 
 
@@ -162,15 +167,15 @@ def _refuse_blind(sightings: Sequence[BoardSighting]) -> None:
         raise ConfigError(what, where, FIX[reason])
 
 
-def _lens(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
+def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
-    views = chosen_views(list(one.views.values()), size_px, params.choice)
-    return solve_lens(views, board_m, size_px, one.recording.name, _ALONE)
+    views = choose_views(list(one.views.values()), size_px, params.choice)
+    return solve_intrinsics(views, board_m, size_px, one.recording.name, _ALONE)
 
 
-def _room(
+def _solve_rig(
     sightings: Sequence[BoardSighting],
-    lenses: Mapping[str, Intrinsics],
+    intrinsics_of: Mapping[str, Intrinsics],
     spec: BoardSpec,
     floor_frame: int | None,
     params: FolderParams,
@@ -179,7 +184,9 @@ def _room(
 ) -> FolderCalibration:
     names = [one.recording.name for one in sightings]
     views = {one.recording.name: one.views for one in sightings}
-    known = sorted({i for name in names for i in views[name] if i not in lenses[name].thrown_out})
+    known = sorted(
+        {i for name in names for i in views[name] if i not in intrinsics_of[name].thrown_out}
+    )
     if floor_frame is not None and floor_frame not in known:
         raise ConfigError(
             "no camera sees the board in it",
@@ -188,13 +195,13 @@ def _room(
         )
     progress("room", 0, 1)
     sizes_px = [one.recording.size_px for one in sightings]
-    room = solve_room(names, sizes_px, lenses, views, spec, params.room)
+    extrinsics = solve_extrinsics(names, sizes_px, intrinsics_of, views, spec, params.extrinsics)
     progress("room", 1, 1)
-    made = placed(room, floor_frame, f"frame {floor_frame}", params.room)
+    made = place_in_world(extrinsics, floor_frame, f"frame {floor_frame}", params.extrinsics)
     notes += [made.note] if made.note else []
     reports = {
         one.recording.name: _report(
-            one, lenses[one.recording.name], made.cameras[one.recording.name]
+            one, intrinsics_of[one.recording.name], made.cameras[one.recording.name]
         )
         for one in sightings
     }
@@ -203,15 +210,15 @@ def _room(
     )
 
 
-def _report(one: BoardSighting, lens: Intrinsics, fit: CameraFit) -> CameraReport:
+def _report(one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit) -> CameraReport:
     return CameraReport(
         fit.rms_px,
-        lens.held_out_px,
+        intrinsics.held_out_px,
         fit.views,
         one.pictures,
         covered(list(one.views.values()), one.recording.size_px),
         fit.delay_frames,
         fit.focal_deviation,
-        lens.thrown_out,
+        intrinsics.thrown_out,
         fit.refused_corners,
     )

@@ -20,9 +20,9 @@ from mocapd.types import Floats
 FEWEST_SHARED = 3  # board positions that join two cameras: one may be wrong
 
 
-def first_scene(
+def initial_scene(
     names: Sequence[str],
-    lenses: Mapping[str, Intrinsics],
+    intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     board_m: Floats,
 ) -> tuple[ReprojectionProblem, list[int]]:
@@ -32,9 +32,11 @@ def first_scene(
     spanning tree of the pairs with the most shared positions. Raises ConfigError that names the
     cameras which share none with the others.
     """
-    poses = {name: _poses(views[name], lenses[name], board_m) for name in names}
-    relative = _chained(names, poses)
-    intrinsics = np.stack([intrinsics_row(lenses[name].K, lenses[name].dist) for name in names])
+    poses = {name: _poses(views[name], intrinsics_of[name], board_m) for name in names}
+    relative = _span_pose_graph(names, poses)
+    intrinsics = np.stack(
+        [intrinsics_row(intrinsics_of[name].K, intrinsics_of[name].dist) for name in names]
+    )
     camera_from_scene = stack([relative[name] for name in names])
     indices = sorted({index for name in names for index in poses[name]})
     boards = []
@@ -71,13 +73,16 @@ def observations(
 
 
 def _poses(
-    views: Mapping[int, BoardView], lens: Intrinsics, board_m: Floats
+    views: Mapping[int, BoardView], intrinsics: Intrinsics, board_m: Floats
 ) -> dict[int, RigidTransform]:
-    found = {index: board_pose(view, board_m, lens.K, lens.dist) for index, view in views.items()}
+    found = {
+        index: board_pose(view, board_m, intrinsics.K, intrinsics.dist)
+        for index, view in views.items()
+    }
     return {index: pose for index, pose in found.items() if pose is not None}
 
 
-def _chained(
+def _span_pose_graph(
     names: Sequence[str], poses: Mapping[str, Mapping[int, RigidTransform]]
 ) -> dict[str, RigidTransform]:
     """camera_from_first of each camera, by Prim's tree with the most shared positions first."""

@@ -54,7 +54,7 @@ def world_on_floor(
     return WorldFrame(world)
 
 
-def world_guessed(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
+def guess_world(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
     """A world without a floor: up is what is up in most pictures, the floor under the lowest corner."""
     up = -scene.camera_from_scene.R[:, 1].sum(axis=0)
     corners = scene.scene_from_board[:, None].apply(board_m).reshape(-1, 3)
@@ -86,7 +86,7 @@ def camera_centres(scene: ReprojectionProblem) -> Floats:
     return scene.camera_from_scene.inverse().t_m
 
 
-def rig_in(
+def rig_in_world(
     world: WorldFrame,
     scene: ReprojectionProblem,
     names: Sequence[str],

@@ -31,8 +31,8 @@ _WORTH = 0.97  # a further coefficient must lower the held-out error to this par
 
 
 @dataclass(frozen=True, slots=True)
-class LensLimits:
-    """What a lens must reach to be used."""
+class IntrinsicsLimits:
+    """What intrinsics must reach to be used."""
 
     fewest_views: int = 6
     rms_px: float = 1.5
@@ -73,18 +73,18 @@ class _Solution:
     per_view_px: Floats
 
 
-def solve_lens(
+def solve_intrinsics(
     views: Sequence[BoardView],
     board_m: Floats,
     size_px: tuple[int, int],
     where: str,
-    limits: LensLimits | None = None,
+    limits: IntrinsicsLimits | None = None,
 ) -> Intrinsics:
-    """The lens of camera `where`. Raises ConfigError that says why these views do not give it.
+    """The intrinsics of camera `where`. Raises ConfigError that says why these views do not give it.
 
     `board_m` (n,3): the board's corners by id.
     """
-    limits = limits or LensLimits()
+    limits = limits or IntrinsicsLimits()
     if len(views) < limits.fewest_views:
         raise ConfigError(
             f"the board is usable in {len(views)} pictures, a lens needs {limits.fewest_views}",
@@ -105,7 +105,7 @@ def solve_lens(
     model, held_out_px = _best_model(kept, board_m, size_px, where, first)
     solution = _solve(kept, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
-    lens = Intrinsics(
+    intrinsics = Intrinsics(
         size_px,
         solution.K,
         solution.dist,
@@ -116,8 +116,8 @@ def solve_lens(
         tuple(view.index for view, out in zip(views, bad, strict=True) if out),
         deviation,
     )
-    _refuse_bad(lens, where, limits)
-    return lens
+    _refuse_bad(intrinsics, where, limits)
+    return intrinsics
 
 
 def _solve(
@@ -199,7 +199,7 @@ def board_pose(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> Rig
 
 
 def pose_residuals_px(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> Floats:
-    """Distances (n,) of the corners from where the lens puts them, with the board's pose fitted."""
+    """Distances (n,) of the corners from where the intrinsics put them, with the board's pose fitted."""
     camera_from_board = board_pose(view, board_m, K, dist)
     if camera_from_board is None:
         return np.full(len(view.ids), np.inf)
@@ -217,7 +217,7 @@ def _parallel(where: str) -> ConfigError:
     )
 
 
-def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> None:
+def _refuse_parallel(solution: _Solution, where: str, limits: IntrinsicsLimits) -> None:
     """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
     normals = np.stack([R[:, 2] for R in solution.rotations])
     cosines = np.clip(normals @ normals.T, -1.0, 1.0)
@@ -226,17 +226,17 @@ def _refuse_parallel(solution: _Solution, where: str, limits: LensLimits) -> Non
         raise _parallel(where)
 
 
-def _refuse_bad(lens: Intrinsics, where: str, limits: LensLimits) -> None:
-    if lens.rms_px > limits.rms_px or lens.held_out_px > limits.held_out_px:
+def _refuse_bad(intrinsics: Intrinsics, where: str, limits: IntrinsicsLimits) -> None:
+    if intrinsics.rms_px > limits.rms_px or intrinsics.held_out_px > limits.held_out_px:
         raise ConfigError(
-            f"the board fits badly: {lens.rms_px:.2f} px, {lens.held_out_px:.2f} px held out",
+            f"the board fits badly: {intrinsics.rms_px:.2f} px, {intrinsics.held_out_px:.2f} px held out",
             where,
             "keep the board flat and still, the focus locked, and check that --board-size, the "
             "layout and the pictures (not cropped or stabilised) are right",
         )
-    if lens.focal_deviation > limits.focal_deviation:
+    if intrinsics.focal_deviation > limits.focal_deviation:
         raise ConfigError(
-            f"the focal length is known to {100 * lens.focal_deviation:.1f} % only",
+            f"the focal length is known to {100 * intrinsics.focal_deviation:.1f} % only",
             where,
             "show the board nearer, and tilted by 30 degrees and more",
         )

@@ -9,44 +9,44 @@ from mocapd.types import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KnownLenses:
+class KnownIntrinsics:
     """Lenses (C,9) measured before, and their standard deviations (C,9); infinite: not known."""
 
-    lens: Floats
+    intrinsics: Floats
     deviation: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LensPriors:
+class IntrinsicsPriors:
     """Standard deviations. What the pictures tell outweighs them; what they do not tell stays sane.
 
     Pixels are square, the axis meets the picture near its middle, and distortion is moderate.
-    `known`: of lenses whose pictures of the board are not among the observations.
+    `known`: of cameras whose pictures of the board are not among the observations.
     """
 
     aspect: float = 0.005  # of fx / fy from 1
     middle: float = 0.025  # of cx, cy from the middle, in picture widths
     dist: tuple[float, float, float, float, float] = (0.3, 0.3, 0.003, 0.003, 0.2)
-    known: KnownLenses | None = None
+    known: KnownIntrinsics | None = None
 
-    def residuals(self, lens: Floats, size_px: Floats) -> Floats:
-        """(C,8), with known lenses (C,17), in standard deviations; lens (C,9), size_px (C,2)."""
-        aspect = np.log(lens[:, 0] / lens[:, 1]) / self.aspect
-        middle = (lens[:, 2:4] - 0.5 * (size_px - 1.0)) / (self.middle * size_px[:, :1])
-        parts = [aspect, middle, lens[:, 4:] / np.array(self.dist)]
+    def residuals(self, intrinsics: Floats, size_px: Floats) -> Floats:
+        """(C,8), with known intrinsics (C,17), in standard deviations; intrinsics (C,9), size_px (C,2)."""
+        aspect = np.log(intrinsics[:, 0] / intrinsics[:, 1]) / self.aspect
+        middle = (intrinsics[:, 2:4] - 0.5 * (size_px - 1.0)) / (self.middle * size_px[:, :1])
+        parts = [aspect, middle, intrinsics[:, 4:] / np.array(self.dist)]
         if self.known is not None:
-            parts.append((lens - self.known.lens) / self.known.deviation)
+            parts.append((intrinsics - self.known.intrinsics) / self.known.deviation)
         return np.column_stack(parts)
 
-    def slope(self, lens: Floats, size_px: Floats) -> Floats:
-        """d residuals by lens, (C,8,9) or (C,17,9)."""
-        out = np.zeros((len(lens), 8, INTRINSICS))
-        out[:, 0, 0] = 1.0 / (self.aspect * lens[:, 0])
-        out[:, 0, 1] = -1.0 / (self.aspect * lens[:, 1])
+    def slope(self, intrinsics: Floats, size_px: Floats) -> Floats:
+        """d residuals by intrinsics, (C,8,9) or (C,17,9)."""
+        out = np.zeros((len(intrinsics), 8, INTRINSICS))
+        out[:, 0, 0] = 1.0 / (self.aspect * intrinsics[:, 0])
+        out[:, 0, 1] = -1.0 / (self.aspect * intrinsics[:, 1])
         out[:, 1, 2] = out[:, 2, 3] = 1.0 / (self.middle * size_px[:, 0])
         out[:, np.arange(3, 8), np.arange(4, 9)] = 1.0 / np.array(self.dist)
         if self.known is None:
             return out
-        known = np.zeros((len(lens), INTRINSICS, INTRINSICS))
+        known = np.zeros((len(intrinsics), INTRINSICS, INTRINSICS))
         known[:, np.arange(INTRINSICS), np.arange(INTRINSICS)] = 1.0 / self.known.deviation
         return np.concatenate([out, known], axis=1)

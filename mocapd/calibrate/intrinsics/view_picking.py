@@ -137,7 +137,7 @@ class PickedViews:
 def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> Floats | None:
     """(5,): where the board is in the picture, how large, how slanted; None where no pose fits.
 
-    Distances between two tell how alike the views are [picture widths]. No lens is needed: a usual
+    Distances between two tell how alike the views are [picture widths]. No intrinsics are needed: a usual
     one is good enough to tell slants apart.
     """
     focal = _USUAL_FOCAL * size_px[0]

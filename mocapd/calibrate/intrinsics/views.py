@@ -48,7 +48,7 @@ def sharp_views(views: Sequence[BoardView], least: float) -> list[BoardView]:
     return [view for view in views if view.sharpness >= limit]
 
 
-def chosen_views(
+def choose_views(
     views: Sequence[BoardView], size_px: tuple[int, int], choice: Choice
 ) -> list[BoardView]:
     """At most `choice.most` sharp views, each the one that adds most to those before it.

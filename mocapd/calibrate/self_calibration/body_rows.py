@@ -81,13 +81,13 @@ def camera_columns(at_m: Floats) -> Floats:
     return out
 
 
-def moved_camera(camera: Camera, motion: Floats) -> Camera:
+def move_camera(camera: Camera, motion: Floats) -> Camera:
     """The camera after a motion (6,) of the world before it."""
     world_from_moved = RigidTransform(rotations.to_matrix(rotations.exp(motion[3:])), motion[:3])
     return with_extrinsics(camera, camera_from_world(camera) @ world_from_moved)
 
 
-def mean_camera(cameras: Sequence[Camera]) -> Camera:
+def average_cameras(cameras: Sequence[Camera]) -> Camera:
     """Amid the places (t and R) of a camera that differ little."""
     quats = rotations.from_matrix(np.stack([camera.R for camera in cameras]))
     first = quats[0]

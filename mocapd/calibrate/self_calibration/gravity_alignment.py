@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.body.model import build_model, shape_of
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
@@ -15,30 +15,30 @@ from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Floats, Rig
 
 _LEAN_RAD = 0.1  # a spine further from the usual one is bending, not standing
-_START = 15  # moments of the beginning, in which the person faces forwards
+_START = 15  # observations of the beginning, in which the person faces forwards
 _NAMES = ("hips", "neck", "leftUpperArm", "rightUpperArm")
 _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 
 
 def align_with_gravity(
-    rig: Rig, moments: Sequence[Moment], stature_m: float, factors: Floats
+    rig: Rig, observations: Sequence[PatchObservation], stature_m: float, factors: Floats
 ) -> Rig:
     """The rig in the world of someone who stood and walked in it.
 
-    Up is the middle direction of the spine, once moments of bending are left out; the floor is where
+    Up is the middle direction of the spine, once observations of bending are left out; the floor is where
     the feet of a body with these proportions (n_shape,) are when it stands straight; the origin is
     where the person stood first, facing +Z. Raises ConfigError when nobody was placed in it.
     """
-    body = _bodies(rig, moments)
+    body = _bodies(rig, observations)
     rest = skeleton_of(shape_of(build_model(stature_m), factors)).rest_m
     spine = body[:, 1] - body[:, 0]
     spine = spine / np.linalg.norm(spine, axis=1, keepdims=True)
     up = _unit(np.median(spine, axis=0))
     for _ in range(10):
-        standing = spine @ up > np.cos(_LEAN_RAD)
-        if not standing.any():
+        unbent = spine @ up > np.cos(_LEAN_RAD)
+        if not unbent.any():
             break
-        up = _unit(spine[standing].mean(axis=0))
+        up = _unit(spine[unbent].mean(axis=0))
     hips = body[:, 0]
     # knees bend now and then; they never make anybody taller
     height = float(np.percentile(hips @ up, 75))
@@ -54,12 +54,12 @@ def align_with_gravity(
     )
 
 
-def _bodies(rig: Rig, moments: Sequence[Moment]) -> Floats:
-    """Hips, neck and shoulders (F,4,3) of every moment that at least two cameras saw."""
+def _bodies(rig: Rig, observations: Sequence[PatchObservation]) -> Floats:
+    """Hips, neck and shoulders (F,4,3) of every observation that at least two cameras saw."""
     missing = np.full((len(_NAMES), 2), np.nan)
     xy = np.array(
         [
-            [m[c.name].marks_xy[_PLACES] if c.name in m else missing for m in moments]
+            [m[c.name].marks_xy[_PLACES] if c.name in m else missing for m in observations]
             for c in rig.cameras
         ]
     ).reshape(len(rig.cameras), -1, len(_NAMES), 2)

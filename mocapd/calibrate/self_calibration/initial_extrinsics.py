@@ -4,24 +4,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, unplaced
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, place_nominally
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.types import Camera
 
 
-def initial_extrinsics(moments: Sequence[Moment], lenses: Sequence[Camera]) -> list[Camera]:
+def initial_extrinsics(
+    observations: Sequence[PatchObservation], bare_cameras: Sequence[Camera]
+) -> list[Camera]:
     """The first camera where a lone webcam would stand, the others by the bodies seen in common.
 
     Cameras that share nothing with the first are chained through others. Raises ConfigError naming
     a camera that shares nothing with any.
     """
-    alone = unplaced(lenses)
+    alone = place_nominally(bare_cameras)
     placed: dict[str, Camera] = {alone[0].name: alone[0]}
     while len(placed) < len(alone):
         candidates = [
-            (_shared(moments, a, b.name), a, b)
+            (_shared(observations, a, b.name), a, b)
             for a in placed
             for b in alone
             if b.name not in placed
@@ -51,5 +53,5 @@ def initial_extrinsics(moments: Sequence[Moment], lenses: Sequence[Camera]) -> l
     return [placed[camera.name] for camera in alone]
 
 
-def _shared(moments: Sequence[Moment], a: str, b: str) -> list[Moment]:
-    return [m for m in moments if a in m and b in m]
+def _shared(observations: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
+    return [m for m in observations if a in m and b in m]

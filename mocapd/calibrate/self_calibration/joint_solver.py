@@ -10,12 +10,12 @@ from mocapd.calibrate.self_calibration.body_rows import (
     N_CAMERA,
     BodyRows,
     RowGatherer,
+    average_cameras,
     camera_columns,
-    mean_camera,
-    moved_camera,
+    move_camera,
 )
 from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
-from mocapd.calibrate.self_calibration.keyframes import Keyframe, starts, views
+from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import image_scales
@@ -30,7 +30,7 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 @dataclass(frozen=True, slots=True)
 class SelfCalibrationParams:
-    """How the room is solved."""
+    """How the extrinsics are solved."""
 
     keyframes: int = 64
     rounds: int = 20
@@ -38,9 +38,9 @@ class SelfCalibrationParams:
         8  # last rounds: steps end in the noise of whole pixels, which their mean halves
     )
     radius_px: int = 14  # work px within which colours are looked for
-    polish: int = 3  # rounds of the poses alone in the room that was found
+    polish: int = 3  # rounds of the poses alone with the extrinsics that were found
     loose_s: float = 0.4  # a start is held to as loosely as a prediction over this time
-    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of room or shape
+    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of extrinsics or shape
     least_match: float = 0.6  # of a keyframe that counts
     tolerated_cost: float = 3.0  # and its cost, against that of the middle one
     least_keyframes: int = 6
@@ -53,8 +53,8 @@ class SelfCalibrationParams:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RoomReport:
-    """How well the room was solved.
+class SelfCalibrationReport:
+    """How well the extrinsics were solved.
 
     residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
     colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
@@ -89,7 +89,7 @@ class _Evidence:
     follows: list[tuple[Floats, Floats] | None]
 
 
-class RoomSolver:
+class JointSolver:
     """Gauss-Newton over all cameras but the first, the body's shape, and every keyframe's pose."""
 
     def __init__(
@@ -108,10 +108,10 @@ class RoomSolver:
         scene = _Scene(list(cameras), np.ones(self._n_shape), [])
         fitter = Fitter(model, cameras, self._work, self._tracker)
         for keyframe in keyframes:
-            seen = views(keyframe, self._work)
+            seen = keyframe_views(keyframe, self._work)
             fits = [
                 fitter.fit(s, seen, params.loose_s, 8, learn_shape=False)
-                for s in starts(keyframe, cameras, model, np.ones(model.n_shape))
+                for s in initial_states(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)
             scene.states.append(replace(best.state, factors=scene.factors))
@@ -123,8 +123,8 @@ class RoomSolver:
         """Of the middle keyframe as things are now, for each drawn pixel."""
         return float(np.median([_cost(frame) for frame in self._gather()]))
 
-    def solve(self) -> tuple[Rig, RoomReport, dict[str, Floats]]:
-        """The room at rest, how good it is, and by camera but the first the covariance (6,6) of its motion.
+    def solve(self) -> tuple[Rig, SelfCalibrationReport, dict[str, Floats]]:
+        """The rig at the end, how good it is, and by camera but the first the covariance (6,6) of its motion.
 
         Raises ConfigError when too little agrees.
         """
@@ -135,7 +135,7 @@ class RoomSolver:
             if i >= p.rounds - p.averaged:
                 kept.append((tuple(scene.cameras), scene.factors))
         scene.cameras = [
-            mean_camera([cameras[i] for cameras, _ in kept]) for i in range(len(scene.cameras))
+            average_cameras([cameras[i] for cameras, _ in kept]) for i in range(len(scene.cameras))
         ]
         scene.factors = np.mean([factors for _, factors in kept], axis=0)
         scene.states = [replace(state, factors=scene.factors) for state in scene.states]
@@ -213,7 +213,7 @@ class RoomSolver:
         """One step of cameras and shape, the poses following.
 
         All is moved by the same rows, with the poses eliminated (Schur complement). To alternate with
-        the tracker's own fit was tried: its cost differs a little, and room and poses then drift
+        the tracker's own fit was tried: its cost differs a little, and cameras and poses then drift
         together along what the pictures hardly tell.
         """
         found, n = self._informed(self._evidence(rows)), self._n_shape
@@ -221,7 +221,7 @@ class RoomSolver:
         scene.factors = np.clip(scene.factors + step[:n], _SMALLEST, _LARGEST)
         for i in range(1, len(scene.cameras)):
             k = n + N_CAMERA * (i - 1)
-            scene.cameras[i] = moved_camera(scene.cameras[i], step[k : k + N_CAMERA])
+            scene.cameras[i] = move_camera(scene.cameras[i], step[k : k + N_CAMERA])
         self._follow(scene, found, step)
 
     def _follow(self, scene: _Scene, found: "_Evidence", step: Floats) -> None:
@@ -258,7 +258,7 @@ class RoomSolver:
         scene: _Scene,
         rows: Sequence[Sequence[BodyRows]],
         covariances: Mapping[str, Floats],
-    ) -> RoomReport:
+    ) -> SelfCalibrationReport:
         good = [frame for frame in rows if _match(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
@@ -267,7 +267,7 @@ class RoomSolver:
             camera.name: uncertainty_of(camera, first, covariances[camera.name])
             for camera in scene.cameras[1:]
         }
-        return RoomReport(
+        return SelfCalibrationReport(
             residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(scene.cameras)},
             frames=len(good),
             distance_m={

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
-from mocapd.calibrate.self_calibration.patch_tracks import MARKS, Moment, PatchSighting
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, PatchSighting
 from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
 from mocapd.fit.solver import View
@@ -17,26 +17,29 @@ from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
 _PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
-_STILL_M_S = 0.3  # a mark that moves so fast halves a moment's worth
+_STILL_M_S = 0.3  # a mark that moves so fast halves an observation's worth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Keyframe:
-    """A moment: its sightings by camera index, and the one of its first camera a frame earlier."""
+    """An observation: its sightings by camera index, and the one of its first camera a frame earlier."""
 
     t_ns: int
     sightings: dict[int, PatchSighting]
     before: PatchSighting | None
 
 
-def choose(
-    moments: Sequence[Moment], names: Sequence[str], count: int, least_confidence: float = 0.3
+def choose_keyframes(
+    observations: Sequence[PatchObservation],
+    names: Sequence[str],
+    count: int,
+    least_confidence: float = 0.3,
 ) -> list[Keyframe]:
-    """Up to `count` moments seen by at least two cameras, spread over time, well seen and slow."""
+    """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow."""
     rated: list[tuple[float, Keyframe]] = []
     last: dict[int, PatchSighting] = {}
-    for moment in moments:
-        seen = {i: moment[name] for i, name in enumerate(names) if name in moment}
+    for observation in observations:
+        seen = {i: observation[name] for i, name in enumerate(names) if name in observation}
         if len(seen) >= 2:
             first = min(seen)
             worth = min(float(s.confidence[MARKS].mean()) for s in seen.values())
@@ -59,7 +62,7 @@ def choose(
     return [rated[max(part, key=lambda i: rated[i][0])][1] for part in parts]
 
 
-def views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
+def keyframe_views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     """What each camera saw, at its own instant."""
     out = []
     for i, s in keyframe.sightings.items():
@@ -69,7 +72,7 @@ def views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     return out
 
 
-def starts(
+def initial_states(
     keyframe: Keyframe, cameras: Sequence[Camera], model: BodyModel, factors: Floats
 ) -> list[MotionState]:
     """The body as each camera alone saw it, in the world, moved to where all see its marks."""

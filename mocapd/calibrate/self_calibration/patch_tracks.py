@@ -52,15 +52,15 @@ class PatchSighting:
         return xy
 
 
-Moment = Mapping[str, PatchSighting]  # by camera, of one frame set
+PatchObservation = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 
-def unplaced(lenses: Sequence[Camera]) -> tuple[Camera, ...]:
-    """The cameras with their lenses alone: each where a lone webcam would stand."""
+def place_nominally(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
+    """The cameras with their intrinsics alone: each where a lone webcam would stand."""
     out = []
-    for lens in lenses:
-        guess = nominal_rig(lens.name, lens.size_px).cameras[0]
-        out.append(replace(lens, R=guess.R, t_m=guess.t_m))
+    for camera in bare_cameras:
+        guess = nominal_rig(camera.name, camera.size_px).cameras[0]
+        out.append(replace(camera, R=guess.R, t_m=guess.t_m))
     return tuple(out)
 
 
@@ -69,31 +69,33 @@ class PatchTracks:
 
     def __init__(
         self,
-        lenses: Sequence[Camera],
+        bare_cameras: Sequence[Camera],
         stature_m: float,
         colour_model: ColourModel,
         white_balance: Mapping[str, Floats],
         database: PoseDatabase,
         rig: Rig | None = None,
     ) -> None:
-        """Of `lenses` only name, size, K and dist are read. white_balance: W (3,3) by camera name.
+        """Of `bare_cameras` only name, size, K and dist are read. white_balance: W (3,3) by camera name.
 
         rig: where the cameras stand nearly; then the wearer is followed by all together, which reads
         the pictures better than each alone can.
         """
-        if len(lenses) < 2:
+        if len(bare_cameras) < 2:
             raise ConfigError(
-                f"{len(lenses)} camera", "room", "two or more cameras make a room; one needs none"
+                f"{len(bare_cameras)} camera",
+                "room",
+                "two or more cameras make a room; one needs none",
             )
-        self.cameras = unplaced(lenses) if rig is None else rig.cameras
+        self.cameras = place_nominally(bare_cameras) if rig is None else rig.cameras
         rigs = [Rig((camera,)) for camera in self.cameras] if rig is None else [rig]
         self._trackers = [
             ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
         ]
         self._shapes = [mean_shape(stature_m) for _ in rigs]
-        self.moments: list[Moment] = []
+        self.observations: list[PatchObservation] = []
 
-    def add(self, frames: FrameSet) -> Moment:
+    def add(self, frames: FrameSet) -> PatchObservation:
         """Follow one frame set: who saw the wearer, and how."""
         seen: dict[str, PatchSighting] = {}
         for i, tracker in enumerate(self._trackers):
@@ -118,7 +120,7 @@ class PatchTracks:
                     track.evidence[camera.name],
                     track.roi_px[camera.name],
                 )
-        self.moments.append(seen)
+        self.observations.append(seen)
         return seen
 
     def add_all(

@@ -1,4 +1,4 @@
-"""A camera's place from sleeve rings: each arm's rings are points, as far from each other in every moment.
+"""A camera's place from sleeve rings: each arm's rings are points, as far from each other in every observation.
 
 Bundle adjustment over one camera, the distances between neighbouring rings, and all points, which are
 eliminated (Schur complement) [Triggs et al., Bundle adjustment - a modern synthesis, 2000, section 6.1].
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, standard_skeleton
-from mocapd.calibrate.self_calibration.body_rows import N_CAMERA, moved_camera
+from mocapd.calibrate.self_calibration.body_rows import N_CAMERA, move_camera
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, perspective_jacobians, to_camera
@@ -21,7 +21,7 @@ from mocapd.types import Camera, Floats
 _POINT_SD_M = 0.004  # a ring's middle
 _LENGTH_SD_M = 0.007  # cloth shifts along the arm
 _SPREAD = np.array([0.02, 0.07, 0.09])  # of each length over people, of its mean
-# arms that count in full, and the most that one may count: their errors are alike from moment to moment
+# arms that count in full, and the most that one may count: their errors are alike from observation to observation
 _INDEPENDENT, _MOST = 30.0, 0.25
 _ROUNDS = 25
 _GENTLE = 3  # first rounds, before outliers are left out
@@ -48,7 +48,7 @@ def lengths_m(stature_m: float) -> Floats:
     return np.array([0.55 * upper, 0.55 * fore, 0.4 * fore])
 
 
-def placed_by_rings(
+def place_by_rings(
     pairs: RingPairs, first: Camera, second: Camera, covariance: Floats, stature_m: float
 ) -> tuple[Camera, Floats]:
     """The second camera, and the covariance (6,6) of its motion, from the rings and from what was
@@ -71,7 +71,7 @@ def placed_by_rings(
         moved = (found.own - found.back @ step).reshape(points.shape)
         far = np.linalg.norm(moved, axis=-1, keepdims=True)
         points = points + moved * np.minimum(1.0, _FARTHEST_M / np.maximum(far, 1e-9))
-        camera = moved_camera(camera, step[:N_CAMERA])
+        camera = move_camera(camera, step[:N_CAMERA])
         lengths = lengths + step[N_CAMERA:]
     return camera, np.asarray(np.linalg.inv(H)[:N_CAMERA, :N_CAMERA], dtype=np.float64)
 

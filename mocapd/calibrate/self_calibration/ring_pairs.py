@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.self_calibration.patch_tracks import Moment, PatchSighting
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, PatchSighting
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, SIDES, sleeve_rings
 from mocapd.clock import nanoseconds
 from mocapd.geometry.camera_model import to_camera
@@ -18,7 +18,7 @@ _ARMS = np.array([INDEX[s + b] for s in SIDES for b in ("UpperArm", "LowerArm", 
 _SAME_NS = nanoseconds(1e-4)
 _USUAL = 65.0  # percentile of a ring's width: those seen narrower are half hidden
 _UNLIKE = 0.22
-_MOST = 160  # moments: 15 s of a core
+_MOST = 160  # observations: 15 s of a core
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,11 +30,11 @@ class RingPairs:
 
 
 def ring_pairs(
-    moments: Sequence[Moment], pair: tuple[Camera, Camera], scales: tuple[int, int]
+    observations: Sequence[PatchObservation], pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> RingPairs:
-    """Of the moments in which both cameras saw the wearer; the second camera's rings are moved to
+    """Of the observations in which both cameras saw the wearer; the second camera's rings are moved to
     the first's instants. The cameras stand about where `pair` says."""
-    shared = [m for m in moments if all(camera.name in m for camera in pair)]
+    shared = [m for m in observations if all(camera.name in m for camera in pair)]
     picked = np.unique(np.linspace(0, len(shared) - 1, min(_MOST, len(shared))).astype(np.int64))
     n = len(picked)
     xy, half_m = np.full((2, n, 2 * N_ALONG, 2), np.nan), np.full((2, n, 2 * N_ALONG), np.nan)
@@ -69,10 +69,10 @@ def ring_pairs(
 
 
 def _rings(
-    moment: Moment, i: int, pair: tuple[Camera, Camera], scales: tuple[int, int]
+    observation: PatchObservation, i: int, pair: tuple[Camera, Camera], scales: tuple[int, int]
 ) -> tuple[Floats, Floats]:
     """Of one of both cameras, as `sleeve_rings`."""
-    sightings = [moment[camera.name] for camera in pair]
+    sightings = [observation[camera.name] for camera in pair]
     joints_m = _arms_in_depth(sightings, pair)[i]
     return sleeve_rings(sightings[i], joints_m, pair[i], scales[i])
 

@@ -10,13 +10,13 @@ from mocapd.calibrate.self_calibration.camera_uncertainty import uncertainty_of
 from mocapd.calibrate.self_calibration.gravity_alignment import align_with_gravity
 from mocapd.calibrate.self_calibration.initial_extrinsics import initial_extrinsics
 from mocapd.calibrate.self_calibration.joint_solver import (
-    RoomReport,
-    RoomSolver,
+    JointSolver,
     SelfCalibrationParams,
+    SelfCalibrationReport,
 )
-from mocapd.calibrate.self_calibration.keyframes import choose
-from mocapd.calibrate.self_calibration.patch_tracks import Moment
-from mocapd.calibrate.self_calibration.ring_bundle import placed_by_rings
+from mocapd.calibrate.self_calibration.keyframes import choose_keyframes
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation
+from mocapd.calibrate.self_calibration.ring_bundle import place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import ring_pairs
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
@@ -24,49 +24,53 @@ from mocapd.geometry.camera_model import camera_from_world, centre, with_extrins
 from mocapd.types import Camera, Floats, Rig
 
 
-def room_from_body(
-    moments: Sequence[Moment],
-    lenses: Sequence[Camera],
+def extrinsics_from_body(
+    observations: Sequence[PatchObservation],
+    bare_cameras: Sequence[Camera],
     stature_m: float,
     params: SelfCalibrationParams | None = None,
     near: Rig | None = None,
-) -> tuple[Rig, RoomReport]:
+) -> tuple[Rig, SelfCalibrationReport]:
     """The rig in world coordinates: floor at y = 0, the wearer at the origin facing +Z at the start.
 
-    moments: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
-    Raises ConfigError when the moments do not tell where the cameras stand.
+    observations: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
+    Raises ConfigError when the observations do not tell where the cameras stand.
     """
     p = params if params is not None else SelfCalibrationParams()
-    keyframes = choose(moments, [camera.name for camera in lenses], p.keyframes)
+    keyframes = choose_keyframes(
+        observations, [camera.name for camera in bare_cameras], p.keyframes
+    )
     model = build_model(stature_m)
-    solvers = [RoomSolver(model, initial_extrinsics(moments, lenses), keyframes, p)]
+    solvers = [JointSolver(model, initial_extrinsics(observations, bare_cameras), keyframes, p)]
     if near is not None:
         old = {camera.name: camera for camera in near.cameras}
-        before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in lenses]
-        solvers.append(RoomSolver(model, before, keyframes, p))
+        before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in bare_cameras]
+        solvers.append(JointSolver(model, before, keyframes, p))
     rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
-    rig, report = _with_rings(rig, report, covariances, moments, stature_m, p.surface_uncertainty)
-    return align_with_gravity(rig, moments, stature_m, report.factors), report
+    rig, report = _with_rings(
+        rig, report, covariances, observations, stature_m, p.surface_uncertainty
+    )
+    return align_with_gravity(rig, observations, stature_m, report.factors), report
 
 
 def _with_rings(
     rig: Rig,
-    report: RoomReport,
+    report: SelfCalibrationReport,
     covariances: Mapping[str, Floats],
-    moments: Sequence[Moment],
+    observations: Sequence[PatchObservation],
     stature_m: float,
     surface_uncertainty: float,
-) -> tuple[Rig, RoomReport]:
+) -> tuple[Rig, SelfCalibrationReport]:
     """The same once every camera but the first has been weighed against the rings of the sleeves."""
     first = rig.cameras[0]
     work = image_scales(rig.cameras, FitParams().work_width_px)
     cameras, uncertainties = [first], {}
     for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
-        pairs = ring_pairs(moments, (first, other), (work[0], image_scale))
+        pairs = ring_pairs(observations, (first, other), (work[0], image_scale))
         known = surface_uncertainty**2 * covariances[other.name]
         camera, covariance = other, known
         if len(pairs.seen):
-            camera, covariance = placed_by_rings(pairs, first, other, known, stature_m)
+            camera, covariance = place_by_rings(pairs, first, other, known, stature_m)
         cameras.append(camera)
         uncertainties[camera.name] = uncertainty_of(camera, centre(first), covariance)
     distance_m = {c.name: float(np.linalg.norm(centre(c) - centre(first))) for c in cameras[1:]}

@@ -63,7 +63,7 @@ class _Window:
 
 
 def sleeve_rings(
-    sighting: PatchSighting, joints_m: Floats, lens: Camera, image_scale: int
+    sighting: PatchSighting, joints_m: Floats, camera: Camera, image_scale: int
 ) -> tuple[Floats, Floats]:
     """Middles (2 N_ALONG, 2) in undistorted normalised coordinates and half widths (2 N_ALONG,) [m],
     left arm first; NaN where a ring is not seen whole.
@@ -72,7 +72,7 @@ def sleeve_rings(
     ring bends. image_scale: frame px by work px.
     """
     xy, half_m = np.full((len(_RINGS), 2), np.nan), np.full(len(_RINGS), np.nan)
-    alone = replace(lens, R=np.eye(3), t_m=np.zeros(3))
+    alone = replace(camera, R=np.eye(3), t_m=np.zeros(3))
     corner = np.array(sighting.roi_px[:2], dtype=np.float64) + (image_scale - 1) / 2
     for i, ring in enumerate(_RINGS):
         at_m, along = _place(ring, joints_m)
@@ -84,11 +84,11 @@ def sleeve_rings(
         found = _find(
             ring, sighting.ids, (px[1] - corner) / image_scale,
             direction / float(np.linalg.norm(direction)), tilt,
-            float(at_m[2]) / float(lens.K[0, 0]) * image_scale,
+            float(at_m[2]) / float(camera.K[0, 0]) * image_scale,
         )  # fmt: skip
         if found is not None:
             middle, half_m[i] = found
-            xy[i] = normalised(lens, (middle * image_scale + corner)[None])[0]
+            xy[i] = normalised(camera, (middle * image_scale + corner)[None])[0]
     return xy, half_m
 
 

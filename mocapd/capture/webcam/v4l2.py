@@ -14,7 +14,7 @@ from cv2.typing import MatLike
 from mocapd.boundary.pictures import decode_picture
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import GuardedCapture
-from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
 from mocapd.capture.webcam.camera_controls import NodeControls
 from mocapd.capture.webcam.controls import (
     ControlResult,
@@ -150,10 +150,12 @@ class V4l2Source:
                 t_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
                 good, raw = capture.retrieve()
             seq, self._seq = self._seq, self._seq + 1
-            pixels = decode(raw, self.negotiated.fourcc, self.negotiated.size_px) if good else None
+            fourcc = self.negotiated.fourcc
+            pixels = decode(raw, fourcc, self.negotiated.size_px) if good else None
             if pixels is not None:
                 self._delivered = True
-                return Frame(self.name, seq, t_ns, pixels)
+                encoded = delivered_jpeg(raw, pixels) if fourcc == _MJPG else None
+                return Frame(self.name, seq, t_ns, pixels, encoded)
             self.torn += 1
             if grabbed_ns - began_ns > _TORN_LIMIT_NS:
                 self.close()

@@ -5,17 +5,11 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-import cv2
-import numpy as np
-
-from mocapd.calibration.from_capture import from_capture
+from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
-from mocapd.capture.capture_folder import frame_sets, load_folder
-from mocapd.clock import nanoseconds
-from mocapd.session import simulation
+from mocapd.capture.source_kinds import is_simulated, open_origin
 from mocapd.session.tracker_setup import Progress
-from mocapd.sim.film import Film
-from mocapd.types import Frame, FrameSet
+from mocapd.types import FrameSet
 
 CHUNK = 30  # frame sets decoded at a time; of two 640x480 cameras they take 55 MB
 
@@ -42,33 +36,7 @@ def open_input(source: str, cache_dir: Path, stature_m: float, progress: Progres
     `stature_m` [m] is for folders that do not say. Raises InputError, ConfigError or
     CannotCreateError.
     """
-    if source.startswith(simulation.SIM):
-        film = simulation.open_film(source, cache_dir, progress)
-        known = simulation.from_scenario(film.setup)
-        return BenchInput(source, known, _film_length(film), lambda: _film_sets(film))
-    folder = load_folder(Path(source))
-    known = from_capture(folder).assuming(stature_m)
-    count = max(camera.frames for camera in folder.cameras)
-    return BenchInput(folder.path.name, known, count, lambda: frame_sets(folder))
-
-
-def _film_sets(film: Film) -> Iterator[FrameSet]:
-    """One loop, as the bundler would pair it: each frame at its camera's own time."""
-    for i in range(_film_length(film)):
-        frames = {
-            spec.name: _film_frame(film, spec.name, i, spec.clock_offset_s)
-            for spec in film.scenario.cameras
-        }
-        times_ns = [frame.t_ns for frame in frames.values()]
-        yield FrameSet(max(times_ns), frames, max(times_ns) - min(times_ns))
-
-
-def _film_length(film: Film) -> int:
-    return min(len(jpegs) for jpegs in film.frames.values())
-
-
-def _film_frame(film: Film, camera: str, i: int, clock_offset_s: float) -> Frame:
-    data = np.frombuffer(film.frames[camera][i], dtype=np.uint8)
-    pixels = np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), dtype=np.uint8)
-    pixels.setflags(write=False)
-    return Frame(camera, i, nanoseconds(i / film.scenario.fps_hz + clock_offset_s), pixels)
+    origin = open_origin(source, cache_dir, progress)
+    known = from_origin(origin).assuming(stature_m)
+    name = source if is_simulated(source) else Path(source).name
+    return BenchInput(name, known, origin.count, origin.frame_sets)

@@ -6,13 +6,10 @@ the arrays, each from a multiple of 64 bytes on. Written beside its place, flush
 renamed, so that it is whole or absent.
 """
 
-import fcntl
 import json
 import os
 import tempfile
 import zlib
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -22,6 +19,7 @@ from numpy.typing import NDArray
 
 from mocapd.boundary.messages import parse_json
 from mocapd.errors import CannotCreateError, MalformedError
+from mocapd.file_lock import one_at_a_time
 from mocapd.shirt.pose_database.database import (
     VERSION,
     DatabaseParams,
@@ -80,7 +78,7 @@ def load_or_build(
     except _UnusableError:
         if must_cache:
             _check_writable(cache_dir)
-    with _alone(cache_dir):
+    with one_at_a_time(cache_dir, LOCK_NAME):
         try:
             return LoadedDatabase(_read(path, wanted), built=False)  # by whom we waited for
         except _UnusableError as error:
@@ -94,20 +92,6 @@ def load_or_build(
             return LoadedDatabase(database, built=True, reason=reason, warning=str(error))
         # mapped pages can be given back to the system, the built arrays cannot
         return LoadedDatabase(_read(path, wanted), built=True, reason=reason)
-
-
-@contextmanager
-def _alone(cache_dir: Path) -> Iterator[None]:
-    """One process makes it, others wait; where no lock can be had each makes its own."""
-    with ExitStack() as held:
-        with suppress(OSError):
-            cache_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
-            # whatever is there stays as it is, and nothing beyond the folder is touched
-            flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
-            lock = os.open(cache_dir / LOCK_NAME, flags, 0o600)
-            held.callback(os.close, lock)
-            fcntl.flock(lock, fcntl.LOCK_EX)  # let go when it is closed, or the process is gone
-        yield
 
 
 def write_database(path: Path, database: PoseDatabase, digest: str) -> None:

@@ -10,7 +10,7 @@ import msgspec
 
 from mocapd.sim.board.board_path import BoardPlace, between, floor_place, lens_places, room_places
 from mocapd.sim.board.board_shots import BoardShots
-from mocapd.sim.cache_file import read_cached, write_cached
+from mocapd.sim.cache_file import read_or_make
 from mocapd.sim.clips import Clip
 from mocapd.sim.film import Progress, encode_jpeg, film_key
 from mocapd.sim.renderer import camera_renderers, furnished_set
@@ -54,10 +54,13 @@ def load_board_clips(
     cannot be written."""
     key = film_key(scenario)
     path = cache_dir / f"setup-{scenario.name}-{key[:16]}.film"
-    stored = read_cached(path, key, _BoardFile)
-    if stored is None:
-        stored = _render(scenario, key, progress)
-        write_cached(path, stored)
+    stored = read_or_make(
+        path,
+        f"setup-{scenario.name}.lock",
+        key,
+        _BoardFile,
+        lambda: _render(scenario, key, progress),
+    )
     scenes = board_scenes(rig_of(scenario).cameras)
     return {
         scene: Clip(_order(len(places), scenario.fps_hz), stored.scenes[scene])

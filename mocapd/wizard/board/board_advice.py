@@ -5,8 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.board.board_detection import BoardDetector, NotSeen, Reason, settled
-from mocapd.calibrate.board.detection_diagnostics import FIX, why_not_seen
+from mocapd.calibrate.board.board_detection import (
+    BoardDetector,
+    DetectionFailure,
+    Reason,
+    settle_variant,
+)
+from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.types import Frame
 from mocapd.wizard.board.board_look import Look
@@ -27,8 +32,8 @@ _LIVE_FIX = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Told:
-    answer: NotSeen
+class _Diagnosis:
+    answer: DetectionFailure
     t_ns: int
 
 
@@ -40,7 +45,7 @@ class BoardAdvice:
         self._context, self._changed = context, changed
         self._saw_ns: dict[str, int] = {}
         self._asked_ns: dict[str, int] = {}
-        self._told: dict[str, _Told] = {}
+        self._told: dict[str, _Diagnosis] = {}
         self._begun_ns: int | None = None
         self._free_ns = 0
 
@@ -70,19 +75,19 @@ class BoardAdvice:
         unseen = not self._saw_ns
         pixels = frames[name].pixels
 
-        def answer(_tell: Tell) -> tuple[BoardSpec, NotSeen | None]:
-            found = settled(spec, [pixels]) if unseen else spec
+        def answer(_tell: Tell) -> tuple[BoardSpec, DetectionFailure | None]:
+            found = settle_variant(spec, [pixels]) if unseen else spec
             detector = BoardDetector(found)
             if found != spec or detector.find(pixels) is not None:
                 return found, None
-            return spec, why_not_seen(detector, np.ascontiguousarray(pixels))
+            return spec, diagnose_detection(detector, np.ascontiguousarray(pixels))
 
-        def done(result: tuple[BoardSpec, NotSeen | None]) -> None:
+        def done(result: tuple[BoardSpec, DetectionFailure | None]) -> None:
             found, told = result
             if found != spec:
                 self._changed(found)
             elif told is not None:
-                self._told[name] = _Told(told, now_ns)
+                self._told[name] = _Diagnosis(told, now_ns)
 
         self._context.start_job(answer, done)
 

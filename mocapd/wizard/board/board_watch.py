@@ -10,8 +10,8 @@ from mocapd.wizard.board.board_look import BoardObservation, Look, motion_px
 from mocapd.wizard.recent_frames import RecentFrames
 from mocapd.wizard.step import Shape
 
-# Indices of moments are so far apart that no two pass for neighbouring frames of a recording, along
-# which the board's motion would be followed; in between are those of pictures that are of no moment.
+# Indices of sightings are so far apart that no two pass for neighbouring frames of a recording, along
+# which the board's motion would be followed; in between are those of pictures that are of no sighting.
 INDEX_STEP = 100
 _AT_ONCE = 2  # pictures searched in one tick
 _SHOWN_NS = 400_000_000  # how long corners stay drawn when the board is not found again

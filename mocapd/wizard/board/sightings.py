@@ -21,12 +21,12 @@ class SightingParams:
 
     most_motion: float = 0.0012
     most_spread_s: float = 0.02
-    new_place: float = 0.12  # distance from the other moments of two cameras [picture widths]
+    new_place: float = 0.12  # distance from the other sightings of two cameras [picture widths]
     most: int = 16  # of one pair of cameras
 
 
-class Moments:
-    """The board's views by camera and index; those of one index are of one moment."""
+class BoardSightings:
+    """The board's views by camera and index; those of one index are of one instant."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class Moments:
         self._places: dict[tuple[str, str], list[Floats]] = {
             pair: [] for pair in combinations(sorted(sizes_px), 2)
         }
-        self._new = dict.fromkeys(self._places, 0)  # moments of each pair that were offered here
+        self._new = dict.fromkeys(self._places, 0)  # sightings of each pair that were offered here
 
     @property
     def views(self) -> Views:
@@ -48,17 +48,17 @@ class Moments:
         return {name: dict(own) for name, own in self._views.items()}
 
     def shared(self, a: str, b: str) -> int:
-        """At how many moments both cameras saw the board."""
+        """At how many sightings both cameras saw the board."""
         return len(self._views[a].keys() & self._views[b].keys())
 
     @property
     def count(self) -> int:
-        """Moments at which two cameras or more saw the board."""
+        """BoardSightings at which two cameras or more saw the board."""
         seen = [index for own in self._views.values() for index in own]
         return int((np.unique(seen, return_counts=True)[1] >= 2).sum()) if seen else 0
 
     def largest_group(self, fewest: int) -> set[str]:
-        """The most cameras that hang together by pairs which share so many moments."""
+        """The most cameras that hang together by pairs which share so many sightings."""
         groups = [{name} for name in self._views]
         for a, b in self._places:
             if self.shared(a, b) < fewest:

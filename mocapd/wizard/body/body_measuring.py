@@ -17,7 +17,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
-from mocapd.wizard.body.body_observations import BodyMoments, BodyObservationParams
+from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
@@ -68,20 +68,20 @@ def measure(
     assert draft.stature_m is not None
     ready = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
-    moments = BodyMoments(model, draft.rig.cameras, params)
-    if not _watch(hub, draft.rig, ready, moments, watched, tell):
+    observations = BodyObservations(model, draft.rig.cameras, params)
+    if not _watch(hub, draft.rig, ready, observations, watched, tell):
         return None
     tell("working out the proportions", SEEN)
-    fit = fit_shape(moments.moments, model, draft.rig.cameras)
-    last = fit.states[-1], moments.moments[-1]
+    fit = fit_shape(observations.observations, model, draft.rig.cameras)
+    last = fit.states[-1], observations.observations[-1]
     return Measured(
         BodyShape(draft.stature_m, fit.factors),
         fit,
         scale_of(fit, model, draft.floor_known),
         {
-            camera.name: body_picture(moments.pictures[camera.name], camera, model, *last, i)
+            camera.name: body_picture(observations.pictures[camera.name], camera, model, *last, i)
             for i, camera in enumerate(draft.rig.cameras)
-            if camera.name in moments.pictures
+            if camera.name in observations.pictures
         },
     )
 
@@ -108,23 +108,23 @@ def _watch(
     hub: FrameHub,
     rig: Rig,
     ready: ReadyTracker,
-    moments: BodyMoments,
+    observations: BodyObservations,
     watched: Watched,
     tell: Tell,
 ) -> bool:
-    """Track the hub's frames until there are moments enough; False when stopped. Raises InputError."""
+    """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
-    collector = FrameCollector(rig.names)
+    collector = FrameCollector(rig.names, hub.bundler)
     entry = OnlyCameras(collector, frozenset(rig.names))
     give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)
     try:
-        while moments.share < 1.0:
+        while observations.share < 1.0:
             if watched.stop.is_set():
                 return False
             if monotonic_ns() > give_up_ns:
                 raise InputError(
-                    f"the wearer was well seen for {moments.good_s:.0f} s only",
+                    f"the wearer was well seen for {observations.good_s:.0f} s only",
                     "body",
                     "check the colours, stand where all cameras see the whole shirt, and measure again",
                 )
@@ -134,18 +134,18 @@ def _watch(
             track = tracker.step(frames, shape)
             shape = track.shape
             watched.body = track.body, skeleton_of(shape)
-            seen = moments.add(track, frames)
-            tell(_asked(seen, moments), READY + (SEEN - READY) * moments.share)
+            seen = observations.add(track, frames)
+            tell(_asked(seen, observations), READY + (SEEN - READY) * observations.share)
         return True
     finally:
         hub.leave(entry)
         watched.body = None
 
 
-def _asked(seen: bool, moments: BodyMoments) -> str:
+def _asked(seen: bool, observations: BodyObservations) -> str:
     """What the wearer is to do now."""
     if not seen:
         return "Stand where all cameras see the whole shirt, arms out"
-    if not moments.bent:
+    if not observations.bent:
         return "Arms out; now bend both elbows and stretch them again, slowly"
     return "Good. Go on bending and stretching the elbows"

@@ -1,4 +1,4 @@
-"""Which tracked moments the wearer's shape is measured from, and when there are enough of them."""
+"""Which tracked observations the wearer's shape is measured from, and when there are enough of them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,12 +7,12 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment, moment_of
+from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation, observe_body
 from mocapd.clock import nanoseconds
 from mocapd.trackers.base import Track
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Tracking
 
-_SURE = 0.4  # mean confidence of the arms' joints in a moment that counts
+_SURE = 0.4  # mean confidence of the arms' joints in an observation that counts
 _SIDES = [
     [INDEX[side + bone] for bone in ("UpperArm", "LowerArm", "Hand")] for side in ("left", "right")
 ]
@@ -20,7 +20,7 @@ _SIDES = [
 
 @dataclass(frozen=True, slots=True)
 class BodyObservationParams:
-    """Enough are `good_s` of moments, one every `every_s`, with both elbows bent through `bend_rad`; or
+    """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
     `longest_good_s` of them without bends."""
 
     good_s: float = 4.5
@@ -29,8 +29,8 @@ class BodyObservationParams:
     longest_good_s: float = 12.0
 
 
-class BodyMoments:
-    """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last moment only."""
+class BodyObservations:
+    """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last observation only."""
 
     def __init__(
         self,
@@ -40,23 +40,25 @@ class BodyMoments:
     ) -> None:
         self._model, self._cameras = model, tuple(cameras)
         self._p = params if params is not None else BodyObservationParams()
-        self.moments: list[ShapeMoment] = []
+        self.observations: list[BodyObservation] = []
         self.pictures: dict[str, Bytes] = {}
-        self._last: ShapeMoment | None = None
+        self._last: BodyObservation | None = None
         self._bends: list[Floats] = []
 
     def add(self, track: Track, frames: FrameSet) -> bool:
-        """Whether the body is well seen; not every frame that is becomes a moment."""
+        """Whether the body is well seen; not every frame that is becomes an observation."""
         body = track.body
         before, self._last = self._last, None
         if body.tracking is not Tracking.LIVE or body.confidence[_SIDES].mean() < _SURE:
             return False
-        self._last = moment_of(track, frames, self._model, self._cameras, before)
+        self._last = observe_body(track, frames, self._model, self._cameras, before)
         if self._last is None or before is None:
             return False  # just found: not settled, and its velocity is not known
-        due_ns = self.moments[-1].t_ns + nanoseconds(self._p.every_s) if self.moments else 0
+        due_ns = (
+            self.observations[-1].t_ns + nanoseconds(self._p.every_s) if self.observations else 0
+        )
         if self._last.t_ns >= due_ns:
-            self.moments.append(self._last)
+            self.observations.append(self._last)
             self._bends.append(elbow_bends(body))
             self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
         return True
@@ -64,7 +66,7 @@ class BodyMoments:
     @property
     def good_s(self) -> float:
         """Seconds that count."""
-        return len(self.moments) * self._p.every_s
+        return len(self.observations) * self._p.every_s
 
     @property
     def bent(self) -> bool:

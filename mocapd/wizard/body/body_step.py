@@ -120,7 +120,9 @@ class BodyStep:
             for name, pixels in measured.pictures.items()
         }
         self._context.draft = replace(draft, factors=measured.shape.factors)
-        by_wearer = draft.room is not None and draft.room.method == "wearer"
+        by_wearer = (
+            draft.extrinsics_quality is not None and draft.extrinsics_quality.method == "wearer"
+        )
         trouble = scale_trouble(measured.scale, measured.shape.stature_m, by_wearer)
         if trouble is not None:
             self._troubles = (Problem(trouble.what, "", trouble.fix),)
@@ -198,7 +200,7 @@ class BodyStep:
         if self._busy:
             what, share = self._context.job or ("", 0.0)
             if share < READY:
-                return StepState.WORKING, f"Getting ready: {what or 'one moment'}.", share
+                return StepState.WORKING, f"Getting ready: {what or 'one observation'}.", share
             if share < SEEN:
                 return StepState.WORKING, f"{what}.", share
             return StepState.WORKING, "Working out your proportions.", share

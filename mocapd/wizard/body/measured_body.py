@@ -7,7 +7,7 @@ from mocapd.body.model import BodyModel, shape_of
 from mocapd.body.shape import skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
-from mocapd.calibrate.body_shape.body_shape_fit import ShapeMoment
+from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation
 from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
@@ -22,13 +22,13 @@ def body_picture(
     camera: Camera,
     model: BodyModel,
     state: MotionState,
-    moment: ShapeMoment,
+    observation: BodyObservation,
     index: int,
 ) -> Bytes:
     """The picture (h,w,3) BGR with outlines of the shirt's patches and the bones, as the body in `state`
-    has them at this camera's own instant. index: of the camera in the moment's views."""
+    has them at this camera's own instant. index: of the camera in the observation's views."""
     out = pixels.copy()
-    view = next((view for view in moment.views if view.index == index), None)
+    view = next((view for view in observation.views if view.index == index), None)
     if view is None:
         return out
     image_scale = image_scales([camera], FitParams().work_width_px)[0]

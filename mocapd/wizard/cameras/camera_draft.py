@@ -19,16 +19,16 @@ def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
         for one in cameras
         if one.id in same_size and before.get(one.id, one).controls == one.controls
     }
-    lenses = {name: lens for name, lens in draft.lenses.items() if name in same_size}
+    lenses = {name: lens for name, lens in draft.intrinsics.items() if name in same_size}
     colours = {name: one for name, one in draft.colours.items() if name in same_look}
     draft = replace(
         draft,
         cameras=cameras,
-        lenses=lenses,
-        lens_saved=draft.lens_saved & lenses.keys(),
+        intrinsics=lenses,
+        intrinsics_saved=draft.intrinsics_saved & lenses.keys(),
         colours=colours,
     )
     names = {camera.id for camera in cameras}
     if draft.rig is not None and (set(draft.rig.names) != names or len(same_size) < len(cameras)):
-        draft = replace(draft, rig=None, room=None, floor_known=False)
+        draft = replace(draft, rig=None, extrinsics_quality=None, floor_known=False)
     return draft

@@ -6,8 +6,8 @@ A node that is in use by the setup is "busy" to whoever asks; that is left out h
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mocapd.capture.source_kinds import identity_of
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
 from mocapd.capture.webcam.webcams import SYSFS
@@ -20,10 +20,12 @@ def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | No
     for one in nodes:
         if one.captures and camera.source in (one.spec, str(one.node)):
             return one
-    if not camera.source.startswith(PREFIX):
+    wanted = identity_of(camera.source)
+    if wanted is None:
         return None
-    model = parse_identity(camera.source).model
-    moved = [one for one in nodes if one.captures and one.identity and one.identity.model == model]
+    moved = [
+        one for one in nodes if one.captures and one.identity and one.identity.model == wanted.model
+    ]
     return moved[0] if len(moved) == 1 else None
 
 

@@ -8,7 +8,7 @@ from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.config.sections import CameraSection
 from mocapd.errors import UnavailableError
 from mocapd.session.camera_inputs import picture_size
-from mocapd.wizard.cameras.same_port import moved_cameras
+from mocapd.wizard.cameras.same_port import find_port_changes
 from mocapd.wizard.draft import DraftCamera
 
 _SIZE_PX = (640, 480)  # of a webcam that was never set up
@@ -55,7 +55,7 @@ def plugged_cameras(
 
 def where_now(saved: Sequence[DraftCamera], infos: Sequence[CameraInfo]) -> tuple[DraftCamera, ...]:
     """The saved cameras as they are plugged in now; one that is not keeps its old place."""
-    moved = {one.camera: one.now for one in moved_cameras(saved, identities(infos))}
+    moved = {one.camera: one.now for one in find_port_changes(saved, identities(infos))}
     return tuple(replace(one, source=moved.get(one.id, one.source)) for one in saved)
 
 

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
-from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, match_identity, parse_identity
+from mocapd.capture.source_kinds import identities_of
+from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs
 from mocapd.wizard.context import Context, Step
@@ -17,7 +18,7 @@ from mocapd.wizard.wizard import MakeStep
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class PortChange:
     """A calibrated webcam that is found in another port: what it was called, and is now."""
 
     camera: str
@@ -25,11 +26,11 @@ class Moved:
     now: str
 
 
-def moved_cameras(
+def find_port_changes(
     saved: Sequence[DraftCamera], present: Sequence[WebcamIdentity]
-) -> tuple[Moved, ...]:
+) -> tuple[PortChange, ...]:
     """Which of the saved webcams sit in another port than they did; the others are left out."""
-    identities = {c.id: parse_identity(c.source) for c in saved if c.source.startswith(PREFIX)}
+    identities = identities_of((camera.id, camera.source) for camera in saved)
     moved = []
     for name, wanted in identities.items():
         others = [one for other, one in identities.items() if other != name]
@@ -38,11 +39,11 @@ def moved_cameras(
         except UnavailableError:  # it is not there at all, or twins could be meant
             continue
         if found.moved:
-            moved.append(Moved(name, str(wanted), str(found.identity)))
+            moved.append(PortChange(name, str(wanted), str(found.identity)))
     return tuple(moved)
 
 
-def same_camera(draft: Draft, moved: Moved) -> Draft:
+def same_camera(draft: Draft, moved: PortChange) -> Draft:
     """The draft with the camera in its new port."""
     return replace(
         draft,
@@ -53,16 +54,16 @@ def same_camera(draft: Draft, moved: Moved) -> Draft:
     )
 
 
-def other_camera(draft: Draft, moved: Moved) -> Draft:
+def other_camera(draft: Draft, moved: PortChange) -> Draft:
     """The draft without what is known of the camera that was meant before, and of the room it stood in."""
     draft = same_camera(draft, moved)
     return replace(
         draft,
-        lenses=_without(draft.lenses, moved.camera),
-        lens_saved=draft.lens_saved - {moved.camera},
+        intrinsics=_without(draft.intrinsics, moved.camera),
+        intrinsics_saved=draft.intrinsics_saved - {moved.camera},
         colours=_without(draft.colours, moved.camera),
         rig=None,
-        room=None,
+        extrinsics_quality=None,
         floor_known=False,
     )
 
@@ -77,7 +78,7 @@ class AsksForPorts:
     moved: shared by all visits of the step, so that what was answered is not asked again.
     """
 
-    def __init__(self, context: Context, make: MakeStep, moved: list[Moved]) -> None:
+    def __init__(self, context: Context, make: MakeStep, moved: list[PortChange]) -> None:
         self._context, self._moved = context, moved
         self._step: Step = make(context)
         self.name = self._step.name
@@ -137,7 +138,7 @@ class AsksForPorts:
         sentence = f"Say below whether {names} is the camera that was calibrated before."
         return replace(view, state=StepState.WAITING, sentence=sentence)
 
-    def _remember(self, moved: Moved) -> None:
+    def _remember(self, moved: PortChange) -> None:
         """In the draft and in the saved calibration; a full disk is told, and asked about next time."""
         self._context.draft = same_camera(self._context.draft, moved)
         try:

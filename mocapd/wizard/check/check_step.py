@@ -28,7 +28,7 @@ from mocapd.wizard.check.check_verdict import (
 from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.intrinsics.saved_intrinsics import store_lenses
+from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
 from mocapd.wizard.step import Problem, Scene, StepName, StepState, StepView
@@ -210,11 +210,11 @@ class CheckStep:
         try:
             draft, state_dir = self._context.draft, self._context.state_dir
             self._saved = str(save_draft(draft, state_dir))
-            store_lenses(draft, state_dir, datetime.now(UTC))
+            store_intrinsics(draft, state_dir, datetime.now(UTC))
         except MocapdError as error:
             raise InputError(error.what, error.where, error.fix) from error
         # the lenses are kept now: a second save does not keep them anew
-        self._context.draft = replace(draft, lens_saved=frozenset(draft.lenses))
+        self._context.draft = replace(draft, intrinsics_saved=frozenset(draft.intrinsics))
         self._context.saved()
 
     def _told(self) -> tuple[StepState, str, float]:

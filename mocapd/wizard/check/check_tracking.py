@@ -1,13 +1,13 @@
 """The tracker of the step Check: as the daemon will have it, on the setup's own pictures."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibration.record import Calibration
 from mocapd.config.sections import TrackerSection
-from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.bundler import BundlerParams, CameraCounts
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
@@ -27,10 +27,12 @@ _BUILDING = 0.8  # share of the preparation that is not the rehearsal
 
 @dataclass(frozen=True, slots=True)
 class CheckSettings:
-    """How the daemon will track: its section `tracker`, and the preset of `smoothing`."""
+    """How the daemon will track: its section `tracker`, the preset of `smoothing`, and how frames wait for
+    each other."""
 
     tracker: TrackerSection
     smoothing: str = "balanced"
+    bundler: BundlerParams = field(default_factory=BundlerParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +88,7 @@ class CheckTracking:
     ) -> None:
         self.rig = prepared.rig
         self._hub, self._prepared, self._shown = hub, prepared, shown
-        self._collector = FrameCollector(prepared.rig.names)
+        self._collector = FrameCollector(prepared.rig.names, hub.bundler)
         smoother = Smoother(smoothing, skeleton_of(prepared.shape))
         self._loop = PipelineLoop(
             self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from mocapd.types import Bytes, LabelledPicture
-from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn
+from mocapd.wizard.colour.colour_solving import CameraSolution, StrokeDrawing
 from mocapd.wizard.colour.stroke_images import encode_picture, encode_strokes
 from mocapd.wizard.step import Json, Problem, Shape
 
@@ -14,7 +14,7 @@ SERVICE = "mocapd"  # who drew proposed strokes
 class Canvas:
     """One camera's picture as the page has it; `serial` grows with every change of the strokes."""
 
-    drawn: Drawn
+    drawn: StrokeDrawing
     jpeg: bytes
     png: bytes
     by: str = SERVICE
@@ -22,7 +22,7 @@ class Canvas:
 
     def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
         """These are the strokes now."""
-        self.drawn = Drawn(replace(self.drawn.picture, labels=strokes), shirt)
+        self.drawn = StrokeDrawing(replace(self.drawn.picture, labels=strokes), shirt)
         self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
 
     @property
@@ -64,7 +64,9 @@ class Canvas:
 
 def canvas_of(picture: LabelledPicture) -> Canvas:
     """A canvas with these strokes on it."""
-    return Canvas(Drawn(picture), encode_picture(picture.pixels), encode_strokes(picture.labels))
+    return Canvas(
+        StrokeDrawing(picture), encode_picture(picture.pixels), encode_strokes(picture.labels)
+    )
 
 
 def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:

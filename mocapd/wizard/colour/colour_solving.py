@@ -24,7 +24,7 @@ _SEEN_WIDTH_PX = 640  # of the picture "as the tracker sees it"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Drawn:
+class StrokeDrawing:
     """A frozen picture with the strokes on it; shirt (h,w): non-zero on the body that they were proposed
     from, None when it is not known."""
 
@@ -41,7 +41,7 @@ class CameraSolution:
     says so.
     """
 
-    drawn: Drawn
+    drawn: StrokeDrawing
     problems: tuple[StrokeProblem, ...]
     W: Floats | None = None
     seen: bytes | None = None
@@ -59,8 +59,8 @@ class Solution:
     missing: tuple[str, ...]
 
 
-def solve(
-    drawn: Mapping[str, Drawn], personal: bool, before: Mapping[str, CameraSolution]
+def solve_colours(
+    drawn: Mapping[str, StrokeDrawing], personal: bool, before: Mapping[str, CameraSolution]
 ) -> Solution:
     """Solve all cameras that have strokes; `before`: solutions whose strokes need not be judged again.
 
@@ -93,7 +93,7 @@ def solve(
 
 
 def _seen(
-    drawn: Drawn, problems: tuple[StrokeProblem, ...], model: ColourModel, W: Floats
+    drawn: StrokeDrawing, problems: tuple[StrokeProblem, ...], model: ColourModel, W: Floats
 ) -> CameraSolution:
     shirt = drawn.shirt if drawn.shirt is not None else hull_of(drawn.picture.labels)
     pixels = drawn.picture.pixels

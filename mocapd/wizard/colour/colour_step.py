@@ -15,8 +15,13 @@ from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
-from mocapd.wizard.colour.colour_solving import CameraSolution, Drawn, Solution, solve
-from mocapd.wizard.colour.still_pictures import Countdown, Frozen
+from mocapd.wizard.colour.colour_solving import (
+    CameraSolution,
+    Solution,
+    StrokeDrawing,
+    solve_colours,
+)
+from mocapd.wizard.colour.still_pictures import Countdown, StillPictures
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
 from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
@@ -105,7 +110,7 @@ class ColourStep:
 
     # -- work ------------------------------------------------------------------------------------
 
-    def _begin(self, frozen: Frozen) -> None:
+    def _begin(self, frozen: StillPictures) -> None:
         """New pictures: old strokes are of no use, and the light may be another."""
         self._take += 1
         self._canvases = {
@@ -159,7 +164,7 @@ class ColourStep:
                 self._solution, self._solutions = solution, self._solutions + 1
                 self._keep()
 
-        self._context.start_job(lambda tell: _solved(drawn, personal, before, tell), done)
+        self._context.start_job(lambda tell: _solve(drawn, personal, before, tell), done)
 
     def _keep(self) -> None:
         """What is good goes to the draft."""
@@ -264,11 +269,14 @@ class ColourStep:
         )
 
 
-def _solved(
-    drawn: Mapping[str, Drawn], personal: bool, before: Mapping[str, CameraSolution], tell: Tell
+def _solve(
+    drawn: Mapping[str, StrokeDrawing],
+    personal: bool,
+    before: Mapping[str, CameraSolution],
+    tell: Tell,
 ) -> Solution:
     tell("reading the light from the strokes", 0.5)
-    return solve(drawn, personal, before)
+    return solve_colours(drawn, personal, before)
 
 
 def _listed(names: list[str]) -> str:

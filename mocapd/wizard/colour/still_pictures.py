@@ -11,7 +11,7 @@ _PATIENCE_S = 1.0  # for a camera that has no picture of after the countdown
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Frozen:
+class StillPictures:
     """The pictures by camera id, and the cameras that gave none."""
 
     frames: dict[str, Frame]
@@ -28,7 +28,7 @@ class Countdown:
         """Seconds until the pictures are taken; 0 when they are due."""
         return max(0.0, seconds(self._due_ns - now_ns))
 
-    def taken(self, hub: FrameHub, cameras: Iterable[str], now_ns: int) -> Frozen | None:
+    def taken(self, hub: FrameHub, cameras: Iterable[str], now_ns: int) -> StillPictures | None:
         """The pictures, none of before the countdown's end; None while they are waited for."""
         if now_ns < self._due_ns:
             return None
@@ -40,4 +40,4 @@ class Countdown:
         }
         if len(fresh) < len(newest) and now_ns < self._due_ns + nanoseconds(_PATIENCE_S):
             return None
-        return Frozen(fresh, tuple(name for name in newest if name not in fresh))
+        return StillPictures(fresh, tuple(name for name in newest if name not in fresh))

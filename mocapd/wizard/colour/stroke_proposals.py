@@ -88,8 +88,8 @@ def _camera(name: str, draft: Draft) -> Camera | None:
     """The camera with its lens, its place guessed; None when its lens is not known."""
     if draft.rig is not None and name in draft.rig.names:
         return draft.rig.cameras[draft.rig.names.index(name)]
-    lens = draft.lenses.get(name)
-    if lens is None:
+    intrinsics = draft.intrinsics.get(name)
+    if intrinsics is None:
         return None
-    usual = nominal_rig(name, lens.size_px).cameras[0]
-    return Camera(name, lens.size_px, lens.K, lens.dist, usual.R, usual.t_m)
+    usual = nominal_rig(name, intrinsics.size_px).cameras[0]
+    return Camera(name, intrinsics.size_px, intrinsics.K, intrinsics.dist, usual.R, usual.t_m)

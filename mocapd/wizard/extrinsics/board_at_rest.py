@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.extrinsics.board_extrinsics import SolvedRoom, with_board
+from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
@@ -79,24 +79,26 @@ def _mean(views: list[BoardView], index: int) -> BoardView:
     return replace(views[-1], index=index, ids=ids, corners_px=corners_px)
 
 
-def looks_like_floor(room: SolvedRoom, views: Mapping[str, BoardView]) -> bool:
+def looks_like_floor(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView]) -> bool:
     """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
-    scene = room.bundle.scene
-    lying = with_board(room, -1, views).bundle.scene
+    scene = extrinsics.bundle.scene
+    lying = with_board(extrinsics, -1, views).bundle.scene
     scene_from_board, camera_axes = lying.scene_from_board[-1], scene.camera_from_scene.R
     up = -scene_from_board.R[:, 2]
     cameras_up = -camera_axes[:, 1].sum(axis=0)
     level = float(up @ cameras_up) / float(np.linalg.norm(cameras_up)) > np.cos(_LEVEL_RAD)
     rolls = np.abs(np.arcsin(np.clip(camera_axes[:, 0] @ up, -1.0, 1.0)))
-    height_m = float(scene_from_board.apply(centre_m(room.spec)) @ up)
+    height_m = float(scene_from_board.apply(centre_m(extrinsics.spec)) @ up)
     above = float((camera_centres(scene) @ up).min()) - height_m > _ABOVE_M
-    return bool(level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(room, up))
+    return bool(
+        level and np.median(rolls) < _ROLL_RAD and above and height_m < _lowest_m(extrinsics, up)
+    )
 
 
-def _lowest_m(room: SolvedRoom, up: Floats) -> float:
+def _lowest_m(extrinsics: SceneExtrinsics, up: Floats) -> float:
     """The height under which the board is lower than wherever it was held."""
-    if not room.indices:
+    if not extrinsics.indices:
         return float("inf")
-    middles = room.bundle.scene.scene_from_board.apply(centre_m(room.spec))
+    middles = extrinsics.bundle.scene.scene_from_board.apply(centre_m(extrinsics.spec))
     # not the very lowest: some may be wrong
     return float(np.percentile(middles @ up, 20)) - _UNDER_M

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.wizard.board.board_look import BoardObservation, Look
-from mocapd.wizard.board.sightings import Moments, Views
+from mocapd.wizard.board.sightings import BoardSightings, Views
 from mocapd.wizard.draft import DraftCamera
 
 ENOUGH = 10  # sightings in all
@@ -21,31 +21,35 @@ class BoardCollection:
 
     def __init__(self, cameras: Sequence[DraftCamera], spec: BoardSpec, earlier: Views) -> None:
         self._cameras = tuple(cameras)
-        self._moments = Moments({camera.id: camera.size_px for camera in cameras}, corners_m(spec))
-        self._moments.add(earlier)
+        self._sightings = BoardSightings(
+            {camera.id: camera.size_px for camera in cameras}, corners_m(spec)
+        )
+        self._sightings.add(earlier)
         self._own = 0  # sightings of this step
         self._tried = 0  # of them at the last try
 
     @property
     def views(self) -> Views:
         """By camera and index."""
-        return self._moments.views
+        return self._sightings.views
 
     @property
     def count(self) -> int:
         """Sightings that two cameras or more share."""
-        return self._moments.count
+        return self._sightings.count
 
     @property
     def solvable(self) -> bool:
         """Whether there is anything to solve from."""
-        return self._moments.linked(FEWEST_SHARED)
+        return self._sightings.linked(FEWEST_SHARED)
 
     @property
     def due(self) -> bool:
         """Whether there are enough, and more than at the last try."""
         enough = (
-            self._own >= _OWN and self._moments.count >= ENOUGH and self._moments.linked(_SHARED)
+            self._own >= _OWN
+            and self._sightings.count >= ENOUGH
+            and self._sightings.linked(_SHARED)
         )
         return enough and (not self._tried or self._own >= self._tried + _MORE)
 
@@ -54,14 +58,14 @@ class BoardCollection:
         """0..1, how much of what is enough there is."""
         shares = (
             self._own / _OWN,
-            self._moments.count / ENOUGH,
-            len(self._moments.largest_group(_SHARED)) / len(self._cameras),
+            self._sightings.count / ENOUGH,
+            len(self._sightings.largest_group(_SHARED)) / len(self._cameras),
         )
         return float(np.mean(np.minimum(shares, 1.0)))
 
     def offer(self, look: Look) -> None:
         """A further look at the board."""
-        self._own += self._moments.offer(look)
+        self._own += self._sightings.offer(look)
 
     def try_now(self) -> None:
         """It is solved from these: the next try needs more."""
@@ -69,15 +73,15 @@ class BoardCollection:
 
     def still(self, name: str, seen: BoardObservation) -> bool:
         """Whether the board is at rest in this camera."""
-        return self._moments.still(name, seen)
+        return self._sightings.still(name, seen)
 
     def still_px(self) -> dict[str, float]:
         """By camera the motion [px per 1/30 s] under which the board is at rest."""
-        return self._moments.still_px()
+        return self._sightings.still_px()
 
     def apart(self) -> list[DraftCamera]:
         """Cameras that do not yet hang together with most others."""
-        together = self._moments.largest_group(_SHARED)
+        together = self._sightings.largest_group(_SHARED)
         return [camera for camera in self._cameras if camera.id not in together]
 
     def lonely(self) -> list[DraftCamera]:
@@ -86,7 +90,7 @@ class BoardCollection:
             camera
             for camera in self._cameras
             if not any(
-                self._moments.shared(camera.id, other.id)
+                self._sightings.shared(camera.id, other.id)
                 for other in self._cameras
                 if other.id != camera.id
             )
@@ -94,4 +98,4 @@ class BoardCollection:
 
     def shared(self, a: DraftCamera, b: DraftCamera) -> int:
         """How many sightings two cameras share."""
-        return self._moments.shared(a.id, b.id)
+        return self._sightings.shared(a.id, b.id)

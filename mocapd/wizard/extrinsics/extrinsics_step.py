@@ -11,13 +11,13 @@ from typing import Protocol
 from mocapd.errors import InputError, MocapdError
 from mocapd.wizard.commands import ROOM, Command, Method, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.extrinsics.extrinsics_with_board import BoardRoom
-from mocapd.wizard.extrinsics.extrinsics_with_wearer import WearerRoom
+from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
+from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.step import StepName, StepView
 
 
-class RoomMethod(Protocol):
-    """A way to find the room: as a Step, which see, but for the name."""
+class ExtrinsicsMethod(Protocol):
+    """A way to find the extrinsics: as a Step, which see, but for the name."""
 
     @property
     def verbs(self) -> Verbs: ...
@@ -29,20 +29,20 @@ class RoomMethod(Protocol):
     def leave(self) -> None: ...
 
 
-METHODS: Mapping[str, Callable[[Context], RoomMethod]] = MappingProxyType(
-    {"board": BoardRoom, "wearer": WearerRoom}
+METHODS: Mapping[str, Callable[[Context], ExtrinsicsMethod]] = MappingProxyType(
+    {"board": ExtrinsicsWithBoard, "wearer": ExtrinsicsWithWearer}
 )
 
 
-class RoomStep:
+class ExtrinsicsStep:
     """Hands everything on to the method that was chosen; the board's to begin with."""
 
     name = StepName.ROOM
 
     def __init__(self, context: Context) -> None:
-        """Raises InputError when lenses are missing."""
+        """Raises InputError when intrinsics are missing."""
         missing = [
-            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.lenses
+            c.label or c.id for c in context.draft.cameras if c.id not in context.draft.intrinsics
         ]
         if missing or not context.draft.cameras:
             raise InputError(
@@ -52,7 +52,7 @@ class RoomStep:
             )
         self._context = context
         self._method_name = "board"
-        self._method: RoomMethod = METHODS["board"](context)
+        self._method: ExtrinsicsMethod = METHODS["board"](context)
 
     def enter(self) -> None:
         """See Step."""

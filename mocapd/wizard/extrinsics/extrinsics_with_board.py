@@ -1,4 +1,4 @@
-"""The room with the board: held where cameras see it together, then laid on the floor.
+"""The extrinsics with the board: held where cameras see it together, then laid on the floor.
 
 Its commands are `commands.BOARD_ROOM`.
 """
@@ -9,10 +9,10 @@ from itertools import combinations
 
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     ContradictionError,
-    PlacedRoom,
-    SolvedRoom,
+    SceneExtrinsics,
+    WorldExtrinsics,
     lone_camera,
-    placed,
+    place_in_world,
     with_board,
 )
 from mocapd.errors import ConfigError, InputError, MocapdError
@@ -23,7 +23,7 @@ from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft import RoomQuality
+from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
@@ -33,7 +33,7 @@ from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
 _PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
 
 
-class RoomPhase(StrEnum):
+class BoardPhase(StrEnum):
     """How far it has come."""
 
     COLLECT = "collect"
@@ -41,7 +41,7 @@ class RoomPhase(StrEnum):
     DONE = "done"
 
 
-class BoardRoom:
+class ExtrinsicsWithBoard:
     """See the head of this file. The draft is changed when the floor is known or skipped."""
 
     verbs = BOARD_ROOM
@@ -60,14 +60,14 @@ class BoardRoom:
         )
         self._advice = BoardAdvice(context, lambda _spec: None)
         self._rest = BoardAtRest()
-        self._stage = RoomPhase.COLLECT
+        self._stage = BoardPhase.COLLECT
         self._asked = False  # by hand, to solve with what there is
         self._solving = False
         self._now_ns = 0
         self._begun_ns: int | None = None
         self._refusal: Problem | None = None
-        self._room: SolvedRoom | None = None
-        self._made: PlacedRoom | None = None
+        self._extrinsics: SceneExtrinsics | None = None
+        self._made: WorldExtrinsics | None = None
         self._plan: Json = None
 
     # -- as a Step -------------------------------------------------------------------------------
@@ -77,8 +77,8 @@ class BoardRoom:
         self._watch.start()
         if len(self._cameras) == 1:
             one = self._cameras[0]
-            lens = self._context.draft.lenses[one.id]
-            self._room = lone_camera(one.id, one.size_px, lens, self._spec)
+            intrinsics = self._context.draft.intrinsics[one.id]
+            self._extrinsics = lone_camera(one.id, one.size_px, intrinsics, self._spec)
             self._to_floor()
         else:
             self._context.scene(Scene.ROOM)
@@ -91,18 +91,18 @@ class BoardRoom:
         """See Step."""
         self._now_ns = now_ns
         self._begun_ns = now_ns if self._begun_ns is None else self._begun_ns
-        if self._stage is RoomPhase.DONE:
+        if self._stage is BoardPhase.DONE:
             return
         look = self._watch.look()
         if look is not None:
             self._advice.take(look)
-            if self._stage is RoomPhase.COLLECT:
+            if self._stage is BoardPhase.COLLECT:
                 self._seen.offer(look)
             else:
                 self._watch_floor(look)
             self._advice.ask(now_ns, look.frames, self._spec)
         if (
-            self._stage is RoomPhase.COLLECT
+            self._stage is BoardPhase.COLLECT
             and self._context.job is None
             and (self._asked or self._seen.due)
         ):
@@ -116,7 +116,7 @@ class BoardRoom:
             case SkipFloor():
                 self._skip_floor()
             case Solve():
-                if self._stage is not RoomPhase.COLLECT or not self._seen.solvable:
+                if self._stage is not BoardPhase.COLLECT or not self._seen.solvable:
                     raise InputError(
                         "there is nothing to solve yet",
                         "room",
@@ -137,7 +137,7 @@ class BoardRoom:
     def view(self) -> StepView:
         """See Step."""
         state = StepState.WAITING
-        if self._stage is RoomPhase.DONE:
+        if self._stage is BoardPhase.DONE:
             state = StepState.DONE
         elif self._solving:
             state = StepState.WORKING
@@ -149,7 +149,7 @@ class BoardRoom:
             self._sentence(),
             self._progress(),
             self._problems(),
-            {} if self._stage is RoomPhase.DONE else overlays,
+            {} if self._stage is BoardPhase.DONE else overlays,
             self._details(),
         )
 
@@ -163,15 +163,19 @@ class BoardRoom:
         self._seen.try_now()
         self._asked, self._solving = False, True
         views, earlier = self._seen.views, self._earlier
-        cameras, spec, lenses = self._cameras, self._spec, dict(self._context.draft.lenses)
+        cameras, spec, intrinsics_of = (
+            self._cameras,
+            self._spec,
+            dict(self._context.draft.intrinsics),
+        )
 
-        def job(tell: Tell) -> tuple[SolvedRoom, PlacedRoom]:
+        def job(tell: Tell) -> tuple[SceneExtrinsics, WorldExtrinsics]:
             tell("the room", 0.0)
-            return solve_live(cameras, lenses, spec, views, earlier)
+            return solve_live(cameras, intrinsics_of, spec, views, earlier)
 
-        def done(found: tuple[SolvedRoom, PlacedRoom]) -> None:
+        def done(found: tuple[SceneExtrinsics, WorldExtrinsics]) -> None:
             self._solving = False
-            self._room, self._made = found
+            self._extrinsics, self._made = found
             self._plan = plan_of(*found)
             self._to_floor()
 
@@ -180,24 +184,24 @@ class BoardRoom:
     # -- floor -----------------------------------------------------------------------------------
 
     def _to_floor(self) -> None:
-        self._stage, self._refusal = RoomPhase.FLOOR, None
+        self._stage, self._refusal = BoardPhase.FLOOR, None
         self._rest.forget()
         self._context.scene(Scene.FLOOR)
 
     def _watch_floor(self, look: Look) -> None:
         still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
         self._rest.take(look, still)
-        if self._room is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
+        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
             return
         try:
-            if looks_like_floor(self._room, self._rest.views()):
+            if looks_like_floor(self._extrinsics, self._rest.views()):
                 self._lay_down()
         except ConfigError as error:
             self._refusal = Problem.of(error)
             self._rest.forget()
 
     def _floor_by_hand(self) -> None:
-        if self._room is None:
+        if self._extrinsics is None:
             raise InputError(
                 "the cameras' places are not known yet", "room", "hold the board before the cameras"
             )
@@ -215,14 +219,16 @@ class BoardRoom:
 
     def _lay_down(self) -> None:
         """Raises ConfigError when the floor is none."""
-        assert self._room is not None
+        assert self._extrinsics is not None
         views = self._rest.views()
         index = next(iter(views.values())).index
-        room = with_board(self._room, index, views)
-        self._finish(room, placed(room, index, "the floor", PARAMS), floor_known=True)
+        extrinsics = with_board(self._extrinsics, index, views)
+        self._finish(
+            extrinsics, place_in_world(extrinsics, index, "the floor", PARAMS), floor_known=True
+        )
 
     def _skip_floor(self) -> None:
-        if self._room is None or self._made is None:
+        if self._extrinsics is None or self._made is None:
             raise InputError(
                 "the cameras' places are not known yet",
                 "room",
@@ -230,11 +236,13 @@ class BoardRoom:
                 if len(self._cameras) == 1
                 else "hold the board before the cameras",
             )
-        self._finish(self._room, self._made, floor_known=False)
+        self._finish(self._extrinsics, self._made, floor_known=False)
 
-    def _finish(self, room: SolvedRoom, made: PlacedRoom, floor_known: bool) -> None:
-        self._stage, self._refusal = RoomPhase.DONE, None
-        self._room, self._made, self._plan = room, made, plan_of(room, made)
+    def _finish(
+        self, extrinsics: SceneExtrinsics, made: WorldExtrinsics, floor_known: bool
+    ) -> None:
+        self._stage, self._refusal = BoardPhase.DONE, None
+        self._extrinsics, self._made, self._plan = extrinsics, made, plan_of(extrinsics, made)
         area = made.play_area
         self._context.draft = replace(
             self._context.draft,
@@ -242,7 +250,7 @@ class BoardRoom:
             board_views=self._seen.views,
             rig=made.rig,
             floor_known=floor_known,
-            room=RoomQuality(
+            extrinsics_quality=ExtrinsicsQuality(
                 "board",
                 made.rms_px,
                 {name: fit.rms_px for name, fit in made.cameras.items()},
@@ -254,9 +262,9 @@ class BoardRoom:
     # -- what is told ----------------------------------------------------------------------------
 
     def _sentence(self) -> str:
-        if self._stage is RoomPhase.DONE:
+        if self._stage is BoardPhase.DONE:
             return "The room is known. Go on to the colours."
-        if self._stage is RoomPhase.FLOOR:
+        if self._stage is BoardPhase.FLOOR:
             if self._rest.seen:
                 return "Leave the board where it lies."
             return (
@@ -271,15 +279,15 @@ class BoardRoom:
         return "Hold the board where the cameras see it together, here and there; keep it still each time."
 
     def _progress(self) -> float:
-        if self._stage is RoomPhase.DONE:
+        if self._stage is BoardPhase.DONE:
             return 1.0
-        if self._stage is RoomPhase.FLOOR:
+        if self._stage is BoardPhase.FLOOR:
             return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
         return 0.7 * self._seen.progress
 
     def _problems(self) -> tuple[Problem, ...]:
         told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
-        if self._stage is RoomPhase.DONE:
+        if self._stage is BoardPhase.DONE:
             if not self._context.draft.floor_known:
                 told.append(
                     Problem(
@@ -291,7 +299,7 @@ class BoardRoom:
             return tuple(told)
         told += [self._refusal] if self._refusal is not None else []
         patient = self._begun_ns is None or self._now_ns - self._begun_ns < _PATIENCE_NS
-        if self._stage is RoomPhase.COLLECT and not patient:
+        if self._stage is BoardPhase.COLLECT and not patient:
             told += [
                 Problem(
                     "it never sees the board at the same moment as another camera",
@@ -301,7 +309,7 @@ class BoardRoom:
                 for camera in self._seen.lonely()
             ]
         # on the floor one camera that sees the board is enough
-        wanted = {camera.id: self._stage is RoomPhase.COLLECT for camera in self._cameras}
+        wanted = {camera.id: self._stage is BoardPhase.COLLECT for camera in self._cameras}
         return (*told, *self._advice.problems(self._now_ns, wanted))
 
     def _details(self) -> dict[str, Json]:
@@ -316,9 +324,9 @@ class BoardRoom:
                 for a, b in combinations(self._cameras, 2)
             ],
             "at_rest": self._rest.seen,
-            "can_solve": self._stage is RoomPhase.COLLECT and self._seen.solvable,
-            "can_skip_floor": self._stage is RoomPhase.FLOOR and self._made is not None,
-            "floor_known": self._stage is RoomPhase.DONE and self._context.draft.floor_known,
+            "can_solve": self._stage is BoardPhase.COLLECT and self._seen.solvable,
+            "can_skip_floor": self._stage is BoardPhase.FLOOR and self._made is not None,
+            "floor_known": self._stage is BoardPhase.DONE and self._context.draft.floor_known,
             "quality": None if self._made is None else quality_of(self._made),
             "plan": self._plan,
         }

@@ -1,8 +1,8 @@
-"""The room without a board: the wearer in the shirt walks about for 20 to 30 s.
+"""The extrinsics without a board: the wearer in the shirt walks about for 20 to 30 s.
 
 Its commands are `commands.WEARER_ROOM`.
 
-It needs lenses, colours and stature. A room that is there already, of cameras that were bumped since, is
+It needs intrinsics, colours and stature. A rig that is there already, of cameras that were bumped since, is
 where the search begins.
 """
 
@@ -16,17 +16,17 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
 from mocapd.wizard.commands import WEARER_ROOM, Command, StartWalk, StopWalk
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft import RoomQuality
+from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
 from mocapd.wizard.extrinsics.walk_coverage import WalkParams
-from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerFound, walk_and_solve
+from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
 from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, StepView
 
-_SHOWN_PLACES = 12  # of the wearer's way, in the picture of the room
+_SHOWN_PLACES = 12  # of the wearer's way, in the plan of the rig
 
 
-class WearerRoom:
-    """See the head of this file. The draft is changed when the room is found."""
+class ExtrinsicsWithWearer:
+    """See the head of this file. The draft is changed when they are found."""
 
     name = StepName.ROOM
     verbs = WEARER_ROOM
@@ -42,7 +42,7 @@ class WearerRoom:
         self._walk: Walk | None = None  # while a job runs
         self._walk_next = False
         self._refusal: Problem | None = None
-        self._found: WearerFound | None = None
+        self._found: WearerExtrinsics | None = None
 
     # -- as a Step -------------------------------------------------------------------------------
 
@@ -74,7 +74,7 @@ class WearerRoom:
                 self._stop()
 
     def job_failed(self, error: MocapdError) -> None:
-        """It can be begun again; the room that was there stays."""
+        """It can be begun again; the rig that was there stays."""
         self._walk = None
         self._refusal = Problem.of(error)
 
@@ -86,7 +86,7 @@ class WearerRoom:
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
         load, params = self._load, self._params
 
-        def done(found: WearerFound | None) -> None:
+        def done(found: WearerExtrinsics | None) -> None:
             if walk is not self._walk:
                 return
             self._walk = None
@@ -97,14 +97,14 @@ class WearerRoom:
             lambda tell: walk_and_solve(hub, draft, cache_dir, walk, tell, load, params), done
         )
 
-    def _take(self, found: WearerFound) -> None:
+    def _take(self, found: WearerExtrinsics) -> None:
         self._found = found
         residuals = np.array(list(found.report.residual_px.values()))
         self._context.draft = replace(
             self._context.draft,
             rig=found.rig,
             floor_known=True,
-            room=RoomQuality(
+            extrinsics_quality=ExtrinsicsQuality(
                 "wearer",
                 float(np.sqrt(np.mean(residuals**2))),
                 dict(found.report.residual_px),
@@ -200,10 +200,10 @@ class WearerRoom:
         found, draft = self._found, self._context.draft
         quality: dict[str, Json] | None = None
         plan: Json = None
-        if found is not None and draft.room is not None:
+        if found is not None and draft.extrinsics_quality is not None:
             report = found.report
             quality = {
-                "rms_px": round(draft.room.rms_px, 3),
+                "rms_px": round(draft.extrinsics_quality.rms_px, 3),
                 "play_area_cm": None,
                 "cameras": {
                     name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()

@@ -2,20 +2,20 @@
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.board_extrinsics import PlacedRoom, SolvedRoom
+from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, WorldExtrinsics
 from mocapd.calibration.board_spec import centre_m
 from mocapd.geometry.camera_model import camera_from_world, centre
 from mocapd.types import Rig
 from mocapd.wizard.step import Json
 
 
-def plan_of(room: SolvedRoom, made: PlacedRoom) -> dict[str, Json]:
+def plan_of(extrinsics: SceneExtrinsics, made: WorldExtrinsics) -> dict[str, Json]:
     """Metres in the world: x to the right of a person at rest facing +z is negative, see types.py."""
-    scene = room.bundle.scene
+    scene = extrinsics.bundle.scene
     first = made.rig.cameras[0]
     # the scene's frame is the first camera's as it was at first; its own pose undoes what moved it
     world_from_scene = camera_from_world(first).inverse() @ scene.camera_from_scene[0]
-    boards = world_from_scene.apply(scene.scene_from_board.apply(centre_m(room.spec)))
+    boards = world_from_scene.apply(scene.scene_from_board.apply(centre_m(extrinsics.spec)))
     return {**plan_of_cameras(made.rig), "boards_m": np.round(boards, 3).tolist()}
 
 
@@ -36,7 +36,7 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
     }
 
 
-def quality_of(made: PlacedRoom) -> dict[str, Json]:
+def quality_of(made: WorldExtrinsics) -> dict[str, Json]:
     """How well the cameras fit each other."""
     return {
         "rms_px": round(made.rms_px, 3),

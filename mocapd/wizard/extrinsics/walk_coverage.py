@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
-from mocapd.calibrate.self_calibration.patch_tracks import Moment
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation
 from mocapd.clock import seconds
 from mocapd.geometry import rotations
 
@@ -25,11 +25,11 @@ class WalkParams:
     places: int = 4
     longest_good_s: float = 30.0
     patience_s: float = 75.0
-    room: SelfCalibrationParams = field(default_factory=SelfCalibrationParams)
+    extrinsics: SelfCalibrationParams = field(default_factory=SelfCalibrationParams)
 
 
 class Coverage:
-    """How much of the room and of the directions was walked through, moment by moment."""
+    """How much of the room and of the directions was walked through, observation by observation."""
 
     def __init__(self, names: Sequence[str], params: WalkParams) -> None:
         self._names, self._p = tuple(names), params
@@ -39,20 +39,20 @@ class Coverage:
         self._places: set[tuple[int, int]] = set()
         self._last_ns: int | None = None
 
-    def add(self, moment: Moment, t_ns: int) -> None:
+    def add(self, observation: PatchObservation, t_ns: int) -> None:
         """What the cameras saw at t_ns."""
         dt_s = 0.0 if self._last_ns is None else seconds(t_ns - self._last_ns)
         self._last_ns = t_ns
         dt_s = min(dt_s, _LONGEST_GAP_S)
-        for name in moment:
+        for name in observation:
             self.seen_s[name] += dt_s
-        if len(moment) < 2:
+        if len(observation) < 2:
             return
         self.good_s += dt_s
-        first = next(name for name in self._names if name in moment)
+        first = next(name for name in self._names if name in observation)
         if first != self._names[0]:
             return  # facings and places are told apart in one camera's frame only
-        sighting = moment[first]
+        sighting = observation[first]
         facing = rotations.to_matrix(sighting.quats_xyzw[0])[:, 2]
         self._facings.add(int(np.arctan2(facing[0], facing[2]) // _SECTOR_RAD))
         at = sighting.joints_m[0]

@@ -1,4 +1,4 @@
-"""The job of the room without a board: the wearer is followed in every camera alone, then the room is solved."""
+"""The job of the extrinsics without a board: the wearer is followed in every camera alone, then all is solved."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.calibrate.self_calibration.joint_solver import RoomReport
-from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, unplaced
-from mocapd.calibrate.self_calibration.self_calibration import room_from_body
+from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
+from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, place_nominally
+from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.errors import InputError
@@ -30,11 +30,11 @@ _TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WearerFound:
-    """The room, how good it is, and where the wearer walked (N,3) [m]."""
+class WearerExtrinsics:
+    """The extrinsics, how good they are, and where the wearer walked (N,3) [m]."""
 
     rig: Rig
-    report: RoomReport
+    report: SelfCalibrationReport
     walked_m: Floats
 
 
@@ -55,14 +55,14 @@ def walk_and_solve(
     load: LoadDatabase,
     params: WalkParams,
     clock: Callable[[], int] = monotonic_ns,
-) -> WearerFound | None:
-    """The room of a draft whose lenses, colours and stature are known; None when stopped.
+) -> WearerExtrinsics | None:
+    """The extrinsics of a draft whose intrinsics, colours and stature are known; None when stopped.
 
     Raises InputError when too little was seen, ConfigError when what was seen does not agree.
     """
     assert draft.stature_m is not None
-    lenses = lenses_of(draft)
-    placed = replace(draft, rig=Rig(unplaced(lenses)), factors=None)
+    bare_cameras = draft_cameras(draft)
+    placed = replace(draft, rig=Rig(place_nominally(bare_cameras)), factors=None)
     shirt = calibration_of(placed).shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = {
@@ -70,29 +70,35 @@ def walk_and_solve(
         for name, picture in shirt.white_balance.items()
     }
     database = load(cache_dir, lambda what, share: tell(what, READY * share))
-    tracks = PatchTracks(lenses, draft.stature_m, colours, W, database)
+    tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
-        hub, tracks, Coverage([c.name for c in lenses], params), walk, tell, params, clock
+        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, tell, params, clock
     ):
         return None
     tell("working out where the cameras stand", SEEN)
     near = draft.rig
-    if near is not None and set(near.names) != {camera.name for camera in lenses}:
+    if near is not None and set(near.names) != {camera.name for camera in bare_cameras}:
         near = None
-    rig, report = room_from_body(tracks.moments, lenses, draft.stature_m, params.room, near)
+    rig, report = extrinsics_from_body(
+        tracks.observations, bare_cameras, draft.stature_m, params.extrinsics, near
+    )
     first = rig.cameras[0]
     walked = [
-        from_camera(first, m[first.name].joints_m[0]) for m in tracks.moments if first.name in m
+        from_camera(first, m[first.name].joints_m[0])
+        for m in tracks.observations
+        if first.name in m
     ]
-    return WearerFound(rig, report, np.array(walked).reshape(-1, 3))
+    return WearerExtrinsics(rig, report, np.array(walked).reshape(-1, 3))
 
 
-def lenses_of(draft: Draft) -> list[Camera]:
-    """The draft's cameras with their lenses; they stand anywhere."""
+def draft_cameras(draft: Draft) -> list[Camera]:
+    """The draft's cameras with their intrinsics; they stand anywhere."""
     out = []
     for camera in draft.cameras:
-        lens = draft.lenses[camera.id]
-        out.append(Camera(camera.id, camera.size_px, lens.K, lens.dist, np.eye(3), np.zeros(3)))
+        intrinsics = draft.intrinsics[camera.id]
+        out.append(
+            Camera(camera.id, camera.size_px, intrinsics.K, intrinsics.dist, np.eye(3), np.zeros(3))
+        )
     return out
 
 
@@ -107,7 +113,7 @@ def _follow(
 ) -> bool:
     """Follow the hub's frames until enough is seen; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
-    collector = FrameCollector([camera.name for camera in tracks.cameras])
+    collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
     entry = OnlyCameras(collector, names)
     give_up_ns = clock() + nanoseconds(params.patience_s)
     hub.join(entry)

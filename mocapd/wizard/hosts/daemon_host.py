@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.capture.source_kinds import is_simulated
 from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
@@ -14,10 +15,10 @@ from mocapd.errors import MocapdError, UnavailableError
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Service, Snapshot
-from mocapd.session.session import SIM, Session
+from mocapd.session.session import Session
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.same_port import Moved, moved_cameras, same_camera
+from mocapd.wizard.cameras.same_port import PortChange, find_port_changes, same_camera
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.newest_body import NewestBody
@@ -123,7 +124,7 @@ class DaemonHost:
         cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
-            CheckSettings(config.tracker, config.smoothing.preset),
+            CheckSettings(config.tracker, config.smoothing.preset, service.hub.bundler),
             self._checked,
             service.died,
         )
@@ -155,7 +156,7 @@ def state_dir_of(config: Config, session: Session) -> Path:
     """Where a setup is saved; what simulated cameras give never takes the place of a real calibration."""
     if session.rig_source == str(config.state_dir / FILE_NAME):
         return config.state_dir
-    simulated = any(camera.spec.startswith(SIM) for camera in session.cameras)
+    simulated = any(is_simulated(camera.address) for camera in session.cameras)
     return config.state_dir / "demo" if simulated else config.state_dir
 
 
@@ -190,8 +191,8 @@ def _with_what_was_saved(
     return cameras, Draft(cameras=cameras, board=saved.board, stature_m=saved.stature_m)
 
 
-def _moved(draft: Draft) -> tuple[Moved, ...]:
+def _moved(draft: Draft) -> tuple[PortChange, ...]:
     """What the daemon itself has taken for the same camera, to be asked about."""
     nodes = video_nodes(SYSFS, DEV)
     present = dict.fromkeys(node.identity for node in nodes if node.identity is not None)
-    return moved_cameras(draft.cameras, tuple(present))
+    return find_port_changes(draft.cameras, tuple(present))

@@ -4,12 +4,13 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
-from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import identities_of, open_source
 from mocapd.capture.thread import CaptureStatus, CaptureThread
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
+from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.draft import DraftCamera
 
@@ -27,11 +28,12 @@ class OpenCameras:
         cameras: Sequence[DraftCamera],
         died: Callable[[BaseException], None],
         sources: Mapping[str, Source] | None = None,
+        bundler: BundlerParams | None = None,
     ) -> None:
-        """sources: by id, where they exist already. Raises ConfigError or InputError for a source that
-        cannot be."""
+        """sources: by id, where they exist already; bundler: see FrameHub. Raises ConfigError or InputError
+        for a source that cannot be."""
         self.cameras = tuple(cameras)
-        self.hub = FrameHub(camera.id for camera in cameras)
+        self.hub = FrameHub((camera.id for camera in cameras), bundler=bundler)
         self._died = died
         self._pace = Pace(live=True)  # recordings start together and keep their own time
         given = sources or {}
@@ -64,14 +66,9 @@ class OpenCameras:
 
     def _source(self, camera: DraftCamera) -> Source:
         settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
-        others = tuple(
-            parse_identity(one.source)
-            for one in self.cameras
-            if one.id != camera.id and one.source.startswith(PREFIX)
-        )
-        return open_source(
-            camera.source, camera.id, settings=settings, others=others, pace=self._pace
-        )
+        others = identities_of((one.id, one.source) for one in self.cameras if one != camera)
+        asked = Asked(camera.id, settings=settings, others=tuple(others.values()), pace=self._pace)
+        return open_source(camera.source, asked)
 
     def _ended(self, error: BaseException) -> None:
         if not isinstance(error, MocapdError):  # those the camera's status tells

@@ -12,7 +12,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Snapshot, ThreadDiedError
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.same_port import Moved
+from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.hosts.open_cameras import OpenCameras
@@ -36,7 +36,7 @@ class OwnHost:
         sources: Mapping[str, Source] | None = None,
         scene: Callable[[Scene], object] | None = None,
         nodes: Callable[[], tuple[CameraInfo, ...]] = tuple,
-        moved: tuple[Moved, ...] = (),
+        moved: tuple[PortChange, ...] = (),
     ) -> None:
         """draft: what is known, with the cameras to open; step: the one to do, None for all of them;
         sources: the draft's cameras by id where they exist already; nodes: lists what else is plugged
@@ -44,7 +44,7 @@ class OwnHost:
         self._over = threading.Event()
         self._saved = threading.Event()
         self._death: BaseException | None = None
-        self._cameras = OpenCameras(draft.cameras, self.died, sources)
+        self._cameras = OpenCameras(draft.cameras, self.died, sources, settings.bundler)
         self._locks = CameraLocks(self._cameras.sources)
         self._shown = NewestBody()
         of_cameras = SetupCameras(draft.cameras, nodes, self._locks, moved)

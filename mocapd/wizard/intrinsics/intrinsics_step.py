@@ -1,4 +1,4 @@
-"""The step Intrinsics: the board is shown to every camera, whose lens is solved as soon as enough was seen.
+"""The step Lens: the board is shown to every camera, whose intrinsics are solved as soon as enough was seen.
 
 Its commands are `commands.LENS`.
 """
@@ -17,19 +17,23 @@ from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
 from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import BoardWatch
-from mocapd.wizard.board.sightings import Moments
+from mocapd.wizard.board.sightings import BoardSightings
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
 from mocapd.wizard.context import Context
-from mocapd.wizard.intrinsics.intrinsics_views import LensCamera, LensOffer
-from mocapd.wizard.intrinsics.saved_intrinsics import SavedLens, lens_for, read_lenses
+from mocapd.wizard.intrinsics.intrinsics_views import CameraIntrinsics, IntrinsicsOffer
+from mocapd.wizard.intrinsics.saved_intrinsics import (
+    SavedIntrinsics,
+    find_saved_intrinsics,
+    read_intrinsics,
+)
 from mocapd.wizard.step import Problem, Scene, Shape, StepName, StepState, StepView, Tell
 
 _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
 
 
-class LensStep:
-    """Collects pictures of the board, of all cameras at once, and solves lens after lens."""
+class IntrinsicsStep:
+    """Collects pictures of the board, of all cameras at once, and solves the intrinsics of one after the other."""
 
     name = StepName.LENS
     verbs = LENS
@@ -46,7 +50,7 @@ class LensStep:
         self._note = ""
         self._now_ns = 0
         self._round = 0
-        self._solving: LensCamera | None = None
+        self._solving: CameraIntrinsics | None = None
         self._damaged: tuple[Problem, ...] = ()
         self._begin()
         self._offer()
@@ -99,7 +103,9 @@ class LensStep:
         """See Step."""
         cameras = self._cameras.values()
         state = StepState.DONE if self._done() else StepState.WAITING
-        if state is StepState.WAITING and any(one.refusal and not one.lens for one in cameras):
+        if state is StepState.WAITING and any(
+            one.refusal and not one.intrinsics for one in cameras
+        ):
             state = StepState.FAILED
         return StepView(
             state,
@@ -123,21 +129,23 @@ class LensStep:
         board_m = corners_m(self._spec)
         cameras = self._context.draft.cameras
         self._cameras = {
-            one.id: LensCamera(one, PickedViews(one.size_px, board_m)) for one in cameras
+            one.id: CameraIntrinsics(one, PickedViews(one.size_px, board_m)) for one in cameras
         }
-        self._moments = Moments({one.id: one.size_px for one in cameras}, board_m)
+        self._sightings = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
         self._round += 1  # a job of the round before is not listened to
 
     def _take(self, look: Look, now_ns: int) -> None:
         self._advice.take(look)
-        together = self._moments.offer(look)
+        together = self._sightings.offer(look)
         for id_, seen in look.seen.items():
             one = self._cameras[id_]
-            if one.lens is not None or not one.picked.offer(seen.view, seen.motion_px):
+            if one.intrinsics is not None or not one.picked.offer(seen.view, seen.motion_px):
                 continue
-            if not (together and self._moments.still(id_, seen)):
-                one.picked.views[-1] = self._moments.add_alone(id_, seen.view)
-        wanted = {id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].lens}
+            if not (together and self._sightings.still(id_, seen)):
+                one.picked.views[-1] = self._sightings.add_alone(id_, seen.view)
+        wanted = {
+            id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].intrinsics
+        }
         self._advice.ask(now_ns, wanted, self._spec)
 
     def _found_variant(self, spec: BoardSpec) -> None:
@@ -156,7 +164,7 @@ class LensStep:
             for id_, (offered, taken) in offers.items():
                 self._cameras[id_].offered = offered
                 self._cameras[id_].use(taken)
-        # otherwise corners stay where they are, and a lens does not mind the scale of the board
+        # otherwise corners stay where they are, and intrinsics do not mind the scale of the board
         self._watch.change(spec)
         self._advice.forget()
         self._write_when_done()
@@ -176,10 +184,10 @@ class LensStep:
             tell(f"the lens of {one.name}", 0.0)
             return one.solve(views, board_m)
 
-        def done(lens: Intrinsics) -> None:
+        def done(intrinsics: Intrinsics) -> None:
             self._solving = None
-            if begun_in == self._round and one.lens is None:
-                one.take(lens, count)
+            if begun_in == self._round and one.intrinsics is None:
+                one.take(intrinsics, count)
                 self._write_when_done()
 
         self._context.start_job(job, done)
@@ -191,11 +199,11 @@ class LensStep:
                     "its lens is not known well enough yet", one.name, "show it the board on"
                 )
         for one in self._cameras.values():
-            one.lens = one.by_hand()
+            one.intrinsics = one.by_hand()
         self._write_when_done()
 
     def _done(self) -> bool:
-        return all(one.lens is not None for one in self._cameras.values())
+        return all(one.intrinsics is not None for one in self._cameras.values())
 
     def _write_when_done(self) -> None:
         if not self._done():
@@ -211,30 +219,36 @@ class LensStep:
             board=self._spec,
             board_views={
                 id_: earlier.get(id_, {}) if id_ in of_draft else own
-                for id_, own in self._moments.views.items()
+                for id_, own in self._sightings.views.items()
             },
-            lenses={id_: one.lens for id_, one in self._cameras.items() if one.lens is not None},
-            lens_saved=frozenset(saved | (draft.lens_saved & of_draft)),
+            intrinsics={
+                id_: one.intrinsics
+                for id_, one in self._cameras.items()
+                if one.intrinsics is not None
+            },
+            intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
-    # -- lenses of before ------------------------------------------------------------------------
+    # -- intrinsics of before --------------------------------------------------------------------
 
     def _offer(self) -> None:
-        """A lens of this setup, else one of the file of lenses."""
-        saved: tuple[SavedLens, ...] = ()
+        """Intrinsics of this setup, else of the file of earlier ones."""
+        saved: tuple[SavedIntrinsics, ...] = ()
         try:
-            saved = read_lenses(self._context.state_dir)
+            saved = read_intrinsics(self._context.state_dir)
         except ConfigError as error:
             self._damaged = (Problem.of(error),)
         for id_, one in self._cameras.items():
-            lens = self._context.draft.lenses.get(id_)
-            found = lens_for(one.camera, saved)
-            if lens is not None and lens.size_px == one.camera.size_px:
-                one.offered = LensOffer(lens, "", from_file=False)
+            intrinsics = self._context.draft.intrinsics.get(id_)
+            found = find_saved_intrinsics(one.camera, saved)
+            if intrinsics is not None and intrinsics.size_px == one.camera.size_px:
+                one.offered = IntrinsicsOffer(intrinsics, "", from_file=False)
             elif found is not None:
-                one.offered = LensOffer(found.lens(), f"{found.when:%Y-%m-%d}", from_file=True)
+                one.offered = IntrinsicsOffer(
+                    found.intrinsics(), f"{found.when:%Y-%m-%d}", from_file=True
+                )
 
-    def _use_saved(self, cameras: Sequence[LensCamera]) -> None:
+    def _use_saved(self, cameras: Sequence[CameraIntrinsics]) -> None:
         offered = [one for one in cameras if one.offered is not None]
         if not offered:
             raise InputError("no lens of before is known", cameras[0].name, "show it the board")
@@ -242,7 +256,7 @@ class LensStep:
             one.use(one.offered)
         self._write_when_done()
 
-    def _named(self, camera: str) -> LensCamera:
+    def _named(self, camera: str) -> CameraIntrinsics:
         if camera not in self._cameras:
             raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
         return self._cameras[camera]
@@ -252,7 +266,7 @@ class LensStep:
     def _sentence(self) -> str:
         if self._done():
             return "All lenses are known. Go on to the room."
-        left = {id_: one for id_, one in self._cameras.items() if one.lens is None}
+        left = {id_: one for id_, one in self._cameras.items() if one.intrinsics is None}
         seen = {
             id_: seen
             for id_, seen in self._watch.newest.items()
@@ -273,17 +287,17 @@ class LensStep:
     def _overlays(self) -> dict[str, tuple[Shape, ...]]:
         if self._done():
             return {}
-        corners = self._watch.shapes(self._now_ns, self._moments.still_px())
+        corners = self._watch.shapes(self._now_ns, self._sightings.still_px())
         return {
-            id_: (*(one.cells() if one.lens is None else ()), *corners.get(id_, ()))
+            id_: (*(one.cells() if one.intrinsics is None else ()), *corners.get(id_, ()))
             for id_, one in self._cameras.items()
         }
 
     def _problems(self) -> tuple[Problem, ...]:
-        left = {id_: one.lens is None for id_, one in self._cameras.items()}
+        left = {id_: one.intrinsics is None for id_, one in self._cameras.items()}
         stopped = stopped_cameras(self._context, self._cameras)
         refused = tuple(
-            one.refusal for one in self._cameras.values() if one.refusal and not one.lens
+            one.refusal for one in self._cameras.values() if one.refusal and not one.intrinsics
         )
         advice = () if self._done() else self._advice.problems(self._now_ns, left)
         return (*self._damaged, *stopped, *refused, *advice)

@@ -1,18 +1,18 @@
-"""One camera in the lens step: its pictures of the board, its lens, and what is said of it."""
+"""One camera in the step Lens: its pictures of the board, its intrinsics, and what is said of it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, LensLimits, solve_lens
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
-from mocapd.calibrate.intrinsics.views import GRID, Choice, chosen_views
+from mocapd.calibrate.intrinsics.views import GRID, Choice, choose_views
 from mocapd.errors import MocapdError
 from mocapd.types import Floats
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.step import Json, Problem, Shape
 
-_LIMITS = LensLimits(focal_deviation=0.05)
+_LIMITS = IntrinsicsLimits(focal_deviation=0.05)
 _CHOICE = Choice(most=24)
 _FIRST_TRY = 10  # pictures, whatever they lack: a refusal then says what
 _NEXT_TRY = 4  # pictures more
@@ -21,8 +21,8 @@ _COLUMNS = ("left", "middle", "right")
 
 
 @dataclass(frozen=True, slots=True)
-class GoodLens:
-    """When a lens ends the collecting, and when a person may end it by hand.
+class IntrinsicsGoal:
+    """When intrinsics end the collecting, and when a person may end it by hand.
 
     held_out: error in parts of the picture's width; focal_deviation: of the focal length, of itself.
     """
@@ -35,27 +35,27 @@ class GoodLens:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LensOffer:
-    """A lens of before. when: the day it was measured, "" in this setup; from_file: of another setup."""
+class IntrinsicsOffer:
+    """Intrinsics of before. when: the day they were measured, "" in this setup; from_file: of another setup."""
 
-    lens: Intrinsics
+    intrinsics: Intrinsics
     when: str
     from_file: bool
 
 
 @dataclass(slots=True, eq=False)
-class LensCamera:
+class CameraIntrinsics:
     """What is known of one camera so far."""
 
     camera: DraftCamera
     picked: PickedViews
-    offered: LensOffer | None = None
-    taken: LensOffer | None = None  # the one that was offered, when the person took it
-    lens: Intrinsics | None = None  # that the step ends with
+    offered: IntrinsicsOffer | None = None
+    taken: IntrinsicsOffer | None = None  # the one that was offered, when the person took it
+    intrinsics: Intrinsics | None = None  # that the step ends with
     usable: Intrinsics | None = None  # the newest one that is not good enough yet
     refusal: Problem | None = None
     tried: int = 0  # pictures at the last try
-    good: GoodLens = field(default_factory=GoodLens)
+    good: IntrinsicsGoal = field(default_factory=IntrinsicsGoal)
 
     @property
     def name(self) -> str:
@@ -65,48 +65,48 @@ class LensCamera:
     def due(self) -> bool:
         """Whether there are enough new pictures to try."""
         count = len(self.picked.views)
-        if self.lens is not None:
+        if self.intrinsics is not None:
             return False
         return count >= (self.tried + _NEXT_TRY if self.tried else _FIRST_TRY)
 
     def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
         """For a job. Raises ConfigError that says what is wrong with the pictures."""
-        chosen = chosen_views(views, self.camera.size_px, _CHOICE)
-        return solve_lens(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
+        chosen = choose_views(views, self.camera.size_px, _CHOICE)
+        return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
 
-    def take(self, lens: Intrinsics, tried: int) -> None:
-        """The job's lens: good enough to end with, or the best so far."""
-        self.tried, self.refusal, self.usable = tried, None, lens
+    def take(self, intrinsics: Intrinsics, tried: int) -> None:
+        """The job's intrinsics: good enough to end with, or the best so far."""
+        self.tried, self.refusal, self.usable = tried, None, intrinsics
         good = self.good
         deviation = good.focal_deviation * (2.0 if tried >= good.patience else 1.0)
         if (
-            lens.held_out_px <= good.held_out * self.camera.size_px[0]
-            and lens.focal_deviation <= deviation
+            intrinsics.held_out_px <= good.held_out * self.camera.size_px[0]
+            and intrinsics.focal_deviation <= deviation
             and self.picked.covered >= good.covered
         ):
-            self.lens = lens
+            self.intrinsics = intrinsics
 
     def refuse(self, error: MocapdError, tried: int) -> None:
-        """The job found that these pictures give no lens."""
+        """The job found that these pictures give none."""
         self.tried, self.refusal = tried, Problem.of(error)
 
-    def use(self, offered: LensOffer | None) -> None:
-        """The lens of before; None: a new one is measured."""
+    def use(self, offered: IntrinsicsOffer | None) -> None:
+        """Those of before; None: new ones are measured."""
         self.taken = offered
-        self.lens = None if offered is None else offered.lens
+        self.intrinsics = None if offered is None else offered.intrinsics
         self.refusal = None
 
     def by_hand(self) -> Intrinsics | None:
-        """The lens that a person may end with now."""
-        if self.lens is not None:
-            return self.lens
+        """The intrinsics that a person may end with now."""
+        if self.intrinsics is not None:
+            return self.intrinsics
         if self.usable is not None and self.usable.focal_deviation <= self.good.by_hand:
             return self.usable
         return None
 
     def progress(self) -> float:
         """0..1."""
-        return 1.0 if self.lens is not None else 0.95 * self.picked.progress()
+        return 1.0 if self.intrinsics is not None else 0.95 * self.picked.progress()
 
     def sentence(self) -> str:
         """What to show this camera next."""
@@ -145,13 +145,13 @@ class LensCamera:
             "covered": round(self.picked.covered, 3),
             "coverage": self.picked.counts.tolist(),
             "progress": round(self.progress(), 3),
-            "lens": _figures(self.lens) if self.lens is not None else None,
+            "lens": _figures(self.intrinsics) if self.intrinsics is not None else None,
             "so_far": _figures(self.usable) if self.usable is not None else None,
             "taken": self.taken is not None,
             "offered": None,
         }
         if self.offered is not None:
-            told["offered"] = {**_figures(self.offered.lens), "when": self.offered.when}
+            told["offered"] = {**_figures(self.offered.intrinsics), "when": self.offered.when}
         return told
 
 
@@ -165,14 +165,14 @@ def _counted(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
     ]
 
 
-def _figures(lens: Intrinsics) -> dict[str, Json]:
+def _figures(intrinsics: Intrinsics) -> dict[str, Json]:
     return {
-        "rms_px": _rounded(lens.rms_px, 3),
-        "held_out_px": _rounded(lens.held_out_px, 3),
-        "focal_percent": _rounded(100.0 * lens.focal_deviation, 2),
-        "focal_px": _rounded(float(lens.K[0, 0]), 1),
-        "views": len(lens.views),
-        "thrown_out": len(lens.thrown_out),
+        "rms_px": _rounded(intrinsics.rms_px, 3),
+        "held_out_px": _rounded(intrinsics.held_out_px, 3),
+        "focal_percent": _rounded(100.0 * intrinsics.focal_deviation, 2),
+        "focal_px": _rounded(float(intrinsics.K[0, 0]), 1),
+        "views": len(intrinsics.views),
+        "thrown_out": len(intrinsics.thrown_out),
     }
 
 

@@ -1,4 +1,4 @@
-"""Lenses of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
+"""Intrinsics of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -12,7 +12,7 @@ from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
-from mocapd.capture.webcam.identity import PREFIX, parse_identity
+from mocapd.capture.source_kinds import identity_of
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -36,7 +36,7 @@ Row5 = tuple[Finite, Finite, Finite, Finite, Finite]
 Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e9)]
 
 
-class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
+class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
     """camera: vid:pid:serial; focus: what its focus was locked to; when: UTC."""
 
     camera: str
@@ -55,8 +55,8 @@ class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
         if not (self.K[0][0] > 0.0 and self.K[1][1] > 0.0 and self.K[2] == (0.0, 0.0, 1.0)):
             raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
 
-    def lens(self) -> Intrinsics:
-        """As the lens step finds one."""
+    def intrinsics(self) -> Intrinsics:
+        """As the step Lens finds them."""
         return Intrinsics(
             self.size_px,
             np.array(self.K),
@@ -72,17 +72,16 @@ class SavedLens(msgspec.Struct, frozen=True, kw_only=True):
 
 class _File(msgspec.Struct, frozen=True):
     schema: Annotated[int, msgspec.Meta(ge=0, le=10**6)]
-    lens: tuple[SavedLens, ...] = ()
+    lens: tuple[SavedIntrinsics, ...] = ()
 
 
 def key_of(camera: DraftCamera) -> str | None:
-    """vid:pid:serial; None for a camera that has none, whose lens cannot be known again."""
-    if not camera.source.startswith(PREFIX):
-        return None
-    return ":".join(parse_identity(camera.source).model)
+    """vid:pid:serial; None for a camera that has none, whose intrinsics cannot be known again."""
+    identity = identity_of(camera.source)
+    return ":".join(identity.model) if identity is not None else None
 
 
-def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
+def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
     """All that were saved; none without the file. Raises ConfigError when it is damaged."""
     path = state_dir / FILE_NAME
     try:
@@ -96,7 +95,9 @@ def read_lenses(state_dir: Path) -> tuple[SavedLens, ...]:
     return file.lens
 
 
-def lens_for(camera: DraftCamera, saved: tuple[SavedLens, ...]) -> SavedLens | None:
+def find_saved_intrinsics(
+    camera: DraftCamera, saved: tuple[SavedIntrinsics, ...]
+) -> SavedIntrinsics | None:
     """The one measured of this camera in this mode, with the same focus where that is known."""
     key = key_of(camera)
     for one in saved:
@@ -108,22 +109,22 @@ def lens_for(camera: DraftCamera, saved: tuple[SavedLens, ...]) -> SavedLens | N
     return None
 
 
-def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
-    """Add the draft's new lenses; one of the same camera and mode is replaced, others stay.
+def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
+    """Add the draft's new intrinsics; those of the same camera and mode are replaced, others stay.
 
     For when the calibration is saved. Raises CannotCreateError, ConfigError.
     """
     new = [
-        _saved(key, camera, draft.lenses[camera.id], when)
+        _saved(key, camera, draft.intrinsics[camera.id], when)
         for camera in draft.cameras
         if (key := key_of(camera)) is not None
-        and camera.id in draft.lenses
-        and camera.id not in draft.lens_saved
+        and camera.id in draft.intrinsics
+        and camera.id not in draft.intrinsics_saved
     ]
     if not new:
         return
     made = {(one.camera, one.size_px) for one in new}
-    kept = [one for one in read_lenses(state_dir) if (one.camera, one.size_px) not in made]
+    kept = [one for one in read_intrinsics(state_dir) if (one.camera, one.size_px) not in made]
     data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
     path = state_dir / FILE_NAME
     try:
@@ -136,12 +137,12 @@ def store_lenses(draft: Draft, state_dir: Path, when: datetime) -> None:
         ) from None
 
 
-def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedLens:
+def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedIntrinsics:
     K: tuple[Row3, Row3, Row3] = msgspec.convert(
         np.round(lens.K, 4).tolist(), tuple[Row3, Row3, Row3]
     )
     dist: Row5 = msgspec.convert(np.round(lens.dist, 7).tolist(), Row5)
-    return SavedLens(
+    return SavedIntrinsics(
         camera=key,
         size_px=camera.size_px,
         when=when.replace(microsecond=0),
@@ -156,6 +157,6 @@ def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> S
     )
 
 
-def _table(one: SavedLens) -> Mapping[str, object]:
+def _table(one: SavedIntrinsics) -> Mapping[str, object]:
     table: dict[str, object] = msgspec.to_builtins(one, builtin_types=(datetime,))
     return table

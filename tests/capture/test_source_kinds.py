@@ -5,8 +5,20 @@ from pathlib import Path
 import pytest
 
 from mocapd.capture.file import FileSource
-from mocapd.capture.from_config import open_source
 from mocapd.capture.pace import Pace
+from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_kinds import (
+    SOURCE_FORMS,
+    address_beside,
+    cameras_of_origin,
+    identities_of,
+    is_settable,
+    is_simulated,
+    kind_of,
+    open_origin,
+    open_source,
+    origin_of,
+)
 from mocapd.capture.url import UrlSource
 from mocapd.capture.webcam.v4l2 import V4l2Source
 from mocapd.errors import ConfigError, InputError, MocapdError, UnavailableError
@@ -28,11 +40,11 @@ def test_live_cameras_by_their_strings(spec: str, kind: type, name: str) -> None
     assert isinstance(source, kind)
     assert source.name == name
     assert not source.recorded
-    assert open_source(spec, "left").name == "left"
+    assert open_source(spec, Asked("left")).name == "left"
 
 
 def test_a_video_file(tmp_path: Path) -> None:
-    source = open_source(str(write_film(tmp_path / "walk.avi", 3)), pace=Pace(live=True))
+    source = open_source(str(write_film(tmp_path / "walk.avi", 3)), Asked(pace=Pace(live=True)))
     assert isinstance(source, FileSource)
     assert source.name == "walk"
     assert source.recorded
@@ -41,13 +53,13 @@ def test_a_video_file(tmp_path: Path) -> None:
 def test_one_camera_of_a_folder_under_its_own_name_or_another(tmp_path: Path) -> None:
     folder = write_capture(tmp_path / "capture")
     assert open_source(f"{folder}#cam1").name == "cam1"
-    assert open_source(f"{folder}#cam1", "left").name == "left"
+    assert open_source(f"{folder}#cam1", Asked("left")).name == "left"
     with pytest.raises(ConfigError, match=r"2 cameras.*#NAME.*cam0, cam1"):
         open_source(str(folder))
     with pytest.raises(ConfigError, match=r"no camera 'cam7'.*cam0, cam1"):
         open_source(f"{folder}#cam7")
     with pytest.raises(ConfigError, match=r"64x48.*'left'.*640x480"):
-        open_source(f"{folder}#cam1", "left", size_px=(640, 480))
+        open_source(f"{folder}#cam1", Asked("left", (640, 480)))
 
 
 def test_a_folder_of_one_camera_needs_no_choice(tmp_path: Path) -> None:
@@ -92,7 +104,7 @@ def test_what_can_be_no_path_is_a_named_error(spec: str, error: type[MocapdError
 def test_a_file_of_another_size_than_its_calibration_is_told_at_the_start(tmp_path: Path) -> None:
     film = write_film(tmp_path / "a.avi", 3)
     with pytest.raises(ConfigError, match=r"64x48.*640x480"):
-        open_source(str(film), size_px=(640, 480))
+        open_source(str(film), Asked(size_px=(640, 480)))
 
 
 def test_a_wrong_identity_is_a_config_error() -> None:
@@ -103,3 +115,72 @@ def test_a_wrong_identity_is_a_config_error() -> None:
 def test_a_node_that_is_not_there_says_what_to_do() -> None:
     with pytest.raises(UnavailableError, match=r"/dev/video977: no such camera.*mocapd cameras"):
         open_source("977").open()
+
+
+FOLDER, FILM, NOWHERE = "folder", "film.avi", "nowhere"
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    write_capture(tmp_path / FOLDER)
+    write_film(tmp_path / FILM, 3)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("address", "origin", "settable", "simulated"),
+    [
+        ("usb:1-3:046d:0825:A#1", "", True, False),
+        ("/dev/video0", "", True, False),
+        ("rtsp://u:p#w@127.0.0.1/live#now", "", False, False),
+        ("sim:living_room#left", "sim:living_room", False, True),
+        (f"{FOLDER}#cam0", FOLDER, False, False),
+        (FILM, "", False, False),
+        (f"{NOWHERE}#cam0", "", False, False),
+    ],
+)
+def test_what_an_address_says_of_its_camera(
+    place: Path, monkeypatch: pytest.MonkeyPatch, address: str, origin: str, settable: bool,
+    simulated: bool,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(place)
+    assert origin_of(address) == origin
+    assert is_settable(address) == settable
+    assert is_simulated(address) == simulated
+
+
+def test_webcams_are_told_by_their_identity() -> None:
+    found = identities_of([("a", "usb:1-3:046D:0825:S"), ("b", "0"), ("c", "sim:x#a")])
+    assert {name: str(one) for name, one in found.items()} == {"a": "usb:1-3:046d:0825:S"}
+
+
+def test_paths_of_a_file_are_meant_from_its_folder_and_nothing_else_is(place: Path) -> None:
+    for address in (f"{FOLDER}#cam0", FOLDER, FILM):
+        assert address_beside(place, address) == str(place / address)
+        assert address_beside(Path("/"), str(place / address)) == str(place / address)
+    for address in ("0", "usb:1-3:046d:0825:", "http://film/x", "sim:living_room#left", NOWHERE):
+        assert address_beside(place, address) == address
+
+
+def test_an_origin_knows_its_cameras_its_rig_and_its_frames(place: Path) -> None:
+    address = str(place / FOLDER)
+    assert cameras_of_origin(address) == ("cam0", "cam1")
+    origin = open_origin(address, place, lambda *_: None)
+    assert origin.rig.names == ("cam0", "cam1")
+    assert origin.count == len(list(origin.frame_sets()))
+    source = origin.source(f"{address}#cam1", Asked("left", pace=Pace(live=False)))
+    assert (source.name, source.recorded) == ("left", True)
+
+
+@pytest.mark.parametrize("address", [NOWHERE, "0", "rtsp://u:hunter2@h/x"])
+def test_what_is_no_origin_is_told(address: str) -> None:
+    with pytest.raises(InputError, match="no such capture folder") as caught:
+        cameras_of_origin(address)
+    assert "hunter2" not in str(caught.value)
+
+
+def test_what_is_no_camera_is_told_how_cameras_are_written() -> None:
+    assert kind_of(NOWHERE) is None
+    with pytest.raises(InputError) as caught:
+        open_source(NOWHERE)
+    assert caught.value.fix == f"write {SOURCE_FORMS}"

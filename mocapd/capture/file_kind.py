@@ -1,0 +1,21 @@
+"""A video file as a kind of source."""
+
+from mocapd.boundary.files import is_file, user_path
+from mocapd.capture.base import Source
+from mocapd.capture.file import FileSource, check_size, probe_video
+from mocapd.capture.source_kind import Asked, SourceKind
+
+
+def _matches(address: str) -> bool:
+    return is_file(user_path(address))
+
+
+def _open(address: str, asked: Asked) -> Source:
+    path = user_path(address)
+    name = asked.name or path.stem
+    info = probe_video(path)
+    check_size(str(path), name, info.size_px, asked.size_px)
+    return FileSource(name, path, info.fps_hz, pace=asked.pace, size_px=asked.size_px)
+
+
+FILE = SourceKind(form="a video file", matches=_matches, open=_open, is_path=True)

@@ -1,0 +1,114 @@
+"""A scenario's film as the origin of simulated webcams: what they show, and what their rig tells a tracker."""
+
+import logging
+import threading
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import cv2
+
+from mocapd.boundary.pictures import decode_picture
+from mocapd.capture.base import Source
+from mocapd.capture.file import check_size
+from mocapd.capture.origin import Progress, split_address
+from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.sim import SimSource
+from mocapd.capture.source_kind import Asked
+from mocapd.clock import monotonic_ns, nanoseconds
+from mocapd.sim.film import Film, film_key, load_film
+from mocapd.sim.scenario import Scenario
+from mocapd.types import Frame, FrameSet, LabelledPicture, Rig
+
+_LOG = logging.getLogger(__name__)
+
+
+class FilmOrigin:
+    """See Origin. Its cameras share the film's beginning, which is when the first of them is opened."""
+
+    def __init__(self, address: str, film: Film) -> None:
+        self.rig_source = address
+        self._film = film
+        self._lock = threading.Lock()
+        self._start_ns: int | None = None
+
+    @property
+    def rig(self) -> Rig:
+        """See Origin."""
+        return self._film.setup.rig
+
+    @property
+    def stature_m(self) -> float | None:
+        """See Origin."""
+        return self._film.setup.stature_m
+
+    @property
+    def fps_hz(self) -> float:
+        """See Origin."""
+        return self._film.scenario.fps_hz
+
+    @property
+    def count(self) -> int:
+        """See Origin."""
+        return min(len(jpegs) for jpegs in self._film.frames.values())
+
+    def model(self) -> tuple[LabelledPicture, ...]:
+        """See Origin."""
+        return self._film.setup.model
+
+    def white_balance(self) -> Mapping[str, LabelledPicture]:
+        """See Origin."""
+        return self._film.setup.scribbles
+
+    def frame_sets(self) -> Iterator[FrameSet]:
+        """See Origin. One loop, as the bundler would pair it: each frame at its camera's own time."""
+        for i in range(self.count):
+            frames = {
+                spec.name: self._frame(spec.name, i, spec.clock_offset_s)
+                for spec in self._film.scenario.cameras
+            }
+            times_ns = [frame.t_ns for frame in frames.values()]
+            yield FrameSet(max(times_ns), frames, max(times_ns) - min(times_ns))
+
+    def source(self, address: str, asked: Asked) -> Source:
+        """See Origin. A camera's id is its name in the scenario, which has the rig."""
+        name = asked.name or split_address(address)[1]
+        camera = _FilmCamera(self, self._film, name)
+        (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
+        check_size(self.rig_source, name, size_px, asked.size_px)
+        return camera
+
+    def start_ns(self) -> int:
+        """When frame 0 of the film is exposed: now, the first time [ns, CLOCK_MONOTONIC]."""
+        with self._lock:
+            if self._start_ns is None:
+                self._start_ns = monotonic_ns()
+                # with this whoever watches can say where the simulated person was
+                _LOG.info(
+                    "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
+                    *(self._film.first, self._film.scenario.name, self._start_ns, self.fps_hz),
+                )
+            return self._start_ns
+
+    def _frame(self, camera: str, i: int, clock_offset_s: float) -> Frame:
+        jpeg = self._film.frames[camera][i]
+        pixels = frozen_pixels(decode_picture(jpeg, cv2.IMREAD_COLOR))
+        return Frame(camera, i, nanoseconds(i / self.fps_hz + clock_offset_s), pixels, jpeg)
+
+
+class _FilmCamera(SimSource):
+    def __init__(self, origin: FilmOrigin, film: Film, camera: str) -> None:
+        super().__init__(film, camera)
+        self._origin = origin
+
+    def open(self) -> None:
+        self._epoch_ns = self._origin.start_ns()
+        super().open()
+
+
+def open_film(address: str, scenario: Scenario, cache_dir: Path, progress: Progress) -> FilmOrigin:
+    """The scenario's film, rendered when it is not in the cache. Raises MocapdError."""
+    what = "rendering the simulated webcams"
+    if not any(cache_dir.glob(f"*{film_key(scenario)[:16]}*")):
+        progress(what, 0, 1)  # something to see while the renderer is compiled
+    film = load_film(scenario, cache_dir, lambda done, total: progress(what, done, total))
+    return FilmOrigin(address, film)

@@ -1,0 +1,68 @@
+"""A simulated webcam as a kind of source, `sim:SCENARIO#CAMERA`, and its scenario as the origin."""
+
+from pathlib import Path
+
+from mocapd.assets import asset_path
+from mocapd.boundary.files import user_path
+from mocapd.capture.base import Source
+from mocapd.capture.origin import Origin, OriginKind, Progress
+from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.errors import ConfigError, InputError
+from mocapd.sim.scenario import load_scenario
+
+_PREFIX = "sim:"
+
+
+def scenario_path(address: str) -> Path:
+    """The file of `sim:NAME`, one of calib/scenarios, or of `sim:FILE.toml`; `#CAMERA` is ignored.
+
+    Raises InputError for a name that does not exist.
+    """
+    name = address.removeprefix(_PREFIX).partition("#")[0]
+    if name.endswith(".toml"):
+        return user_path(name)
+    known = {one.stem: one for one in asset_path("scenarios").glob("*.toml")}
+    if name not in known:
+        raise InputError(
+            f"there is no scenario {name!r}",
+            address,
+            f"one of {', '.join(sorted(known))}, or a .toml file",
+        )
+    return known[name]
+
+
+def scenario_address(name: str) -> str:
+    """What a scenario of calib/scenarios is called as an origin."""
+    return f"{_PREFIX}{name}"
+
+
+def _matches(address: str) -> bool:
+    return address.startswith(_PREFIX)
+
+
+def _open(address: str, asked: Asked) -> Source:
+    if asked.origin is None:  # all those of a scenario share a film
+        raise ConfigError(
+            "a simulated camera among others", address, "simulate all cameras, or none of them"
+        )
+    return asked.origin.source(address, asked)
+
+
+def _cameras(origin: str) -> tuple[str, ...]:
+    return tuple(camera.name for camera in load_scenario(scenario_path(origin)).cameras)
+
+
+def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
+    # the renderer is imported for such cameras only: it takes a second
+    from mocapd.capture.film_origin import open_film
+
+    return open_film(origin, load_scenario(scenario_path(origin)), cache_dir, progress)
+
+
+SIM = SourceKind(
+    form="sim:SCENARIO#camN",
+    matches=_matches,
+    open=_open,
+    is_simulated=True,
+    origin=OriginKind(_cameras, _open_origin),
+)

@@ -1,0 +1,103 @@
+"""The table of source kinds, and what is asked of it by everybody who has a camera's address."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from mocapd.boundary.files import user_path
+from mocapd.boundary.urls import without_password
+from mocapd.capture.base import Source
+from mocapd.capture.file_kind import FILE
+from mocapd.capture.folder_kind import FOLDER
+from mocapd.capture.origin import Origin, OriginKind, Progress, split_address
+from mocapd.capture.sim_kind import SIM
+from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.url_kind import URL
+from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM
+from mocapd.errors import InputError
+
+SOURCE_KINDS: tuple[SourceKind, ...] = (WEBCAM, NODE, URL, SIM, FILE, FOLDER)
+"""The first that matches counts; paths come last, as any text can be one."""
+
+SOURCE_FORMS = ", ".join(kind.form for kind in SOURCE_KINDS[:-1]) + f" or {SOURCE_KINDS[-1].form}"
+"""How a camera may be written, for people."""
+
+
+def kind_of(address: str) -> SourceKind | None:
+    """The kind of a camera, or of an origin; None for what is neither, such as a file that is gone.
+
+    Raises ConfigError for what can be no path.
+    """
+    return next((kind for kind in SOURCE_KINDS if kind.matches(address)), None)
+
+
+def open_source(address: str, asked: Asked | None = None) -> Source:
+    """The source that an address means; checked, but not opened yet.
+
+    A recording that is missing or damaged is told here, at the start, and not sought for ever by
+    its thread. Raises ConfigError or InputError.
+    """
+    asked = asked if asked is not None else Asked()
+    kind = kind_of(address)
+    if kind is None:  # also a URL with a typo in its scheme comes here
+        raise InputError(
+            "no such camera or file", without_password(address), f"write {SOURCE_FORMS}"
+        )
+    return kind.open(address, asked)
+
+
+def identity_of(address: str) -> WebcamIdentity | None:
+    """Which webcam it is; None for what has no identity. Raises ConfigError for a wrong one."""
+    kind = kind_of(address)
+    return kind.identity(address) if kind is not None and kind.identity is not None else None
+
+
+def identities_of(addresses: Iterable[tuple[str, str]]) -> dict[str, WebcamIdentity]:
+    """By id the webcams among cameras given as id and address. Raises ConfigError."""
+    found = {name: identity_of(address) for name, address in addresses}
+    return {name: identity for name, identity in found.items() if identity is not None}
+
+
+def is_simulated(address: str) -> bool:
+    """Whether nothing of it is real."""
+    kind = kind_of(address)
+    return kind is not None and kind.is_simulated
+
+
+def is_settable(address: str) -> bool:
+    """Whether it delivers the size that it is asked for."""
+    kind = kind_of(address)
+    return kind is not None and kind.is_settable
+
+
+def origin_of(address: str) -> str:
+    """The origin that a camera is of; empty for a camera by itself."""
+    kind = kind_of(address)
+    return split_address(address)[0] if kind is not None and kind.origin is not None else ""
+
+
+def cameras_of_origin(origin: str) -> tuple[str, ...]:
+    """The names of all its cameras. Raises InputError or ConfigError."""
+    return _origin_kind(origin).cameras(origin)
+
+
+def open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
+    """Everything that it knows. Raises InputError, ConfigError or CannotCreateError."""
+    return _origin_kind(origin).open(origin, cache_dir, progress)
+
+
+def address_beside(folder: Path, address: str) -> str:
+    """An address as it is meant in a file of this folder. Raises ConfigError."""
+    kind = kind_of(address)
+    if kind is not None and not kind.is_path:
+        return address
+    path = str(folder / user_path(address))
+    kind = kind_of(path)
+    return path if kind is not None and kind.is_path else address
+
+
+def _origin_kind(origin: str) -> OriginKind:
+    kind = kind_of(origin)
+    if kind is None or kind.origin is None:
+        raise InputError("no such capture folder", without_password(origin), "check the path")
+    return kind.origin

@@ -1,0 +1,43 @@
+"""Webcams as kinds of source: named by their USB identity, or (what is not on USB) by their node."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from mocapd.capture.base import Source
+from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, parse_identity
+from mocapd.capture.webcam.v4l2 import V4l2Source
+
+
+def _is_identity(address: str) -> bool:
+    return address.startswith(PREFIX)
+
+
+def _is_node(address: str) -> bool:
+    return address.isdigit() or address.startswith("/dev/")
+
+
+def _open_identity(address: str, asked: Asked) -> Source:
+    return _webcam(asked.name or address, parse_identity(address), asked)
+
+
+def _open_node(address: str, asked: Asked) -> Source:
+    node = Path(f"/dev/video{address}" if address.isdigit() else address)
+    return _webcam(asked.name or node.name, node, asked)
+
+
+def _webcam(name: str, where: WebcamIdentity | Path, asked: Asked) -> Source:
+    settings = asked.settings
+    if asked.size_px is not None:
+        settings = replace(settings, size_px=asked.size_px)
+    return V4l2Source(name, where, settings, asked.others)
+
+
+WEBCAM = SourceKind(
+    form="usb:PORT:VID:PID:SERIAL (see `mocapd cameras`)",
+    matches=_is_identity,
+    open=_open_identity,
+    is_settable=True,
+    identity=parse_identity,
+)
+NODE = SourceKind(form="/dev/videoN", matches=_is_node, open=_open_node, is_settable=True)

@@ -1,0 +1,10 @@
+"""What a user's calibration of the simulated rig would know, without a film."""
+
+from mocapd.calibration.record import Calibration, ShirtColours, Wearer
+from mocapd.sim.setup import SimSetup
+
+
+def calibration_of_setup(setup: SimSetup) -> Calibration:
+    return Calibration(
+        setup.rig, Wearer(setup.stature_m), ShirtColours(setup.model, setup.scribbles)
+    )
