@@ -22,6 +22,7 @@ import zenoh
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
+from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_config import client_config
 
@@ -120,6 +121,11 @@ class Link:
         """The key of the frames."""
         return keys.skeleton(self.instance, self.person)
 
+    @property
+    def rest_key(self) -> str:
+        """The key of the rest skeleton."""
+        return keys.rest_skeleton(self.instance, self.person)
+
 
 class Client:
     """A connection that keeps the newest body; for game loops that ask once per picture.
@@ -132,10 +138,11 @@ class Client:
         """Connect. Raises UnavailableError when no mocapd is found in time."""
         link = link or Link()
         self._opened = ExitStack()
-        session = self._opened.enter_context(_connect(link))
+        self._session = self._opened.enter_context(_connect(link))
         self._subscriber = self._opened.enter_context(
-            session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
+            self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
         )
+        self._rest_key = link.rest_key
         # a thread left waiting in Zenoh would abort the interpreter's exit
         atexit.register(self.close)
 
@@ -150,6 +157,16 @@ class Client:
         while (body := self.poll()) is None and time.monotonic() < deadline_s:
             time.sleep(POLL_S)
         return body
+
+    def rest(self, timeout_s: float = 1.0) -> RestSkeleton | None:
+        """The person's skeleton in the T-pose as it is known now, asked of the daemon, which takes a
+        millisecond; None: nobody answers, or nobody was tracked yet. It changes when the daemon is calibrated
+        anew, and a little while it learns the body. Raises InputError when what comes is none of this version.
+        """
+        for reply in self._session.get(self._rest_key, timeout=timeout_s):
+            if reply.ok is not None:
+                return decode_rest_skeleton(reply.ok.payload.to_bytes(), str(reply.ok.encoding))
+        return None
 
     def __iter__(self) -> Iterator[Body]:
         """Every newest body, waiting for ever: also while the daemon restarts."""

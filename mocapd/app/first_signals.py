@@ -14,6 +14,23 @@ SIGINT_EXIT = 130
 SERVICES = ("run", "demo", "calibrate")
 """Commands that end with 0 when they are told to end. The others had something to finish, and did not:
 they die of the signal."""
+RELOADING = ("run", "demo")
+"""Of these the commands that a SIGHUP without a terminal tells to read their configuration again."""
+
+
+class ComesEarly:
+    """Takes a signal for whoever will have a use for it."""
+
+    def __init__(self) -> None:
+        self.came = False
+
+    def __call__(self, _number: int, _frame: FrameType | None) -> None:
+        self.came = True
+
+
+def on_terminal() -> bool:
+    """Whether there is a terminal that may be closed."""
+    return any(os.isatty(fd) for fd in (0, 1, 2))
 
 
 def end_at_once(words: Sequence[str]) -> None:
@@ -23,7 +40,8 @@ def end_at_once(words: Sequence[str]) -> None:
     if is_service(words):
         for number in (signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) is signal.SIG_DFL:  # under nohup it is ignored
-                signal.signal(number, _end)
+                reloads = number == signal.SIGHUP and words[1] in RELOADING and not on_terminal()
+                signal.signal(number, ComesEarly() if reloads else _end)
 
 
 def interruptible(words: Sequence[str]) -> None:

@@ -10,9 +10,9 @@ from collections.abc import Iterable
 from types import FrameType
 from typing import Protocol
 
-from mocapd.app.first_signals import SIGINT_EXIT
+from mocapd.app.first_signals import SIGINT_EXIT, ComesEarly, on_terminal
 from mocapd.app.status_line import StatusLine
-from mocapd.service.daemon import Daemon, Snapshot, ThreadDiedError
+from mocapd.service.service import Service, Snapshot, ThreadDiedError
 
 SHOW_EVERY_S = 0.25  # how often the status line changes [s]
 TELL_EVERY = 4  # health goes out with every fourth of them
@@ -31,36 +31,42 @@ class Ends(Protocol):
 class Signals:
     """SIGTERM and SIGHUP end with 0 and SIGINT with 130: at once while things are set up, then in order.
 
-    SIGHUP is what a terminal sends that is closed; under nohup it is ignored. A second signal has its
-    default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
+    SIGHUP is what a terminal sends that is closed; under nohup it is ignored. With `reloads` and without a
+    terminal it asks for the configuration to be read again instead, see `take_reload`. A second signal has
+    its default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, reloads: bool = False) -> None:
         self.exit_code = 0
-        self._caught_one = False
         self._daemon: Ends | None = None
         self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
-        hangup = signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN
-        for number in (signal.SIGTERM, signal.SIGINT, *((signal.SIGHUP,) if hangup else ())):
+        for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._caught)
+        self._reload = False
+        before = signal.getsignal(signal.SIGHUP)
+        if before is not signal.SIG_IGN:
+            asks = reloads and not on_terminal()
+            signal.signal(signal.SIGHUP, self._asked if asks else self._caught)
+            # it may have come while nobody could read anything again
+            self._reload = asks and isinstance(before, ComesEarly) and before.came
 
     def ends(self, daemon: Ends) -> None:
         """From now on a signal ends this in order."""
         self._daemon = daemon
 
-    def alone(self) -> None:
-        """Nothing runs that could be ended in order: a signal, also one that came already, ends the
-        process at once."""
-        self._daemon = None
-        if self._caught_one:
-            sys.exit(self.exit_code)
+    def take_reload(self) -> bool:
+        """Whether the configuration is to be read again; told once."""
+        asked, self._reload = self._reload, False
+        return asked
+
+    def _asked(self, _number: int, _frame: FrameType | None) -> None:
+        self._reload = True
 
     def _caught(self, number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         _silence(fd for fd in self._terminals if not os.isatty(fd))
-        self._caught_one = True
         self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
         if self._daemon is None:
             sys.exit(self.exit_code)
@@ -76,43 +82,41 @@ def _silence(gone: Iterable[int]) -> None:
 
 
 class Beside(Protocol):
-    """Something that lives beside the daemon, such as its page."""
+    """What goes on beside the service, in the main thread."""
 
-    def beat(self, snapshot: Snapshot) -> bool:
-        """Called several times a second; whether the daemon is to end, to be made anew."""
+    def beat(self, snapshot: Snapshot) -> None:
+        """Called several times a second; may replace the service's session."""
         ...
 
-    def let_go(self, anew: bool) -> None:
-        """The daemon is about to end, whether another follows; never blocks for long."""
+    def let_go(self) -> None:
+        """The service is about to end; never blocks for long."""
         ...
 
 
 def run_daemon(
-    daemon: Daemon, signals: Signals, hint: str = "", beside: Beside | None = None
-) -> int | None:
-    """Run until it ends; the exit code, or None when it is to be made anew. Raises MocapdError when a
-    named error killed a thread."""
+    service: Service, signals: Signals, hint: str = "", beside: Beside | None = None
+) -> int:
+    """Run until it ends; the exit code. Raises MocapdError when a named error killed a thread."""
     # a thread nobody watches must not die unseen either
-    threading.excepthook = lambda args: daemon.died(args.exc_value or RuntimeError(args.exc_type))
-    signals.ends(daemon)
+    threading.excepthook = lambda args: service.died(args.exc_value or RuntimeError(args.exc_type))
+    signals.ends(service)
     try:
-        with daemon, StatusLine() as line:
+        with service, StatusLine() as line:
             if hint:
                 print(hint, flush=True)
-            beats, anew = 0, False
+            beats = 0
             try:
-                while not daemon.wait(SHOW_EVERY_S):
-                    snapshot = daemon.snapshot()
+                while not service.wait(SHOW_EVERY_S):
+                    snapshot = service.snapshot()
                     line.show(snapshot)
                     if beats % TELL_EVERY == 0:
-                        daemon.tell(snapshot)
+                        service.tell(snapshot)
                     beats += 1
-                    if beside is not None and beside.beat(snapshot):
-                        anew = True
-                        return None
+                    if beside is not None:
+                        beside.beat(snapshot)
             finally:
                 if beside is not None:
-                    beside.let_go(anew)
+                    beside.let_go()
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR

@@ -68,7 +68,7 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
 
 def _the_one(pages: "Sequence[Running]", config: "Config") -> "Running":
     """The page to attach to: the only one, else the one of this configuration. Raises ConfigError."""
-    from mocapd.outputs.zenoh.keys import chunk
+    from mocapd.outputs.instance import chunk
     from mocapd.web.runtime_file import SETUP
 
     if len(pages) > 1 and config.instance:
@@ -99,7 +99,7 @@ def _alone(
 ) -> int:
     from mocapd.app.running import INTERNAL_ERROR
     from mocapd.app.setup_hosts import demo_host, webcam_host
-    from mocapd.service.daemon import ThreadDiedError
+    from mocapd.service.service import ThreadDiedError
     from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 

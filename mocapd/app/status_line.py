@@ -12,7 +12,7 @@ from rich.text import Text
 from mocapd.app.logs import stderr_is_journal
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
 
 PLAIN_EVERY_S = 5.0  # where nothing can be overwritten [s]
 

@@ -56,6 +56,7 @@ def bench_command(
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.capture.source_kinds import is_simulated
+    from mocapd.outputs.registry import zenoh_section
 
     refuse_variant(variant)
     effective = effective_config(config, settings, tracker__name=tracker).config
@@ -63,7 +64,7 @@ def bench_command(
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
     if watched and not live:
         raise ConfigError("--watched without --live", "command line", "add --live")
-    if live and not effective.zenoh.enabled:
+    if live and not zenoh_section(effective.outputs).enabled:
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
 

@@ -48,11 +48,10 @@ def check_config(
     _print_table(rows)
     if not changed:
         _print_calibration(effective.config)
-    from mocapd.outputs.zenoh.zenoh_warnings import warnings
+    from mocapd.outputs.registry import unsafe_outputs
 
-    zenoh = effective.config.zenoh
-    # a daemon logs Zenoh's own when it opens it
-    for line in (*unsafe_settings(effective), *(warnings(zenoh) if zenoh.enabled else ())):
+    # a daemon logs those of outputs when it opens them
+    for line in (*unsafe_settings(effective), *unsafe_outputs(effective.config.outputs)):
         print(f"# unsafe: {line}")
 
 

@@ -12,6 +12,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.cli.run import run_with
 
 if TYPE_CHECKING:
+    from mocapd.config.effective import Effective
     from mocapd.config.sections import Config
 
 SCENARIO = "sim:living_room"
@@ -30,17 +31,23 @@ def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd demo
     """
-    effective = effective_config(config, settings, capture=SCENARIO)
-    watch = watch_command(effective.config)
-    raise typer.Exit(run_with(effective, f"in a second terminal: {watch}"))
+
+    def read() -> "Effective":
+        return effective_config(config, settings, capture=SCENARIO)
+
+    watch = watch_command(read().config)
+    raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))
 
 
 def watch_command(config: "Config") -> str:
     """The command line that shows the stream of this configuration, to be pasted anywhere."""
+    from mocapd.outputs.registry import ZenohSection, zenoh_section
+
     beside = Path(sys.executable).parent / "mocapd"
     on_path = shutil.which("mocapd")
     name = "mocapd" if on_path and Path(on_path) == beside else str(beside)
     words = [name, "watch"]
-    if config.zenoh.port != type(config.zenoh)().port:
-        words += ["--set", f"zenoh.port={config.zenoh.port}"]
+    port = zenoh_section(config.outputs).port
+    if port != ZenohSection().port:
+        words += ["--set", f"zenoh.port={port}"]
     return shlex.join(words)

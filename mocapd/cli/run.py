@@ -10,6 +10,8 @@ from mocapd.app.unsafe_settings import unsafe_settings
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mocapd.config.effective import Effective
 
 _log = logging.getLogger(__name__)
@@ -34,27 +36,28 @@ def run(
 ) -> None:
     """Run the daemon in the foreground.
 
-    Ends with SIGTERM (exit code 0), Ctrl-C (130), or when every recording has ended.
+    Ends with SIGTERM (exit code 0), Ctrl-C (130), or when every recording has ended. SIGHUP has it read
+    its configuration again, unless it has a terminal: there it ends.
 
     Example: mocapd run --rig rig.json --camera left=/dev/video0 --camera right=/dev/video2
     """
-    effective = effective_config(
-        config,
-        settings,
-        cameras,
-        capture,
-        rig=None if rig is None else str(rig),
-        tracker__name=tracker,
-        instance=instance,
+    flags = {
+        "rig": None if rig is None else str(rig),
+        "tracker__name": tracker,
+        "instance": instance,
+    }
+    raise typer.Exit(
+        run_with(lambda: effective_config(config, settings, cameras, capture, **flags))
     )
-    raise typer.Exit(run_with(effective))
 
 
-def run_with(effective: "Effective", hint: str = "") -> int:
-    """Run with this configuration until it ends; the exit code. `hint` is logged once it runs."""
+def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
+    """Run with the configuration that is read, now and whenever it is to be read again, until it ends; the
+    exit code. `hint` is logged once it runs."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.logs import set_up_logs
 
+    effective = read()
     config = effective.config
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
@@ -65,25 +68,17 @@ def run_with(effective: "Effective", hint: str = "") -> int:
     from mocapd.app.first_start import prepare_apart
     from mocapd.app.progress import ProgressBars
     from mocapd.app.running import Signals, end_despite_work, run_daemon
-    from mocapd.service.daemon import Daemon
+    from mocapd.app.session_change import SessionChange
+    from mocapd.service.service import Service
     from mocapd.session.session import open_session
 
-    signals = Signals()
+    signals = Signals(reloads=True)
     prepare_apart(config)
-    page = DaemonPage(config) if config.web.enabled else None
+    with ProgressBars() as progress:
+        service = Service(config, open_session(config, progress))
+    page = DaemonPage(service) if config.web.enabled else None
     try:
-        while True:
-            with ProgressBars() as progress:
-                session = open_session(config, progress)
-            daemon = Daemon(config, session)
-            if page is not None:
-                page.serve(daemon, session)
-            code = run_daemon(daemon, signals, hint, page)
-            if code is not None:
-                break
-            signals.alone()
-            _log.info("opening the cameras anew, with the calibration that was saved")
-            hint = ""
+        code = run_daemon(service, signals, hint, SessionChange(service, read, signals, page))
     finally:
         if page is not None:
             page.close()

@@ -9,7 +9,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 
 if TYPE_CHECKING:
     from mocapd.client import Body
-    from mocapd.config.sections import ZenohSection
+    from mocapd.outputs.registry import ZenohSection
 
 SHOWN = ("head", "leftHand", "rightHand", "hips")
 
@@ -42,8 +42,9 @@ def watch(
     Example: mocapd watch --json | head -n 1
     """
     from mocapd import client
+    from mocapd.outputs.registry import zenoh_section
 
-    zenoh = effective_config(config, settings).config.zenoh
+    zenoh = zenoh_section(effective_config(config, settings).config.outputs)
     bodies = client.stream(
         endpoint or _endpoint(zenoh), instance=instance, connect_timeout_s=timeout_s
     )

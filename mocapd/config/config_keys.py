@@ -53,6 +53,11 @@ class Key:
         bare = _bare(self.type)
         return bare in (str, Path) or get_origin(bare) is Literal
 
+    @property
+    def is_path(self) -> bool:
+        """Whether it is a path although its part keeps it as text, as the extra of its Meta says."""
+        return bool((_meta(self.type).extra or {}).get("is_path"))
+
 
 def keys_of(section: Any, prefix: str = "") -> Iterator[Key]:
     """Every key of a section and of the sections in it, in the order of the fields."""

@@ -1,7 +1,7 @@
 """The configuration in force, and where each of its values came from.
 
 Precedence: flag > environment MOCAPD_* > config file > built-in. No part ever sees the whole of it;
-`daemon.py` hands each its own section.
+`service.py` hands each its own section.
 """
 
 import os
@@ -15,7 +15,7 @@ import platformdirs
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.source_kinds import address_beside
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
-from mocapd.config.sections import GONE, HIDDEN, TEXT_PATHS, CameraSection, Config
+from mocapd.config.sections import GONE, HIDDEN, CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
 
@@ -108,7 +108,7 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
         if path not in known:
             raise _unknown(path, known, file.where(path))
         value = converted(known[path].type, raw, path, file.where)
-        found[path] = (_beside(folder, path, value, file.where(path)), file.where(path))
+        found[path] = (_beside(folder, known[path], value, file.where(path)), file.where(path))
     return found
 
 
@@ -148,20 +148,20 @@ def _from_text(key: Key, text: str, origin: str) -> tuple[Any, str]:
     except UnicodeEncodeError:  # bytes of a command line or a variable; no output could say it
         raise ConfigError(f"{key.path} is no UTF-8 text", origin, "give it another name") from None
     value = converted(key.type, parsed(text, key.wants_text), key.path, lambda _: origin)
-    return _beside(Path.cwd(), key.path, value, origin), origin
+    return _beside(Path.cwd(), key, value, origin), origin
 
 
-def _beside(folder: Path, path: str, value: Any, where: str) -> Any:
+def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
     """Paths made absolute: a relative one is meant from the file that holds it."""
     try:
         if isinstance(value, Path):
             return folder / user_path(value)
-        if path in TEXT_PATHS and value:
+        if key.is_path and value:
             return str(folder / user_path(value))
-        if path == "camera":
+        if key.path == "camera":
             return tuple(_camera_beside(folder, camera) for camera in value)
     except ConfigError as error:
-        raise ConfigError(f"{path} = {error.what}", where, error.fix) from None
+        raise ConfigError(f"{key.path} = {error.what}", where, error.fix) from None
     return value
 
 

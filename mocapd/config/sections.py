@@ -13,8 +13,7 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.config import web_params
 from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
-from mocapd.outputs.osc import osc_sink
-from mocapd.outputs.zenoh import zenoh_config
+from mocapd.outputs.registry import OutputSection, default_sections, output_sections
 from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.smoothing import PRESETS
 from mocapd.trackers.registry import entry, tracker_sections
@@ -115,27 +114,6 @@ class SmoothingSection:
 
 
 @dataclass(frozen=True, slots=True)
-class ZenohSection(zenoh_config.Params):
-    """See zenoh_config.Params.
-
-    enabled: publish on Zenoh
-    """
-
-    enabled: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class OscSection(osc_sink.Params):
-    """See osc_sink.Params.
-
-    enabled: send OSC over UDP
-    destinations: list of `address:port`, numeric addresses only
-    """
-
-    enabled: bool = True
-
-
-@dataclass(frozen=True, slots=True)
 class WebSection(web_params.Params):
     """See web_params.Params.
 
@@ -153,6 +131,7 @@ class Config:
     cache_dir: where what can be made again is kept (compiled code, pose database)
     state_dir: where the calibration is kept that `mocapd calibrate` saves
     camera: the cameras, one [[camera]] section each
+    outputs: a section for each, [zenoh], [osc], ...
     """
 
     instance: Annotated[str, Meta(max_length=64)] = ""
@@ -169,8 +148,9 @@ class Config:
     tracker: TrackerSection = field(default_factory=TrackerSection)
     shirt: ShirtSection = field(default_factory=ShirtSection)
     smoothing: SmoothingSection = field(default_factory=SmoothingSection)
-    zenoh: ZenohSection = field(default_factory=ZenohSection)
-    osc: OscSection = field(default_factory=OscSection)
+    outputs: Annotated[Mapping[str, OutputSection], SectionTable(output_sections)] = field(
+        default_factory=default_sections
+    )
     web: WebSection = field(default_factory=WebSection)
 
 
@@ -180,10 +160,5 @@ GONE = {
     "tracker.colour_paper.baseline = true",
     "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
 }
-# Set by the top-level key `instance`, and by `wait_s` of each camera.
-HIDDEN = ("zenoh.instance", "bundler.camera_waits_s")
-# Paths that their part keeps as text; like every path in a file they are relative to that file.
-TEXT_PATHS = tuple(
-    f"zenoh.{name}"
-    for name in ("tls_certificate", "tls_private_key", "tls_root_ca", "password_file")
-)
+# Set by `wait_s` of each camera.
+HIDDEN = ("bundler.camera_waits_s",)

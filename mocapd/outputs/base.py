@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
+from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 
 
@@ -17,7 +18,8 @@ class SinkStatus:
 
 
 class Sink(Protocol):
-    """One output. `send` is called from one thread; nobody listening is a state, not an error."""
+    """One output. `send` is called from one thread, `tell` from any, also before `open`; nobody listening is a
+    state, not an error."""
 
     name: str
 
@@ -27,6 +29,13 @@ class Sink(Protocol):
 
     def send(self, frame: SkeletonFrame) -> None:
         """Send one frame; never blocks longer than a millisecond or two."""
+        ...
+
+    def tell(self, message: StateMessage) -> None:
+        """Take note of a state, of which the newest holds; one that has no use for it does nothing.
+
+        As quick as `send`.
+        """
         ...
 
     def status(self) -> SinkStatus: ...

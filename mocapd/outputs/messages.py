@@ -1,13 +1,17 @@
-"""What a late joiner may ask for: health, camera status and calibration, as sent on the wire."""
+"""State, of which the newest holds: health, cameras, calibration and rest skeleton, as sent on the wire."""
 
 from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
+from mocapd.errors import InputError
+from mocapd.outputs.wire import Vector, decode_message
+
 HEALTH = "mocapd.Health.v1"
 CAMERA_STATUS = "mocapd.CameraStatus.v1"
 CALIBRATION = "mocapd.Calibration.v1"
+REST_SKELETON = "mocapd.Skeleton.Rest.v1"
 
 
 class OutputHealth(msgspec.Struct, frozen=True):
@@ -86,4 +90,55 @@ class CalibrationInfo(msgspec.Struct, frozen=True):
     schema: Annotated[str, Meta(description=f"always `{CALIBRATION}`")] = CALIBRATION
 
 
-Message = Health | CameraStatus | CalibrationInfo
+class RestSkeleton(msgspec.Struct, frozen=True):
+    """One person's skeleton in the T-pose, so that a receiver can build it before the first frame.
+
+    Lists side by side, parents by number and before their children, -1 at the root: what engines take
+    (Godot's and Unreal's bone arrays, the nodes of glTF), and one pass in order poses the whole of it.
+    """
+
+    instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
+    person: Annotated[int, Meta(description="number of the person, as in the key")]
+    stature_m: Annotated[float, Meta(description="the person's height without shoes [m]")]
+    names: Annotated[
+        tuple[str, ...], Meta(description="VRM 1.0 bone names, every parent before its children")
+    ]
+    parents: Annotated[
+        tuple[int, ...], Meta(description="of each bone: place of its parent in `names`; root: -1")
+    ]
+    offsets_m: Annotated[
+        tuple[Vector, ...],
+        Meta(
+            description="of each bone: from its parent's joint in the T-pose, world axes; root: from the floor below [m]"
+        ),
+    ]
+    schema: Annotated[str, Meta(description=f"always `{REST_SKELETON}`")] = REST_SKELETON
+
+
+StateMessage = Health | CameraStatus | CalibrationInfo | RestSkeleton
+
+
+def subject(message: StateMessage) -> tuple[str, str]:
+    """What a message is about: of messages about the same, the newest holds alone."""
+    match message:
+        case CameraStatus(camera=camera):
+            return message.schema, camera
+        case RestSkeleton(person=person):
+            return message.schema, str(person)
+        case _:
+            return message.schema, ""
+
+
+def decode_rest_skeleton(payload: bytes, encoding: str) -> RestSkeleton:
+    """A payload back to a rest skeleton; fields of later additions to v1 are skipped. Raises InputError."""
+    rest = decode_message(payload, encoding, RestSkeleton, REST_SKELETON)
+    if not (
+        len(rest.names) == len(rest.parents) == len(rest.offsets_m)
+        and all(-1 <= parent < place for place, parent in enumerate(rest.parents))
+    ):
+        raise InputError(
+            f"the lists of a {REST_SKELETON} do not belong together",
+            "wire",
+            "look for another program that publishes on this key",
+        )
+    return rest

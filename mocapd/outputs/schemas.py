@@ -9,6 +9,7 @@ STRUCTS: dict[str, type[msgspec.Struct]] = {
     messages.HEALTH: messages.Health,
     messages.CAMERA_STATUS: messages.CameraStatus,
     messages.CALIBRATION: messages.CalibrationInfo,
+    messages.REST_SKELETON: messages.RestSkeleton,
 }
 ENCODING = "application/schema+json"
 

@@ -1,18 +1,19 @@
-"""A slow sink on a thread of its own, behind a mailbox of depth one."""
+"""A slow sink on a thread of its own, behind a mailbox of the newest frame and the newest of each state."""
 
 import threading
 from dataclasses import replace
 
 from mocapd.errors import MocapdError
 from mocapd.outputs.base import Sink, SinkStatus
+from mocapd.outputs.messages import StateMessage, subject
 from mocapd.outputs.wire import SkeletonFrame
-from mocapd.pipeline.latest import Latest
 
 JOIN_S = 1.0  # how long `close` waits for a send under way [s]
 
 
 class ThreadedSink:
-    """Wraps any sink: `send` returns at once, and of the frames that pile up the newest is sent.
+    """Wraps any sink: `send` and `tell` return at once. Of the frames that pile up the newest is sent, of the
+    states the newest about each subject, and these first.
 
     An error of the inner sink ends its thread, and the next `send` raises, so that the process ends
     rather than going on without this output.
@@ -21,14 +22,19 @@ class ThreadedSink:
     def __init__(self, sink: Sink) -> None:
         self.name = sink.name
         self._sink = sink
-        self._mailbox: Latest[SkeletonFrame] = Latest()
+        self._changed = threading.Condition()  # guards what follows
+        self._frame: SkeletonFrame | None = None
+        self._states: dict[tuple[str, str], StateMessage] = {}
+        self._displaced = 0
+        self._closed = True
         self._thread: threading.Thread | None = None
         self._error: MocapdError | None = None
 
     def open(self) -> None:
         """Open the inner sink, in the caller's thread so that its errors arrive there."""
         self._sink.open()
-        self._mailbox = Latest()
+        with self._changed:
+            self._frame, self._displaced, self._closed = None, 0, False
         self._error = None
         self._thread = threading.Thread(target=self._run, name=f"output-{self.name}", daemon=True)
         self._thread.start()
@@ -37,20 +43,46 @@ class ThreadedSink:
         """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
         if self._thread is not None and not self._thread.is_alive():
             raise self._error or RuntimeError(f"the thread of output {self.name} died, see above")
-        self._mailbox.put(frame)
+        with self._changed:
+            if self._closed:
+                return
+            self._displaced += self._frame is not None
+            self._frame = frame
+            self._changed.notify()
+
+    def tell(self, message: StateMessage) -> None:
+        """Leave it for the thread; before `open`, for the one to come."""
+        with self._changed:
+            self._states[subject(message)] = message
+            self._changed.notify()
 
     def _run(self) -> None:
-        mailbox = self._mailbox
         try:
-            while (frame := mailbox.get()) is not None:
-                self._sink.send(frame)
+            while (waiting := self._taken()) is not None:
+                states, frame = waiting
+                for message in states:
+                    self._sink.tell(message)
+                if frame is not None:
+                    self._sink.send(frame)
         except MocapdError as error:  # handed to the pipeline's thread by `send`
             self._error = error
+
+    def _taken(self) -> tuple[tuple[StateMessage, ...], SkeletonFrame | None] | None:
+        """What waits, as soon as something does; None when it is closed."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._closed or self._states or self._frame is not None)
+            if self._closed:
+                return None
+            states, frame = tuple(self._states.values()), self._frame
+            self._states.clear()
+            self._frame = None
+            return states, frame
 
     def status(self) -> SinkStatus:
         """The inner sink's; frames displaced in the mailbox count as refused."""
         status = self._sink.status()
-        dropped = self._mailbox.dropped
+        with self._changed:
+            dropped = self._displaced
         if not dropped:
             return status
         return replace(
@@ -59,7 +91,9 @@ class ThreadedSink:
 
     def close(self) -> None:
         """Let the thread go, then close the inner sink; may be called twice."""
-        self._mailbox.close()
+        with self._changed:
+            self._closed, self._frame = True, None
+            self._changed.notify()
         if self._thread is not None:
             self._thread.join(JOIN_S)
             self._thread = None

@@ -5,7 +5,7 @@ are only added: a decoder skips fields it does not know. Frame of reference: the
 `mocapd.types` (right-handed, +Y up, metres, a person at rest faces +Z), quaternions xyzw.
 """
 
-from typing import Annotated
+from typing import Annotated, Protocol, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -19,6 +19,15 @@ JSON_MIME = "application/json"
 MSGPACK = f"{MSGPACK_MIME};{SCHEMA}"
 JSON = f"{JSON_MIME};{SCHEMA}"
 
+
+class Message(Protocol):
+    """Every message of ours says which it is."""
+
+    @property
+    def schema(self) -> str: ...
+
+
+M = TypeVar("M", bound=Message)
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
@@ -74,32 +83,39 @@ def decode(payload: bytes, encoding: str = MSGPACK) -> SkeletonFrame:
     `encoding` is what came with it, `<mime>;<schema>`. Raises InputError for a damaged payload, an
     encoding that is neither msgpack nor JSON, or another schema version.
     """
-    mime, _, schema = encoding.partition(";")
-    if schema and schema != SCHEMA:
-        raise _other_schema(schema)
+    return decode_message(payload, encoding, SkeletonFrame, SCHEMA)
+
+
+def decode_message(payload: bytes, encoding: str, kind: type[M], schema: str) -> M:
+    """As `decode`, for any message: `kind`, whose `schema` must be this one."""
+    mime, _, said = encoding.partition(";")
+    if said and said != schema:
+        raise _other_schema(said, schema)
     try:
         if mime == MSGPACK_MIME:
-            frame = decode_msgpack(payload, SkeletonFrame)
+            message = decode_msgpack(payload, kind)
         elif mime == JSON_MIME:
-            frame = decode_json(payload, SkeletonFrame)
+            message = decode_json(payload, kind)
         else:
             raise InputError(
-                f"encoding {encoding[:80]!r} is not known", "wire", f"send {MSGPACK!r} or {JSON!r}"
+                f"encoding {encoding[:80]!r} is not known",
+                "wire",
+                f"send '{MSGPACK_MIME};{schema}' or '{JSON_MIME};{schema}'",
             )
     except MalformedError as error:
         raise InputError(
-            f"a payload of {len(payload)} bytes is no {SCHEMA}: {error.what}",
+            f"a payload of {len(payload)} bytes is no {schema}: {error.what}",
             "wire",
             "look for another program that publishes on this key",
         ) from None
-    if frame.schema != SCHEMA:
-        raise _other_schema(frame.schema)
-    return frame
+    if message.schema != schema:
+        raise _other_schema(message.schema, schema)
+    return message
 
 
-def _other_schema(schema: str) -> InputError:
+def _other_schema(theirs: str, ours: str) -> InputError:
     return InputError(
-        f"the sender speaks {schema!r}, this program reads {SCHEMA!r}",
+        f"the sender speaks {theirs!r}, this program reads {ours!r}",
         "wire",
         "bring daemon and client to the same version of mocapd",
     )

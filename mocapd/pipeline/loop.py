@@ -1,19 +1,20 @@
-"""The pipeline's thread: newest frame set -> tracker -> smoother -> outputs; without frames, word of that."""
+"""The pipeline's thread: newest frame set -> tracker -> smoother -> bodies; without frames, word of that."""
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.pipeline.absence import Absence
+from mocapd.pipeline.body_hub import BodySample, TakesBodies
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Tracker
-from mocapd.types import BodyState, FrameSet, Skeleton
+from mocapd.trackers.base import Track, Tracker
+from mocapd.types import FrameSet
 
-Publish = Callable[[BodyState, Skeleton, FrameSet], None]
 OnDeath = Callable[[BaseException], None]
 
 LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should stop [s]
@@ -22,8 +23,8 @@ LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should 
 class PipelineLoop:
     """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape.
 
-    `publish` is called in the pipeline's thread for each body, also while `lost`, and must not
-    block; with an empty frame set for what `absence` tells while no frames come, which it says when given.
+    `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; with an
+    empty frame set what `absence` tells while no frames come, which it says when given.
     `on_death` is called in that thread with whatever ends it unexpectedly, which is then
     raised again; being stopped is no death.
     """
@@ -34,7 +35,7 @@ class PipelineLoop:
         tracker: Tracker,
         shape: BodyShape,
         smoother: Smoother,
-        publish: Publish,
+        bodies: TakesBodies,
         on_death: OnDeath,
         absence: Absence | None = None,
     ) -> None:
@@ -43,7 +44,7 @@ class PipelineLoop:
         self._shape = shape  # the wearer's: outlives what one tracker knows
         self._skeleton = skeleton_of(shape)
         self._smoother = smoother
-        self._publish = publish
+        self._bodies = bodies
         self._on_death = on_death
         self._absence = absence
         self._stopping = threading.Event()
@@ -101,14 +102,15 @@ class PipelineLoop:
         body = self._smoother.step(track.body)
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
-        self._publish(body, self._skeleton, frames)
+        self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         self._recorder.published(frames, body, step_ns, monotonic_ns())
 
     def _none(self, absence: Absence) -> None:
         """No frames came for a while."""
         body = absence.tell(monotonic_ns())
         if body is not None:
-            self._publish(body, self._skeleton, FrameSet(body.t_ns, {}))
+            nothing = FrameSet(body.t_ns, {})
+            self._bodies.put(BodySample(Track(body, self._shape), self._skeleton, nothing))
             self._recorder.absent(body)
 
     def _wait_s(self) -> float:

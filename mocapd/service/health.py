@@ -72,5 +72,22 @@ def camera_message(
     )
 
 
+def gone_message(instance: str, name: str, camera: CameraInput) -> CameraStatus:
+    """That a camera takes no part any more."""
+    return CameraStatus(
+        instance=instance,
+        camera=name,
+        state=_STATES[CaptureState.ENDED],
+        detail="no longer configured",
+        source=camera.spec,
+        identity="",
+        size_px=camera.size_px,
+        rate_hz=0.0,
+        frames=0,
+        lost_frames=0,
+        reopened=0,
+    )
+
+
 def _number(value: float) -> float:
     return 0.0 if math.isnan(value) else value

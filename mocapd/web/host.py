@@ -2,9 +2,10 @@
 
 from typing import Protocol
 
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.daemon import Snapshot
-from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.service.service import Snapshot
+from mocapd.types import Rig
 from mocapd.wizard.wizard import Wizard
 
 
@@ -30,8 +31,8 @@ class Host(Protocol):
         """The setup, begun when none is going on. Raises UnavailableError when it cannot be now."""
         ...
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
-        """The newest body that was published; None before the first, or when nothing tracks."""
+    def body(self) -> BodySample | None:
+        """The newest body; None before the first, or when nothing tracks."""
         ...
 
     def snapshot(self) -> Snapshot | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.geometry.camera_model import centre, rays
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
 FRUSTUM_M = 0.35  # how long the cameras are drawn [m]

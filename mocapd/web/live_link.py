@@ -48,7 +48,7 @@ class LiveLink:
         while True:
             await self._watched.wait()
             hub, found = self._host.hub, self._host.body()
-            body, skeleton = found if found is not None else (None, None)
+            body, skeleton = (found.body, found.skeleton) if found is not None else (None, None)
             scene = (hub.names if hub is not None else ()), self._host.rig, skeleton
             if last_scene is None or _differ(scene, last_scene):
                 last_scene = scene

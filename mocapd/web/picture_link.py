@@ -96,9 +96,8 @@ async def shapes_over(host: Host, picture: Picture, over: str) -> tuple[Shape, .
         found = host.body()
         if found is None:
             return ()
-        body, skeleton = found
-        if body.t_ns >= picture.t_ns - SAME_MOMENT_NS or loop.time() > until_s:
-            return bone_shapes(cameras[picture.camera], body, skeleton)
+        if found.body.t_ns >= picture.t_ns - SAME_MOMENT_NS or loop.time() > until_s:
+            return bone_shapes(cameras[picture.camera], found.body, found.skeleton)
         await asyncio.sleep(_LOOK_EVERY_S)
 
 

@@ -1,25 +1,22 @@
-"""The newest body that a setup tracks, for who shows it."""
+"""The bodies that a setup tracks, for who shows them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.loop import PipelineLoop
-from mocapd.types import BodyState, FrameSet, Skeleton
 
 
 @dataclass(slots=True, eq=False)
 class NewestBody:
-    """Written by the pipeline's thread, read by any: a reference is replaced whole.
+    """Set by the wizard's thread, read by any: a reference is replaced whole.
 
-    `loop`: the pipeline that writes; both are None while nothing tracks.
+    `loop`: the pipeline that puts them in; None while nothing tracks.
     """
 
-    body: tuple[BodyState, Skeleton] | None = None
+    bodies: BodyHub = field(default_factory=BodyHub)
     loop: PipelineLoop | None = None
-
-    def publish(self, body: BodyState, skeleton: Skeleton, _frames: FrameSet) -> None:
-        """As a pipeline calls it."""
-        self.body = body, skeleton
 
     def forget(self) -> None:
         """Nothing tracks any more."""
-        self.body = self.loop = None
+        self.loop = None
+        self.bodies.forget()

@@ -7,7 +7,7 @@ from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
 from mocapd.types import Tracking
 
 NOTHING = Percentiles(float("nan"), float("nan"))

@@ -13,12 +13,12 @@ from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import open_source
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
-from mocapd.config.sections import CameraSection, Config, OscSection, TrackerSection, ZenohSection
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.metrics import CameraMetrics
-from mocapd.service.daemon import Daemon
 from mocapd.service.health import camera_message
+from mocapd.service.service import Service
 from mocapd.session.session import open_session
 from mocapd.wizard.hosts.daemon_host import DaemonHost
 
@@ -30,8 +30,7 @@ def config_of(address: str, folder: Path) -> Config:
     return Config(
         camera=(CameraSection("net", address),),
         tracker=TrackerSection(name="canned"),
-        zenoh=ZenohSection(enabled=False),
-        osc=OscSection(enabled=False),
+        outputs={},
         state_dir=folder / "state",
         cache_dir=folder / "cache",
     )
@@ -56,16 +55,14 @@ def test_the_daemon_and_a_setup_on_it_wait_for_a_camera_as_the_configuration_say
 ) -> None:
     config = config_of(ADDRESS, tmp_path)
     config = replace(config, camera=(replace(config.camera[0], wait_s=0.25),))
-    daemon = Daemon(config, open_session(config, lambda *_: None))
-    assert daemon.hub.bundler.camera_waits_s == {"net": 0.25}
+    service = Service(config, open_session(config, lambda *_: None))
+    assert service.hub.bundler.camera_waits_s == {"net": 0.25}
 
 
 @pytest.fixture
 def host(tmp_path: Path) -> Iterator[DaemonHost]:
     config = config_of(ADDRESS, tmp_path)
-    session = open_session(config, lambda *_: None)
-    host = DaemonHost(config)
-    host.serve(Daemon(config, session), session)
+    host = DaemonHost(Service(config, open_session(config, lambda *_: None)))
     yield host
     host.rest()
 

@@ -32,10 +32,11 @@ def mocapd(env: dict[str, str], *words: str | Path, cwd: Path | None = None) -> 
 
 
 def start(env: dict[str, str], *words: str | Path) -> subprocess.Popen[str]:
-    """Start one command; whoever starts it ends it."""
+    """Start one command, without a terminal; whoever starts it ends it."""
     return subprocess.Popen(
         [*COMMAND, *map(str, words)],
         env=env,
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -13,7 +13,8 @@ import pytest
 
 import mocapd as package
 from mocapd.cli.demo import watch_command
-from mocapd.config.sections import Config, ZenohSection
+from mocapd.config.sections import Config
+from mocapd.outputs.registry import ZenohSection
 from tests.cli.mocapd_process import COMMAND, mocapd
 from tests.cli.small_capture import FRAMES, write_capture
 
@@ -112,7 +113,7 @@ def test_logs_carry_priorities_in_the_journal(clean_env: dict[str, str], tmp_pat
 
 
 def test_the_demo_prints_a_command_for_the_second_terminal() -> None:
-    command = shlex.split(watch_command(Config(zenoh=ZenohSection(port=7448))))
+    command = shlex.split(watch_command(Config(outputs={"zenoh": ZenohSection(port=7448)})))
     assert Path(command[0]).name == "mocapd"
     assert command[1:] == ["watch", "--set", "zenoh.port=7448"]
     assert shlex.split(watch_command(Config()))[1:] == ["watch"]

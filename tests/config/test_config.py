@@ -14,6 +14,7 @@ from mocapd.config.config_keys import SectionTable, build, keys_of
 from mocapd.config.effective import Effective, load_config
 from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
+from mocapd.outputs.registry import OscSection, zenoh_section
 from mocapd.pipeline.bundler import BundlerParams
 from mocapd.session.camera_inputs import bundler_params
 
@@ -41,7 +42,7 @@ def origin(effective: Effective, path: str) -> str:
 def test_without_any_source_everything_is_built_in() -> None:
     effective = load_config(env={}, candidates=())
     assert not any(setting.changed for setting in effective.settings)
-    assert effective.config.zenoh.port == 7447
+    assert zenoh_section(effective.config.outputs).port == 7447
     assert effective.file is None
 
 
@@ -49,7 +50,7 @@ def test_flag_beats_environment_beats_file_beats_built_in(file: Path) -> None:
     file.write_text("[zenoh]\nport = 1\nformat = 'json'\nconnect_timeout_s = 9\n")
     env = {"MOCAPD_ZENOH_PORT": "2", "MOCAPD_ZENOH_FORMAT": "msgpack"}
     effective = load_config({"zenoh.port": "3"}, file, env)
-    zenoh = effective.config.zenoh
+    zenoh = zenoh_section(effective.config.outputs)
     assert (zenoh.port, zenoh.format, zenoh.connect_timeout_s) == (3, "msgpack", 9.0)
     assert origin(effective, "zenoh.port") == "command line"
     assert origin(effective, "zenoh.format") == "environment MOCAPD_ZENOH_FORMAT"
@@ -155,8 +156,8 @@ def test_text_in_the_environment_needs_no_quotes_and_lists_are_toml() -> None:
     }
     config = load_config(env=env, candidates=()).config
     assert config.instance == "12"
-    assert config.osc.enabled is False
-    assert config.osc.destinations == ("127.0.0.1:9000",)
+    osc = config.outputs["osc"]
+    assert osc == OscSection(destinations=("127.0.0.1:9000",), enabled=False)
     assert config.camera[0].controls.gain == 3
 
 

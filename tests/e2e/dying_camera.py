@@ -4,8 +4,8 @@ import sys
 
 from mocapd.app.running import Signals, run_daemon
 from mocapd.body.shape import mean_shape
-from mocapd.config.sections import Config, OscSection, ZenohSection
-from mocapd.service.daemon import Daemon
+from mocapd.config.sections import Config
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -28,11 +28,11 @@ class DyingCamera:
 
 def main() -> int:
     """The daemon's exit code."""
-    config = Config(zenoh=ZenohSection(enabled=False), osc=OscSection(enabled=False))
+    config = Config(outputs={})
     session = Session(
         (CameraInput(DyingCamera(), "test"),), None, "", CannedTracker(), mean_shape(1.75)
     )
-    return run_daemon(Daemon(config, session), Signals()) or 0
+    return run_daemon(Service(config, session), Signals())
 
 
 if __name__ == "__main__":

@@ -7,9 +7,10 @@ from pathlib import Path
 from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
-from mocapd.config.sections import Config, OscSection, ZenohSection
+from mocapd.config.sections import Config
 from mocapd.errors import CameraLost, ConfigError
-from mocapd.service.daemon import Daemon
+from mocapd.outputs.registry import OscSection
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.base import Track
@@ -54,16 +55,20 @@ class FakeCamera:
     def close(self) -> None:
         self._closed.set()
 
+    @property
+    def closed(self) -> bool:
+        """Whether it was let go."""
+        return self._closed.is_set()
 
-def daemon_on(*cameras: FakeCamera, osc_port: int) -> Daemon:
+
+def daemon_on(*cameras: FakeCamera, osc_port: int) -> Service:
     """With a tracker of its own pose, sending OSC to this port of 127.0.0.1; the caller enters it."""
     config = Config(
-        zenoh=ZenohSection(enabled=False),
-        osc=OscSection(destinations=(f"127.0.0.1:{osc_port}",)),
+        outputs={"osc": OscSection(destinations=(f"127.0.0.1:{osc_port}",))},
         state_dir=Path("/nonexistent"),
     )
     inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)
-    return Daemon(config, Session(inputs, None, "", StrictTracker(), mean_shape(1.75)))
+    return Service(config, Session(inputs, None, "", StrictTracker(), mean_shape(1.75)))
 
 
 class StrictTracker(CannedTracker):

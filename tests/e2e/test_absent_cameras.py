@@ -12,8 +12,8 @@ from pythonosc.osc_bundle import OscBundle
 
 from mocapd.app.status_line import status_text
 from mocapd.capture.thread import CaptureState, CaptureStatus
-from mocapd.service.daemon import Daemon
 from mocapd.service.health import camera_message
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Tracking
 from tests.capture.films import SIZE_PX
@@ -71,7 +71,7 @@ def wait_until(condition: Callable[[], bool]) -> bool:
     return any(condition() or pause.wait(0.01) for _ in range(1000))
 
 
-def status_of(daemon: Daemon, name: str) -> CaptureStatus:
+def status_of(daemon: Service, name: str) -> CaptureStatus:
     return daemon.statuses()[name]
 
 
@@ -163,5 +163,6 @@ def test_of_recordings_that_stop_nothing_is_told(game: Game) -> None:
         game.hear_until(lambda one: one.seq >= 10)
         camera.frozen.set()
         assert wait_until(lambda: status_of(daemon, "a").is_silent)
-        assert daemon.newest is not None
-        assert daemon.newest[0].tracking is Tracking.LIVE
+        newest = daemon.bodies.newest()
+        assert newest is not None
+        assert newest.body.tracking is Tracking.LIVE

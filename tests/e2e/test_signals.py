@@ -58,8 +58,7 @@ def told_after(seconds: float, number: signal.Signals, env: dict[str, str]) -> t
 
 
 @pytest.mark.parametrize(
-    ("number", "code", "moments"),
-    [(signal.SIGTERM, 0, 20), (signal.SIGHUP, 0, 4), (signal.SIGINT, 130, 4)],
+    ("number", "code", "moments"), [(signal.SIGTERM, 0, 20), (signal.SIGINT, 130, 4)]
 )
 def test_it_ends_in_order_from_its_first_import_on(
     env: dict[str, str], number: signal.Signals, code: int, moments: int
@@ -71,11 +70,29 @@ def test_it_ends_in_order_from_its_first_import_on(
         assert "Traceback" not in err
 
 
+def test_without_a_terminal_sighup_ends_nothing_from_its_first_import_on(
+    env: dict[str, str],
+) -> None:
+    words = ("run", "--capture", "sim:living_room", *QUIET)
+    with start(env, *words) as process:
+        wait_until(lambda: catches(process.pid, signal.SIGHUP))
+        process.send_signal(signal.SIGHUP)  # nothing is read yet
+        wait_until(lambda: bool(announced(env)))
+        process.send_signal(signal.SIGHUP)
+        assert process.stderr is not None
+        while "taken up, within" not in (line := process.stderr.readline()):
+            assert line, "it ended"
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=WAIT_S)
+    assert process.returncode == 0
+    assert "Traceback" not in err
+
+
 @pytest.mark.parametrize(
     ("words", "number", "code"),
     [
         ("run", signal.SIGTERM, 0),
-        ("demo", signal.SIGHUP, 0),
+        ("calibrate --demo", signal.SIGHUP, 0),
         ("calibrate --demo", signal.SIGTERM, 0),
         ("calibrate --from-folder boards", signal.SIGTERM, -signal.SIGTERM),  # it is not done
         ("track capture", signal.SIGTERM, -signal.SIGTERM),
@@ -91,7 +108,9 @@ def test_who_ends_with_what_while_it_is_imported(words: str, number: int, code: 
         "time.sleep(10)\n"
     )
     command = [sys.executable, "-c", program, str(int(number)), *words.split()]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(
+        command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False
+    )
     assert (done.returncode, done.stderr) == (code, "")
 
 

@@ -3,13 +3,16 @@
 import threading
 import time
 
+import msgspec
 import pytest
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import CalibrationInfo, StateMessage
 from mocapd.outputs.threaded import ThreadedSink
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import eventually, small_frame
+from tests.outputs.test_zenoh_sink import CAMERA, HEALTH
 
 
 class SlowSink:
@@ -19,6 +22,7 @@ class SlowSink:
 
     def __init__(self) -> None:
         self.got: list[int] = []
+        self.told: list[StateMessage] = []
         self.busy = threading.Event()
         self.let_on = threading.Event()
         self.closed = 0
@@ -29,6 +33,9 @@ class SlowSink:
         self.busy.set()
         self.let_on.wait(10.0)
         self.got.append(frame.seq)
+
+    def tell(self, message: StateMessage) -> None:
+        self.told.append(message)
 
     def status(self) -> SinkStatus:
         return SinkStatus(len(self.got), 0, -1, "slow")
@@ -96,3 +103,22 @@ def test_it_may_be_opened_again() -> None:
         sink.send(small_frame(seq=seq))
         assert eventually(lambda seq=seq: inner.got[-1:] == [seq])  # type: ignore[misc]
         sink.close()
+
+
+def test_of_states_the_newest_about_each_subject_arrives_however_many_frames_pile_up() -> None:
+    inner = SlowSink()
+    sink = ThreadedSink(inner)
+    calibration = CalibrationInfo("pc", "before open", ())
+    sink.tell(calibration)
+    sink.open()
+    sink.send(small_frame(seq=0))
+    assert inner.busy.wait(10.0)
+    other = msgspec.structs.replace(CAMERA, camera="right")
+    lost = msgspec.structs.replace(CAMERA, state="lost")
+    for message in (HEALTH, CAMERA, other, lost):
+        sink.tell(message)
+        sink.send(small_frame(seq=1))
+    inner.let_on.set()
+    assert eventually(lambda: inner.got == [0, 1])
+    assert inner.told == [calibration, HEALTH, lost, other]
+    sink.close()

@@ -22,9 +22,9 @@ from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import whole_frame
 from tests.outputs.test_zenoh_sink import HEALTH
-sink = ZenohSink(Params(instance="pc", port=int(sys.argv[1])))
+sink = ZenohSink(Params(port=int(sys.argv[1])), "pc")
 sink.open()
-sink.set_state(HEALTH)
+sink.tell(HEALTH)
 print("open", flush=True)
 ended = threading.Event()
 threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
@@ -78,7 +78,7 @@ def test_newcomers_are_served_beside_silent_connections() -> None:
 
 def test_messages_larger_than_any_question_are_dropped() -> None:
     with running_sink() as running, other_program(running.endpoint) as session:
-        running.sink.set_state(HEALTH)
+        running.sink.tell(HEALTH)
 
         def answers(size: int) -> int:
             key = "mocapd/v1/pc/health"

@@ -6,6 +6,7 @@ import pytest
 import zenoh
 
 from mocapd.errors import ConfigError
+from mocapd.outputs.instance import chunk
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
 
@@ -107,7 +108,7 @@ def test_loopback_addresses_are_told_from_others(endpoint: str, stays: bool) -> 
     ],
 )
 def test_any_name_becomes_one_chunk_of_a_key(name: str, expected: str) -> None:
-    assert keys.chunk(name) == expected
+    assert chunk(name) == expected
     assert (
         str(zenoh.KeyExpr(keys.camera_status("pc", name)))
         == f"mocapd/v1/pc/camera/{expected}/status"

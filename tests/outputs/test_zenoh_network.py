@@ -41,7 +41,6 @@ def test_only_the_right_login_over_tls_gets_the_stream(certificates: Path) -> No
     endpoint = f"tls/127.0.0.1:{free_port()}"
     sink = ZenohSink(
         Params(
-            instance="pc",
             listen=(endpoint,),
             tls_certificate=str(certificates / "server.pem"),
             tls_private_key=str(certificates / "server.key"),

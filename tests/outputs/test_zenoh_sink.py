@@ -13,7 +13,7 @@ import zenoh
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
-from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Health
+from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Health, RestSkeleton
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
@@ -46,6 +46,8 @@ CAMERA = CameraStatus(
     lost_frames=0,
     reopened=0,
 )
+
+REST = RestSkeleton("pc", 0, 1.75, ("hips", "spine"), (-1, 0), ((0.0, 1.0, 0.0), (0.0, 0.125, 0.0)))
 
 
 def own_sockets() -> set[tuple[str, str, int]]:
@@ -123,8 +125,8 @@ def test_status_says_who_listens() -> None:
 
 def state_of(running: Running) -> CalibrationInfo:
     calibration = CalibrationInfo("pc", "rig.json", ())
-    for message in (HEALTH, CAMERA, calibration):
-        running.sink.set_state(message)
+    for message in (HEALTH, CAMERA, calibration, REST):
+        running.sink.tell(message)
     return calibration
 
 
@@ -139,6 +141,9 @@ def test_a_late_joiner_asks_for_the_state() -> None:
             assert list(cameras) == ["mocapd/v1/pc/camera/left_eye_usb/status"]
             calibration = ask(session, "mocapd/v1/pc/calibration")
             assert next(iter(calibration.values()))[1]["source"] == "rig.json"  # type: ignore[index]
+            ((encoding, rest),) = ask(session, "mocapd/v1/*/rest_skeleton/0").values()
+            assert encoding == "application/msgpack;mocapd.Skeleton.Rest.v1"
+            assert rest["offsets_m"] == [[0.0, 1.0, 0.0], [0.0, 0.125, 0.0]]  # type: ignore[index]
 
 
 def test_every_answer_comes_once_and_on_its_own_key() -> None:
@@ -150,9 +155,11 @@ def test_every_answer_comes_once_and_on_its_own_key() -> None:
         "mocapd/v1/pc/calibration",
         "mocapd/v1/pc/camera/left_eye_usb/status",
         "mocapd/v1/pc/health",
+        "mocapd/v1/pc/rest_skeleton/0",
         "mocapd/v1/pc/schema/mocapd.Calibration.v1",
         "mocapd/v1/pc/schema/mocapd.CameraStatus.v1",
         "mocapd/v1/pc/schema/mocapd.Health.v1",
+        "mocapd/v1/pc/schema/mocapd.Skeleton.Rest.v1",
         "mocapd/v1/pc/schema/mocapd.Skeleton.v1",
     ]
 
@@ -168,9 +175,9 @@ def test_changes_of_state_are_published_and_the_newest_is_kept() -> None:
     with running_sink(format="json") as running, other_program(running.endpoint) as session:
         with session.declare_subscriber("mocapd/v1/pc/camera/*/status") as subscriber:
             time.sleep(0.3)  # until the daemon knows of the subscription
-            running.sink.set_state(CAMERA)
+            running.sink.tell(CAMERA)
             assert b'"state":"live"' in subscriber.recv().payload.to_bytes()
-        running.sink.set_state(msgspec.structs.replace(CAMERA, state="lost"))
+        running.sink.tell(msgspec.structs.replace(CAMERA, state="lost"))
         ((encoding, status),) = ask(session, "mocapd/v1/pc/camera/*/status").values()
     assert encoding == "application/json;mocapd.CameraStatus.v1"
     assert status["state"] == "lost"  # type: ignore[index]
@@ -229,7 +236,7 @@ def test_it_joins_a_router_and_opens_no_socket_of_its_own() -> None:
     router.insert_json5("scouting/multicast/enabled", "false")
     with zenoh.open(router):
         before = own_sockets()
-        sink = ZenohSink(Params(instance="pc", connect=(f"tcp/127.0.0.1:{port}",)))
+        sink = ZenohSink(Params(connect=(f"tcp/127.0.0.1:{port}",)), "pc")
         sink.open()
         assert own_sockets() == before
         with other_program(f"tcp/127.0.0.1:{port}") as game:
@@ -237,7 +244,7 @@ def test_it_joins_a_router_and_opens_no_socket_of_its_own() -> None:
                 assert eventually(lambda: sink.status().listeners == -1)
                 sink.send(small_frame(seq=5))
                 assert wire.decode(subscriber.recv().payload.to_bytes()).seq == 5
-            sink.set_state(HEALTH)
+            sink.tell(HEALTH)
             assert ask(game, "mocapd/v1/pc/health")
         assert eventually(lambda: sink.status().listeners == 0)
         assert "nobody listens" in sink.status().detail
@@ -254,7 +261,7 @@ def test_a_router_that_is_not_there_is_unavailable() -> None:
 def test_closed_it_takes_frames_and_state_quietly() -> None:
     sink = ZenohSink(Params(port=free_port()))
     sink.send(small_frame())
-    sink.set_state(HEALTH)
+    sink.tell(HEALTH)
     assert sink.status().detail == "closed"
     sink.close()
     sink.close()

@@ -34,7 +34,7 @@ class Running:
 @contextmanager
 def running_sink(port: int = 0, **params: object) -> Iterator[Running]:
     port = port or free_port()
-    sink = ZenohSink(Params(instance="pc", port=port, **params))  # type: ignore[arg-type]
+    sink = ZenohSink(Params(port=port, **params), "pc")  # type: ignore[arg-type]
     sink.open()
     try:
         yield Running(sink, port)

@@ -9,13 +9,14 @@ import pytest
 
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.clock import monotonic_ns
+from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.base import Probe, Track, Tracker, unprobed
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import BodyState, Frame, FrameSet, Skeleton, Tracking
+from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
 
 SHAPE = mean_shape(1.7)
@@ -46,7 +47,7 @@ class Run:
 
     def __init__(self, tracker: Tracker) -> None:
         self.collector = FrameCollector(("a", "b"))
-        self.out: list[tuple[BodyState, Skeleton, FrameSet]] = []
+        self.out: list[BodySample] = []
         self.deaths: list[BaseException] = []
         self.news = threading.Condition()
         self.loop = PipelineLoop(
@@ -54,14 +55,14 @@ class Run:
             tracker,
             SHAPE,
             Smoother("balanced", skeleton_of(SHAPE)),
-            self._publish,
+            BodyHub(self),
             self._die,
         )
         self._seq = 0
 
-    def _publish(self, body: BodyState, skeleton: Skeleton, frames: FrameSet) -> None:
+    def put(self, sample: BodySample) -> None:
         with self.news:
-            self.out.append((body, skeleton, frames))
+            self.out.append(sample)
             self.news.notify_all()
 
     def _die(self, error: BaseException) -> None:
@@ -90,10 +91,10 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
     run.loop.start()
     run.feed_until_out(12)
     assert run.loop.stop(20.0)
-    times = [body.t_ns for body, _, _ in run.out]
+    times = [one.body.t_ns for one in run.out]
     assert times == sorted(set(times))
-    assert all(body.t_ns == frames.t_ns for body, _, frames in run.out)
-    assert all(body.tracking is Tracking.LIVE for body, _, _ in run.out)
+    assert all(one.body.t_ns == one.frames.t_ns for one in run.out)
+    assert all(one.body.tracking is Tracking.LIVE for one in run.out)
     metrics = run.loop.metrics()
     assert metrics.published >= 11  # the last is recorded after it is out
     assert metrics.sets_made == 12

@@ -6,10 +6,11 @@ import pytest
 
 from mocapd.body.shape import mean_shape
 from mocapd.config.effective import load_config
-from mocapd.config.sections import Config, OscSection, ZenohSection
+from mocapd.config.sections import Config
 from mocapd.errors import ConfigError
-from mocapd.outputs.zenoh import keys
-from mocapd.service.daemon import Daemon
+from mocapd.outputs.instance import instance_name
+from mocapd.outputs.registry import OscSection, OutputSection, ZenohSection
+from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -43,7 +44,11 @@ def test_64_characters_are_a_name() -> None:
 
 @pytest.mark.parametrize("on_zenoh", [True, False])
 def test_without_a_name_it_is_the_machines_also_when_only_osc_is_sent(on_zenoh: bool) -> None:
-    config = Config(zenoh=ZenohSection(enabled=on_zenoh), osc=OscSection(enabled=not on_zenoh))
+    outputs: dict[str, OutputSection] = {
+        "zenoh": ZenohSection(enabled=on_zenoh),
+        "osc": OscSection(enabled=not on_zenoh),
+    }
+    config = Config(outputs=outputs)
     camera = CameraInput(DyingCamera(), "never opened")
     session = Session((camera,), None, "", CannedTracker(), mean_shape(1.75))
-    assert Daemon(config, session).instance == keys.default_instance()
+    assert Service(config, session).instance == instance_name()

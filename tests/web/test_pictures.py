@@ -201,9 +201,9 @@ def test_the_body_is_drawn_where_the_camera_sees_it(host: TinyHost, pictures: Pi
     assert {shape["style"] for shape in shapes} == {"bone", "hint"}
     found = host.body()
     assert found is not None
-    assert found[0].joints_m is not None
+    assert found.body.joints_m is not None
     assert host.rig is not None
-    seen_px = project(host.rig.cameras[1], found[0].joints_m)
+    seen_px = project(host.rig.cameras[1], found.body.joints_m)
     drawn_px = np.array([point for shape in shapes for point in shape["at_px"]])
     # the body has moved a little since the picture was drawn
     assert np.allclose(drawn_px.mean(axis=0), seen_px.mean(axis=0), atol=60)

@@ -5,18 +5,21 @@ from types import MappingProxyType
 
 import numpy as np
 
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import joint_positions, standard_skeleton
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
-from mocapd.service.daemon import Snapshot
+from mocapd.service.service import Snapshot
+from mocapd.trackers.base import Track
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.canned.tracker import canned_pose
-from mocapd.types import BodyState, Frame, Rig, Skeleton, Tracking
+from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
 from mocapd.wizard.step import Problem, Shape, StepName, StepState, StepView
@@ -114,7 +117,7 @@ class TinyHost:
             self.wizard = wizard
         return self.wizard
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
+    def body(self) -> BodySample | None:
         if not self.tracks:
             return None
         now_ns = monotonic_ns()
@@ -123,7 +126,7 @@ class TinyHost:
         confidence = np.ones(len(joints_m))
         confidence[-4:] = 0.1
         state = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)
-        return state, self.skeleton
+        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, FrameSet(now_ns, {}))
 
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.osc.osc_frame import FrameBundles, Shape, shape_of
 from mocapd.outputs.wire import SkeletonFrame
 
@@ -139,6 +140,9 @@ class OscSink:
         datagrams = layout.filled(frame)
         for destination in self._destinations:
             destination.send(datagrams)
+
+    def tell(self, message: StateMessage) -> None:
+        """Nothing is sent: a datagram reaches nobody who comes later, and the frames say the rest."""
 
     def status(self) -> SinkStatus:
         """Frames over all destinations; `listeners` is -1 when only other machines are sent to."""

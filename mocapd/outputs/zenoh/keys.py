@@ -1,23 +1,9 @@
 """The Zenoh keys of mocapd: `mocapd/v1/<instance>/...`, one function per key."""
 
-import re
-import socket
+from mocapd.outputs.instance import chunk
 
 ROOT = "mocapd/v1"
 ANY = "*"  # in place of a name: every one of them
-
-
-def chunk(name: str) -> str:
-    """A name as one chunk of a key: what Zenoh gives a meaning to (`/ * $ ? # @`) becomes `_`.
-
-    Names of letters, digits, `_`, `.` and `-` stay as they are; an empty name becomes `_`.
-    """
-    return re.sub(r"[^\w.\-]", "_", name, flags=re.ASCII) or "_"
-
-
-def default_instance() -> str:
-    """The name of a daemon that was given none: the machine's."""
-    return chunk(socket.gethostname())
 
 
 def skeleton(instance: str, person: int | str) -> str:
@@ -38,6 +24,11 @@ def camera_status(instance: str, camera: str) -> str:
 def calibration(instance: str) -> str:
     """State: `messages.CalibrationInfo`."""
     return f"{ROOT}/{instance}/calibration"
+
+
+def rest_skeleton(instance: str, person: int | str) -> str:
+    """State: `messages.RestSkeleton`. Not below the frames' key: who takes `skeleton/**` wants frames."""
+    return f"{ROOT}/{instance}/rest_skeleton/{person}"
 
 
 def schema(instance: str, name: str) -> str:

@@ -8,7 +8,9 @@ may read and ask, never write.
 import ipaddress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from msgspec import Meta
 
 from mocapd.errors import ConfigError
 from mocapd.outputs.zenoh.zenoh_limits import receive_limits, unicast_limits
@@ -19,12 +21,14 @@ PORT = 7447
 FORMATS = ("msgpack", "json")
 ENCRYPTED = ("tls", "quic")
 
+# kept as text; one that is relative is meant from the file that it is configured in
+PathText = Annotated[str, Meta(extra={"is_path": True})]
+
 
 @dataclass(frozen=True, slots=True)
 class Params:
     """How the daemon is on Zenoh. Raises ConfigError naming the value and the mend.
 
-    instance: name in the keys; empty: the machine's name
     format: `msgpack` or `json`
     port: TCP port on 127.0.0.1; 7447 is also the usual port of a Zenoh router
     listen: endpoints to listen on instead, such as `tls/0.0.0.0:7447`
@@ -37,18 +41,17 @@ class Params:
     password_file: let in only users of this file, lines `user:password` (use it with `tls/`)
     """
 
-    instance: str = ""
     format: str = "msgpack"
     port: int = PORT
     listen: tuple[str, ...] = ()
     connect: tuple[str, ...] = ()
     connect_timeout_s: float = 3.0
     allow_unencrypted: bool = False
-    tls_certificate: str = ""
-    tls_private_key: str = ""
-    tls_root_ca: str = ""
+    tls_certificate: PathText = ""
+    tls_private_key: PathText = ""
+    tls_root_ca: PathText = ""
     tls_require_client: bool = False
-    password_file: str = ""
+    password_file: PathText = ""
 
     def __post_init__(self) -> None:
         _require(self.format in FORMATS, "format", self.format, f"one of {', '.join(FORMATS)}")

@@ -8,7 +8,8 @@ import zenoh
 
 from mocapd.outputs import wire
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.messages import Message
+from mocapd.outputs.instance import instance_name
+from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_close import close_soon
@@ -24,15 +25,16 @@ _log = logging.getLogger(__name__)
 class ZenohSink:
     """Publishes frames, answers late joiners, and shows that it lives by a liveliness token.
 
-    `send` from one thread; `set_state` and `status` from any. While nobody subscribes a frame is
+    `send` from one thread; `tell` and `status` from any. While nobody subscribes a frame is
     not even encoded.
     """
 
     name = "zenoh"
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: Params, instance: str = "") -> None:
+        """instance: the daemon's name in the keys; empty: the machine's."""
         self._params = params
-        self.instance = keys.chunk(params.instance) if params.instance else keys.default_instance()
+        self.instance = instance_name(instance)
         self._json = params.format == "json"
         self._state = ZenohState(self.instance, params.format)
         self._listener_names = ListenerNames()
@@ -80,8 +82,8 @@ class ZenohSink:
         publisher.put(wire.encode_json(frame) if self._json else wire.encode_msgpack(frame))
         self._sent += 1
 
-    def set_state(self, message: Message) -> None:
-        """Publish health, a camera's status or the calibration, and keep it for late joiners."""
+    def tell(self, message: StateMessage) -> None:
+        """Publish it, and keep it for late joiners."""
         self._state.set(message)
 
     def status(self) -> SinkStatus:

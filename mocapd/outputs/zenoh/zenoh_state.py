@@ -8,7 +8,13 @@ import msgspec
 import zenoh
 
 from mocapd.outputs import schemas, wire
-from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Health, Message
+from mocapd.outputs.messages import (
+    CalibrationInfo,
+    CameraStatus,
+    Health,
+    RestSkeleton,
+    StateMessage,
+)
 from mocapd.outputs.zenoh import keys
 
 
@@ -18,7 +24,7 @@ class ZenohState:
     def __init__(self, instance: str, message_format: str) -> None:
         self._instance = instance
         self._mime = wire.JSON_MIME if message_format == "json" else wire.MSGPACK_MIME
-        self._encode: Callable[[Message], bytes] = (
+        self._encode: Callable[[StateMessage], bytes] = (
             msgspec.json.encode if message_format == "json" else msgspec.msgpack.encode
         )
         self._lock = threading.Lock()  # guards _replies
@@ -34,6 +40,7 @@ class ZenohState:
             keys.health(self._instance),
             keys.camera_status(self._instance, keys.ANY),
             keys.calibration(self._instance),
+            keys.rest_skeleton(self._instance, keys.ANY),
             keys.schema(self._instance, keys.ANY),
         ):
             # on Zenoh's own thread: the Python thread it would else start keeps a process whose
@@ -46,7 +53,7 @@ class ZenohState:
         """Publish no more changes; what was set stays known."""
         self._session = None
 
-    def set(self, message: Message) -> None:
+    def set(self, message: StateMessage) -> None:
         """Make this the state of its key; may be called before `attach`."""
         key = self._key_of(message)
         payload, encoding = self._encode(message), f"{self._mime};{message.schema}"
@@ -56,7 +63,7 @@ class ZenohState:
         if session is not None:
             session.put(key, payload, encoding=encoding)
 
-    def _key_of(self, message: Message) -> str:
+    def _key_of(self, message: StateMessage) -> str:
         match message:
             case Health():
                 return keys.health(self._instance)
@@ -64,6 +71,8 @@ class ZenohState:
                 return keys.camera_status(self._instance, camera)
             case CalibrationInfo():
                 return keys.calibration(self._instance)
+            case RestSkeleton(person=person):
+                return keys.rest_skeleton(self._instance, person)
 
     def _answer_for(self, family: str) -> Callable[[zenoh.Query], None]:
         declared = zenoh.KeyExpr(family)

@@ -91,7 +91,7 @@ class CheckTracking:
         self._collector = FrameCollector(prepared.rig.names, hub.bundler)
         smoother = Smoother(smoothing, skeleton_of(prepared.shape))
         self._loop = PipelineLoop(
-            self._collector, prepared.tracker, prepared.shape, smoother, shown.publish, died
+            self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died
         )
         self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
         self._loop.start()

@@ -12,10 +12,11 @@ from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.daemon import Daemon, Snapshot
+from mocapd.service.service import Service, Snapshot
 from mocapd.session.session import Session
-from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange, find_port_changes, same_camera
 from mocapd.wizard.check.check_tracking import CheckSettings
@@ -33,16 +34,16 @@ _log = logging.getLogger(__name__)
 
 
 class DaemonHost:
-    """A Host (see web.host) over one daemon after another: `serve` each, `rest` in between.
+    """A Host (see web.host) over a service, whatever its session: it must `rest` while that is changed.
 
     `saved` is set when a setup has saved its calibration.
     """
 
-    def __init__(self, config: Config) -> None:
-        self._config = config
+    def __init__(self, service: Service) -> None:
+        self._service = service
         self.saved = threading.Event()
         self._lock = threading.Lock()  # guards what follows
-        self._run: tuple[Daemon, Session] | None = None
+        self._resting = False
         self._wizard: Wizard | None = None
         self._locks: CameraLocks | None = None
         self._checked = NewestBody()  # by the setup's own tracker, while its step Check runs one
@@ -50,17 +51,16 @@ class DaemonHost:
 
     # -- the owner's -----------------------------------------------------------------------------
 
-    def serve(self, daemon: Daemon, session: Session) -> None:
-        """This daemon runs now."""
-        with self._lock:
-            self._run = daemon, session
-        self.saved.clear()
-
     def rest(self) -> None:
-        """It is about to end: so does a setup on its cameras."""
+        """The session is about to end: so does a setup on its cameras."""
         with self._lock:
-            self._run = None
+            self._resting = True
         self._end_setup()
+
+    def resume(self) -> None:
+        """One runs that stays."""
+        with self._lock:
+            self._resting = False
 
     def beat(self) -> None:
         """About once a second: a setup that was left behind gives the cameras back what it took."""
@@ -71,18 +71,17 @@ class DaemonHost:
     # -- Host ------------------------------------------------------------------------------------
 
     @property
-    def hub(self) -> FrameHub | None:
+    def hub(self) -> FrameHub:
         """See Host."""
-        run = self._run
-        return run[0].hub if run is not None else None
+        return self._service.hub
 
     @property
     def rig(self) -> Rig | None:
         """See Host."""
-        run, wizard = self._run, self._wizard
+        wizard = self._wizard
         if wizard is not None and self._checked.loop is not None:
             return wizard.draft.rig
-        return run[1].rig if run is not None else None
+        return self._service.session.rig
 
     @property
     def wizard(self) -> Wizard | None:
@@ -93,31 +92,28 @@ class DaemonHost:
     def setup(self) -> Wizard:
         """See Host."""
         with self._lock:
-            if self._run is None:
+            if self._resting:
                 raise UnavailableError(
-                    "the cameras are being opened", "the daemon", "try again in a few seconds"
+                    "another session is about to begin", "the daemon", "try again in a few seconds"
                 )
             if self._wizard is None:
                 self._looked_s = time.monotonic()
-                self._wizard = self._begun(*self._run)
+                self._wizard = self._begun()
             return self._wizard
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
+    def body(self) -> BodySample | None:
         """See Host."""
-        run = self._run
-        if self._checked.loop is not None:
-            return self._checked.body
-        return run[0].newest if run is not None else None
+        bodies = self._checked.bodies if self._checked.loop is not None else self._service.bodies
+        return bodies.newest()
 
-    def snapshot(self) -> Snapshot | None:
+    def snapshot(self) -> Snapshot:
         """See Host."""
-        run = self._run
-        return run[0].snapshot() if run is not None else None
+        return self._service.snapshot()
 
     # -- the setup -------------------------------------------------------------------------------
 
-    def _begun(self, daemon: Daemon, session: Session) -> Wizard:
-        config = self._config
+    def _begun(self) -> Wizard:
+        service, config, session = self._service, self._service.config, self._service.session
         self._locks = CameraLocks(camera.source for camera in session.cameras)
         state_dir = state_dir_of(config, session)
         cameras, draft = _with_what_was_saved(_cameras_of(session, config), state_dir)
@@ -128,17 +124,17 @@ class DaemonHost:
         cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
-            CheckSettings(config.tracker, config.smoothing.preset, daemon.hub.bundler),
+            CheckSettings(config.tracker, config.smoothing.preset, service.hub.bundler),
             self._checked,
-            daemon.died,
+            service.died,
         )
         wizard = Wizard(
-            daemon.hub,
+            service.hub,
             steps,
-            daemon.statuses,
+            service.statuses,
             state_dir,
             config.cache_dir,
-            daemon.died,
+            service.died,
             draft=draft,
             on_saved=self.saved.set,
             keeper=SetupKeeper(state_dir, draft, self._locks),

@@ -7,9 +7,10 @@ from pathlib import Path
 from mocapd.capture.base import Source
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import MocapdError
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.daemon import Snapshot, ThreadDiedError
-from mocapd.types import BodyState, Rig, Skeleton
+from mocapd.service.service import Snapshot, ThreadDiedError
+from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_tracking import CheckSettings
@@ -114,9 +115,9 @@ class OwnHost:
         """See Host."""
         return self.wizard
 
-    def body(self) -> tuple[BodyState, Skeleton] | None:
+    def body(self) -> BodySample | None:
         """See Host."""
-        return self._shown.body
+        return self._shown.bodies.newest()
 
     def snapshot(self) -> Snapshot | None:
         """See Host."""

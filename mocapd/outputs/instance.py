@@ -1,0 +1,17 @@
+"""The name of a daemon, as in every message and key of it."""
+
+import re
+import socket
+
+
+def chunk(name: str) -> str:
+    """A name as one chunk of a key: what Zenoh gives a meaning to (`/ * $ ? # @`) becomes `_`.
+
+    Names of letters, digits, `_`, `.` and `-` stay as they are; an empty name becomes `_`.
+    """
+    return re.sub(r"[^\w.\-]", "_", name, flags=re.ASCII) or "_"
+
+
+def instance_name(given: str = "") -> str:
+    """The name of a daemon that was given this one; the machine's where it was given none."""
+    return chunk(given or socket.gethostname())

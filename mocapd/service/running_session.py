@@ -1,0 +1,104 @@
+"""The part of a service that can be replaced: the threads of one session's cameras and of its pipeline."""
+
+import time
+from collections.abc import Callable, Mapping
+
+from mocapd.body.shape import skeleton_of
+from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
+from mocapd.config.sections import Config
+from mocapd.pipeline.absence import Absence
+from mocapd.pipeline.body_hub import BodyHub
+from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.loop import PipelineLoop
+from mocapd.pipeline.metrics import Metrics
+from mocapd.pipeline.size_guard import SizeGuard
+from mocapd.pipeline.smoothing import Smoother
+from mocapd.service.mountings import Mountings
+from mocapd.session.camera_inputs import bundler_params
+from mocapd.session.session import Session
+
+STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
+
+
+class RunningSession:
+    """Runs from `start` to `stop`, both called by its owner; `statuses` and `metrics` from any thread.
+
+    `died` hears, in its thread, of what ended one unexpectedly.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        session: Session,
+        bodies: BodyHub,
+        died: Callable[[BaseException], None],
+    ) -> None:
+        self.config, self.session = config, session
+        self.inputs = {camera.source.name: camera for camera in session.cameras}
+        bundler = bundler_params(config)
+        collector = FrameCollector(self.inputs, bundler)
+        sizes_px = {name: c.size_px for name, c in self.inputs.items() if any(c.size_px)}
+        guard = SizeGuard(sizes_px, collector)
+        # who looks at the pictures joins it
+        self.hub = FrameHub(self.inputs, guard, bundler=bundler)
+        self._mountings = Mountings(session.rig, self.hub)
+        self._captures = [
+            CaptureThread(c.source, self.hub, died, c.expected_hz) for c in session.cameras
+        ]
+        smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
+        self._loop = PipelineLoop(
+            collector,
+            session.tracker,
+            session.shape,
+            smoother,
+            bodies,
+            died,
+            _absence(config, session),
+        )
+
+    def start(self) -> None:
+        """Begin; returns at once."""
+        self._loop.start()
+        for capture in self._captures:
+            capture.start()
+
+    def stop(self) -> None:
+        """First everything lets go, then everything ends, within STOP_S."""
+        self._loop.let_go()
+        for capture in self._captures:
+            capture.let_go()
+        until_s = time.monotonic() + STOP_S
+        self._loop.stop(max(0.0, until_s - time.monotonic()))
+        for capture in self._captures:
+            capture.stop(max(0.0, until_s - time.monotonic()))
+
+    @property
+    def over(self) -> bool:
+        """Whether every recording has ended."""
+        return all(c.status().state is CaptureState.ENDED for c in self._captures)
+
+    def statuses(self) -> dict[str, CaptureStatus]:
+        """How each camera fares, by id."""
+        return {status.camera: status for status in (c.status() for c in self._captures)}
+
+    def metrics(self) -> Metrics:
+        """How the pipeline does."""
+        return self._loop.metrics()
+
+    def mountings(self) -> Mapping[str, Mounting]:
+        """How each camera is mounted, as last seen."""
+        return {name: self._mountings.of(name) for name in self.inputs}
+
+    def look(self) -> None:
+        """After the cameras' mountings, about once a second, by one thread."""
+        self._mountings.look()
+
+
+def _absence(config: Config, session: Session) -> Absence | None:
+    """Who tells that no frames come; nobody where recordings are played, which end."""
+    if all(camera.source.recorded for camera in session.cameras):
+        return None
+    n_joints = len(skeleton_of(session.shape).names)
+    return Absence(session.tracker.name, n_joints, config.tracker.coast_s)

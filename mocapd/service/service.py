@@ -1,0 +1,209 @@
+"""The composition root: outputs that live from start to stop, and under them one session after another."""
+
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from types import TracebackType
+
+from mocapd.body.shape import skeleton_of
+from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.capture.thread import CaptureStatus
+from mocapd.config.sections import Config
+from mocapd.errors import MocapdError
+from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.from_rig import calibration_info
+from mocapd.outputs.instance import instance_name
+from mocapd.outputs.messages import CalibrationInfo
+from mocapd.outputs.registry import build_sinks
+from mocapd.pipeline.body_hub import BodyHub
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.metrics import Metrics
+from mocapd.service.health import camera_message, gone_message, health_message
+from mocapd.service.publisher import Publisher
+from mocapd.service.running_session import RunningSession
+from mocapd.session.session import Session
+
+
+class ThreadDiedError(RuntimeError):
+    """A thread ended by what nobody expected, which is the `__cause__`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """How everything fares, for the status line."""
+
+    metrics: Metrics
+    cameras: dict[str, CaptureStatus]
+    outputs: dict[str, SinkStatus]
+    mountings: Mapping[str, Mounting] = field(default_factory=dict)
+
+
+class Service:
+    """Runs from `__enter__` to `__exit__`; meanwhile its owner waits in `wait`, and may `replace` the session.
+
+    `died`, `end` and what tells of the session that runs may be called from any thread, everything
+    else by the owner.
+    """
+
+    def __init__(self, config: Config, session: Session) -> None:
+        self.instance = instance_name(config.instance)
+        self._sinks = build_sinks(config.outputs, self.instance)
+        self._publisher = Publisher(self._sinks, self.instance)
+        self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
+        self._running = RunningSession(config, session, self.bodies, self.died)
+        self._earlier: Metrics | None = None  # of all sessions before
+        self._ended = threading.Event()
+        self._death: BaseException | None = None
+        self._opened = ExitStack()
+        self._started_unix_ns = 0
+
+    def __enter__(self) -> "Service":
+        """Open the outputs, then start the threads. Raises what opening an output raises."""
+        with ExitStack() as opened:
+            for sink in self._sinks:
+                opened.callback(sink.close)
+                sink.open()
+            self._opened = opened.pop_all()
+        self._started_unix_ns = time.time_ns()
+        if self.session.rig:
+            self._tell_calibration()
+        self._begin()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """First everything lets go, then everything closes."""
+        self._running.stop()
+        self._opened.close()
+
+    def replace(self, config: Config, session: Session) -> None:
+        """Go on with this session, on the same outputs: frames are numbered on, and state is told anew.
+
+        Takes as long as the cameras take to let go: a webcam opens only once. Whoever has joined the old
+        session's frames has left them. Once the service is told to end, nothing begins any more.
+        """
+        running = RunningSession(config, session, self.bodies, self.died)
+        before, had_rig = self._running.inputs, self.session.rig is not None
+        self._running.stop()
+        self._earlier = _added(self._running.metrics(), self._earlier)
+        self._running = running
+        if self._ended.is_set():
+            return
+        if had_rig or session.rig:
+            self._tell_calibration()
+        for name, camera in before.items():
+            if name not in running.inputs:
+                self._publisher.tell(gone_message(self.instance, name, camera))
+        self._begin()
+
+    def _begin(self) -> None:
+        shape = self.session.shape
+        self._publisher.begin(skeleton_of(shape), shape.stature_m)
+        self._running.start()
+
+    # -- the session that runs -------------------------------------------------------------------
+
+    @property
+    def config(self) -> Config:
+        """What it was made from."""
+        return self._running.config
+
+    @property
+    def session(self) -> Session:
+        """Cameras, rig and tracker."""
+        return self._running.session
+
+    @property
+    def hub(self) -> FrameHub:
+        """Its cameras' pictures."""
+        return self._running.hub
+
+    def statuses(self) -> dict[str, CaptureStatus]:
+        """How each camera fares, by id."""
+        return self._running.statuses()
+
+    def snapshot(self) -> Snapshot:
+        """How everything fares now; what is counted is counted since the start of the service."""
+        running = self._running
+        return Snapshot(
+            _added(running.metrics(), self._earlier),
+            running.statuses(),
+            {sink.name: sink.status() for sink in self._sinks},
+            running.mountings(),
+        )
+
+    # -- its end ---------------------------------------------------------------------------------
+
+    def died(self, error: BaseException) -> None:
+        """A thread ended unexpectedly: so must the process."""
+        self._death = self._death or error
+        self._ended.set()
+
+    def end(self) -> None:
+        """Make `wait` return; from any thread or a signal handler."""
+        self._ended.set()
+
+    def wait(self, timeout_s: float) -> bool:
+        """Whether it is over: asked to end, or every recording has ended.
+
+        Raises the MocapdError that killed a thread, ThreadDiedError for anything else.
+        """
+        ended = self._ended.wait(timeout_s)
+        if isinstance(self._death, MocapdError):
+            raise self._death
+        if self._death is not None:
+            raise ThreadDiedError from self._death
+        return ended or self._running.over
+
+    # -- state for the outputs -------------------------------------------------------------------
+
+    def tell(self, snapshot: Snapshot) -> None:
+        """Look after the cameras, then health and camera status to the outputs; call it about once a second."""
+        running = self._running
+        running.look()
+        self._publisher.tell(
+            health_message(
+                self.instance,
+                self._started_unix_ns,
+                time.time_ns(),
+                snapshot.metrics,
+                snapshot.outputs,
+            )
+        )
+        for name, status in snapshot.cameras.items():
+            self._publisher.tell(
+                camera_message(
+                    self.instance,
+                    running.inputs[name],
+                    status,
+                    snapshot.metrics.cameras[name],
+                    snapshot.mountings[name],
+                )
+            )
+
+    def _tell_calibration(self) -> None:
+        """Also that there is none any more."""
+        session, instance = self.session, self.instance
+        self._publisher.tell(
+            calibration_info(session.rig, instance=instance, source=session.rig_source)
+            if session.rig
+            else CalibrationInfo(instance, "", ())
+        )
+
+
+def _added(metrics: Metrics, earlier: Metrics | None) -> Metrics:
+    """With what was counted before."""
+    if earlier is None:
+        return metrics
+    return replace(
+        metrics,
+        published=metrics.published + earlier.published,
+        sets_made=metrics.sets_made + earlier.sets_made,
+        sets_dropped=metrics.sets_dropped + earlier.sets_dropped,
+    )
