@@ -6,7 +6,7 @@ from mocapd.assets import asset_path
 from mocapd.boundary.files import user_path
 from mocapd.capture.base import Source
 from mocapd.capture.origin import Origin, OriginKind, Progress
-from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.source_kind import SourceKind, SourceRequest
 from mocapd.errors import ConfigError, InputError
 from mocapd.sim.scenario import load_scenario
 
@@ -40,12 +40,12 @@ def _matches(address: str) -> bool:
     return address.startswith(_PREFIX)
 
 
-def _open(address: str, asked: Asked) -> Source:
-    if asked.origin is None:  # all those of a scenario share a film
+def _open(address: str, request: SourceRequest) -> Source:
+    if request.origin is None:  # all those of a scenario share a film
         raise ConfigError(
             "a simulated camera among others", address, "simulate all cameras, or none of them"
         )
-    return asked.origin.source(address, asked)
+    return request.origin.source(address, request)
 
 
 def _cameras(origin: str) -> tuple[str, ...]:

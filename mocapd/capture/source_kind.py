@@ -11,7 +11,7 @@ from mocapd.capture.webcam.v4l2 import WebcamSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Asked:
+class SourceRequest:
     """What is asked of a source.
 
     name: what to call the camera; without it, what its address says. size_px: width and height of its
@@ -32,7 +32,7 @@ class Asked:
 class SourceKind:
     """One way to write where a camera is read from: its address.
 
-    form: how it is written, for people. matches(address): whether it is written so. open(address, asked):
+    form: how it is written, for people. matches(address): whether it is written so. open(address, request):
     its source, checked but not opened yet; raises ConfigError or InputError. is_path: a relative address is
     meant from the file that holds it. is_settable: it delivers the size that it is asked for. identity: of
     the webcam that an address names; raises ConfigError. origin: where several such cameras are of. Whether
@@ -42,7 +42,7 @@ class SourceKind:
 
     form: str
     matches: Callable[[str], bool]
-    open: Callable[[str, Asked], Source]
+    open: Callable[[str, SourceRequest], Source]
     is_path: bool = False
     is_settable: bool = False
     is_simulated: bool = False
