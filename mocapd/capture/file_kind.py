@@ -3,7 +3,8 @@
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.base import Source
 from mocapd.capture.file import FileSource, check_size, probe_video
-from mocapd.capture.source_kind import SourceKind, SourceRequest
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 
 
 def _matches(address: str) -> bool:

@@ -13,7 +13,7 @@ from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.sim import SimSource
-from mocapd.capture.source_kind import SourceRequest
+from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import Scenario

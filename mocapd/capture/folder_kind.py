@@ -9,7 +9,8 @@ from mocapd.capture.base import Source
 from mocapd.capture.capture_folder import CaptureFolder, folder_source, frame_sets, load_folder
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import OriginKind, Progress, split_address
-from mocapd.capture.source_kind import SourceKind, SourceRequest
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.shirt.colour.model_pictures import read_model
@@ -86,8 +87,6 @@ def _matches(address: str) -> bool:
 
 
 def _open(address: str, request: SourceRequest) -> Source:
-    if isinstance(request.origin, FolderOrigin):
-        return request.origin.source(address, request)
     path = user_path(address)
     folder = path if is_folder(path) else Path(split_address(str(path))[0])
     return FolderOrigin(load_folder(folder)).source(address, request)

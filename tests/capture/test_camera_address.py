@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.source_kind import SourceRequest
 from mocapd.capture.source_kinds import open_source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
 from mocapd.config.sections import CameraSection, Config, OscSection, TrackerSection, ZenohSection

@@ -6,7 +6,6 @@ import pytest
 
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kind import SourceRequest
 from mocapd.capture.source_kinds import (
     SOURCE_FORMS,
     address_beside,
@@ -19,6 +18,7 @@ from mocapd.capture.source_kinds import (
     open_source,
     origin_of,
 )
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource
 from mocapd.capture.webcam.v4l2 import V4l2Source
 from mocapd.errors import ConfigError, InputError, MocapdError, UnavailableError

@@ -5,7 +5,6 @@ from random import Random
 
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
-from mocapd.capture.source_kind import SourceRequest
 from mocapd.capture.source_kinds import (
     address_beside,
     cameras_of_origin,
@@ -14,6 +13,7 @@ from mocapd.capture.source_kinds import (
     open_source,
     origin_of,
 )
+from mocapd.capture.source_request import SourceRequest
 from mocapd.config.config_keys import shown
 from mocapd.config.effective import Effective, known_keys, load_config
 from mocapd.config.sources import env_name

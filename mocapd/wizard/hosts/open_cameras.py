@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kind import SourceRequest
 from mocapd.capture.source_kinds import identities_of, open_source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.thread import CaptureStatus, CaptureThread
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
