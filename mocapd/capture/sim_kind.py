@@ -9,7 +9,6 @@ from mocapd.capture.origin import Origin, OriginKind, Progress
 from mocapd.capture.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, InputError
-from mocapd.sim.scenario import load_scenario
 
 _PREFIX = "sim:"
 
@@ -49,12 +48,15 @@ def _open(address: str, _request: SourceRequest) -> Source:
 
 
 def _cameras(origin: str) -> tuple[str, ...]:
+    from mocapd.sim.scenario import load_scenario
+
     return tuple(camera.name for camera in load_scenario(_scenario_path(origin)).cameras)
 
 
 def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
-    # the renderer is imported for such cameras only: it takes a second
+    # what draws is imported for such cameras only: it takes a second
     from mocapd.capture.film_origin import open_film
+    from mocapd.sim.scenario import load_scenario
 
     return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress)
 
