@@ -11,9 +11,9 @@ import numpy as np
 from mocapd.body.arm_tubes import arm_tube
 from mocapd.body.leg_tubes import foot_tube, leg_tube, plain_leg_tube
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
-from mocapd.body.surface import Surface, joined
+from mocapd.body.surface import Surface, Tube, joined
 from mocapd.body.trunk_tubes import head_tube, torso_tube
-from mocapd.types import Floats
+from mocapd.types import Floats, Skeleton
 
 Build = Callable[[BodyShape], Surface]
 
@@ -22,10 +22,7 @@ def build_surface(shape: BodyShape) -> Surface:
     """The dressed body of this shape in its T-pose; its legs are rough."""
     skeleton = skeleton_of(shape)
     return joined([
-        torso_tube(shape, skeleton),
-        arm_tube(shape, skeleton, "left"),
-        arm_tube(shape, skeleton, "right"),
-        head_tube(shape, skeleton),
+        *_above_the_hips(shape, skeleton),
         plain_leg_tube(shape, skeleton, "left"),
         plain_leg_tube(shape, skeleton, "right"),
     ])  # fmt: skip
@@ -35,15 +32,22 @@ def build_whole_surface(shape: BodyShape) -> Surface:
     """The same with legs and feet that are tracked, too; above the hips it is vertex by vertex the same."""
     skeleton = skeleton_of(shape)
     return joined([
-        torso_tube(shape, skeleton),
-        arm_tube(shape, skeleton, "left"),
-        arm_tube(shape, skeleton, "right"),
-        head_tube(shape, skeleton),
+        *_above_the_hips(shape, skeleton),
         leg_tube(shape, skeleton, "left"),
         leg_tube(shape, skeleton, "right"),
         foot_tube(shape, skeleton, "left"),
         foot_tube(shape, skeleton, "right"),
     ])  # fmt: skip
+
+
+def _above_the_hips(shape: BodyShape, skeleton: Skeleton) -> list[Tube]:
+    """Torso, arms with hands, neck with head."""
+    return [
+        torso_tube(shape, skeleton),
+        arm_tube(shape, skeleton, "left"),
+        arm_tube(shape, skeleton, "right"),
+        head_tube(shape, skeleton),
+    ]
 
 
 def shape_derivatives(

@@ -13,7 +13,7 @@ from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.sim import SimSource
-from mocapd.capture.source_kind import Asked
+from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import Scenario
@@ -69,12 +69,12 @@ class FilmOrigin:
             times_ns = [frame.t_ns for frame in frames.values()]
             yield FrameSet(max(times_ns), frames, max(times_ns) - min(times_ns))
 
-    def source(self, address: str, asked: Asked) -> Source:
+    def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
-        name = asked.name or split_address(address)[1]
+        name = request.name or split_address(address)[1]
         camera = _FilmCamera(self, self._film, name)
         (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
-        check_size(self.rig_source, name, size_px, asked.size_px)
+        check_size(self.rig_source, name, size_px, request.size_px)
         return camera
 
     def start_ns(self) -> int:

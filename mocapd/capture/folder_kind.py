@@ -9,7 +9,8 @@ from mocapd.capture.base import Source
 from mocapd.capture.capture_folder import CaptureFolder, folder_source, frame_sets, load_folder
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import OriginKind, Progress, split_address
-from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.shirt.colour.model_pictures import read_model
@@ -60,7 +61,7 @@ class FolderOrigin:
         """See Origin."""
         return frame_sets(self.folder)
 
-    def source(self, address: str, asked: Asked) -> Source:
+    def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. The only camera is meant when an address names none."""
         camera = "" if is_folder(user_path(address)) else split_address(address)[1]
         names = ", ".join(one.name for one in self.folder.cameras)
@@ -73,9 +74,9 @@ class FolderOrigin:
             )
         for one in self.folder.cameras:
             if camera in ("", one.name):
-                name = asked.name or one.name
-                check_size(str(one.video), name, one.size_px, asked.size_px)
-                return folder_source(one, asked.pace, asked.name)
+                name = request.name or one.name
+                check_size(str(one.video), name, one.size_px, request.size_px)
+                return folder_source(one, request.pace, request.name)
         raise ConfigError(f"there is no camera {camera!r}", place, f"it has {names}")
 
 
@@ -85,12 +86,10 @@ def _matches(address: str) -> bool:
     return is_folder(path) or (bool(origin) and is_folder(Path(origin)))
 
 
-def _open(address: str, asked: Asked) -> Source:
-    if isinstance(asked.origin, FolderOrigin):
-        return asked.origin.source(address, asked)
+def _open(address: str, request: SourceRequest) -> Source:
     path = user_path(address)
     folder = path if is_folder(path) else Path(split_address(str(path))[0])
-    return FolderOrigin(load_folder(folder)).source(address, asked)
+    return FolderOrigin(load_folder(folder)).source(address, request)
 
 
 def _cameras(origin: str) -> tuple[str, ...]:

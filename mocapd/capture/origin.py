@@ -3,13 +3,11 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from mocapd.capture.base import Source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.types import FrameSet, LabelledPicture, Rig
-
-if TYPE_CHECKING:
-    from mocapd.capture.source_kind import Asked
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
 
@@ -40,7 +38,7 @@ class Origin(Protocol):
         """All of it once, from time 0, as fast as it decodes."""
         ...
 
-    def source(self, address: str, asked: "Asked") -> Source:
+    def source(self, address: str, request: SourceRequest) -> Source:
         """One of its cameras. Raises ConfigError for one that it has not."""
         ...
 

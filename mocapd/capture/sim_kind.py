@@ -6,14 +6,14 @@ from mocapd.assets import asset_path
 from mocapd.boundary.files import user_path
 from mocapd.capture.base import Source
 from mocapd.capture.origin import Origin, OriginKind, Progress
-from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, InputError
-from mocapd.sim.scenario import load_scenario
 
 _PREFIX = "sim:"
 
 
-def scenario_path(address: str) -> Path:
+def _scenario_path(address: str) -> Path:
     """The file of `sim:NAME`, one of calib/scenarios, or of `sim:FILE.toml`; `#CAMERA` is ignored.
 
     Raises InputError for a name that does not exist.
@@ -40,23 +40,25 @@ def _matches(address: str) -> bool:
     return address.startswith(_PREFIX)
 
 
-def _open(address: str, asked: Asked) -> Source:
-    if asked.origin is None:  # all those of a scenario share a film
-        raise ConfigError(
-            "a simulated camera among others", address, "simulate all cameras, or none of them"
-        )
-    return asked.origin.source(address, asked)
+def _open(address: str, _request: SourceRequest) -> Source:
+    # all those of a scenario share a film, so its origin gives them
+    raise ConfigError(
+        "a simulated camera among others", address, "simulate all cameras, or none of them"
+    )
 
 
 def _cameras(origin: str) -> tuple[str, ...]:
-    return tuple(camera.name for camera in load_scenario(scenario_path(origin)).cameras)
+    from mocapd.sim.scenario import load_scenario
+
+    return tuple(camera.name for camera in load_scenario(_scenario_path(origin)).cameras)
 
 
 def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
-    # the renderer is imported for such cameras only: it takes a second
+    # what draws is imported for such cameras only: it takes a second
     from mocapd.capture.film_origin import open_film
+    from mocapd.sim.scenario import load_scenario
 
-    return open_film(origin, load_scenario(scenario_path(origin)), cache_dir, progress)
+    return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress)
 
 
 SIM = SourceKind(

@@ -1,38 +1,19 @@
 """What a kind of source says of itself: the record that the table `source_kinds` is made of."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from mocapd.capture.base import Source
-from mocapd.capture.origin import Origin, OriginKind
-from mocapd.capture.pace import Pace
+from mocapd.capture.origin import OriginKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.v4l2 import WebcamSettings
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Asked:
-    """What is asked of a source.
-
-    name: what to call the camera; without it, what its address says. size_px: width and height of its
-    calibration; another size is an error. settings: for webcams; `size_px` overrules theirs. others: the
-    identities of the other configured webcams, which are never taken for this one. pace: shared by
-    recordings that belong together; offline when not given. origin: where all cameras are of, opened.
-    """
-
-    name: str | None = None
-    size_px: tuple[int, int] | None = None
-    settings: WebcamSettings = field(default_factory=WebcamSettings)
-    others: tuple[WebcamIdentity, ...] = ()
-    pace: Pace = field(default_factory=lambda: Pace(live=False))
-    origin: Origin | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SourceKind:
     """One way to write where a camera is read from: its address.
 
-    form: how it is written, for people. matches(address): whether it is written so. open(address, asked):
+    form: how it is written, for people. matches(address): whether it is written so. open(address, request):
     its source, checked but not opened yet; raises ConfigError or InputError. is_path: a relative address is
     meant from the file that holds it. is_settable: it delivers the size that it is asked for. identity: of
     the webcam that an address names; raises ConfigError. origin: where several such cameras are of. Whether
@@ -42,7 +23,7 @@ class SourceKind:
 
     form: str
     matches: Callable[[str], bool]
-    open: Callable[[str, Asked], Source]
+    open: Callable[[str, SourceRequest], Source]
     is_path: bool = False
     is_settable: bool = False
     is_simulated: bool = False

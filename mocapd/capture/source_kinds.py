@@ -10,7 +10,8 @@ from mocapd.capture.file_kind import FILE
 from mocapd.capture.folder_kind import FOLDER
 from mocapd.capture.origin import Origin, OriginKind, Progress, split_address
 from mocapd.capture.sim_kind import SIM
-from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url_kind import URL
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM
@@ -31,19 +32,19 @@ def kind_of(address: str) -> SourceKind | None:
     return next((kind for kind in SOURCE_KINDS if kind.matches(address)), None)
 
 
-def open_source(address: str, asked: Asked | None = None) -> Source:
+def open_source(address: str, request: SourceRequest | None = None) -> Source:
     """The source that an address means; checked, but not opened yet.
 
     A recording that is missing or damaged is told here, at the start, and not sought for ever by
     its thread. Raises ConfigError or InputError.
     """
-    asked = asked if asked is not None else Asked()
+    request = request if request is not None else SourceRequest()
     kind = kind_of(address)
     if kind is None:  # also a URL with a typo in its scheme comes here
         raise InputError(
             "no such camera or file", without_password(address), f"write {SOURCE_FORMS}"
         )
-    return kind.open(address, asked)
+    return kind.open(address, request)
 
 
 def identity_of(address: str) -> WebcamIdentity | None:

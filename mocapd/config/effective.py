@@ -13,7 +13,6 @@ from typing import Any
 import platformdirs
 
 from mocapd.boundary.files import is_file, user_path
-from mocapd.capture.source_kinds import address_beside
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
 from mocapd.config.sections import GONE, HIDDEN, CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
@@ -166,6 +165,8 @@ def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
 
 
 def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
+    from mocapd.capture.source_kinds import address_beside  # imports every kind of source
+
     strokes = camera.white_balance
     return replace(
         camera,

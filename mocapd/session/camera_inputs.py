@@ -8,8 +8,8 @@ from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
 from mocapd.capture.origin import Origin
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import identities_of, identity_of, is_settable, open_source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
@@ -59,8 +59,9 @@ def camera_inputs(
             controls=camera.controls,
         )
         others = tuple(one for name, one in identities.items() if name != camera.id)
-        asked = Asked(camera.id, size_px, settings, others, pace, origin)
-        source = open_source(camera.source, asked)
+        request = SourceRequest(camera.id, size_px, settings, others, pace)
+        open_one = open_source if origin is None else origin.source
+        source = open_one(camera.source, request)
         rate_hz = camera.fps_hz if origin is None else origin.fps_hz
         expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
@@ -76,7 +77,7 @@ def bundler_params(config: Config) -> BundlerParams:
 def picture_size(camera: CameraSection) -> tuple[int, int]:
     """Width and height [px] of the pictures to come: a recording or network camera is asked, a webcam
     will be told. Raises MocapdError when there is no picture."""
-    source = open_source(camera.source, Asked(camera.id))
+    source = open_source(camera.source, SourceRequest(camera.id))
     if is_settable(camera.source):
         return WebcamSettings().size_px
     with closing(source):

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import open_source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.url import UrlSource
 from mocapd.config.sections import CameraSection, Config, TrackerSection
@@ -82,7 +82,7 @@ def test_a_typing_error_in_the_scheme_does_not_show_it() -> None:
 )
 def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
     with pytest.raises(ConfigError, match=r"address.*rtsp://user:password@host") as caught:
-        open_source(address, Asked("net"))
+        open_source(address, SourceRequest("net"))
     assert "ter2" not in str(caught.value)
 
 

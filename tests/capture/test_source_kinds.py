@@ -6,7 +6,6 @@ import pytest
 
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import (
     SOURCE_FORMS,
     address_beside,
@@ -19,6 +18,7 @@ from mocapd.capture.source_kinds import (
     open_source,
     origin_of,
 )
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource
 from mocapd.capture.webcam.v4l2 import V4l2Source
 from mocapd.errors import ConfigError, InputError, MocapdError, UnavailableError
@@ -40,11 +40,13 @@ def test_live_cameras_by_their_strings(spec: str, kind: type, name: str) -> None
     assert isinstance(source, kind)
     assert source.name == name
     assert not source.recorded
-    assert open_source(spec, Asked("left")).name == "left"
+    assert open_source(spec, SourceRequest("left")).name == "left"
 
 
 def test_a_video_file(tmp_path: Path) -> None:
-    source = open_source(str(write_film(tmp_path / "walk.avi", 3)), Asked(pace=Pace(live=True)))
+    source = open_source(
+        str(write_film(tmp_path / "walk.avi", 3)), SourceRequest(pace=Pace(live=True))
+    )
     assert isinstance(source, FileSource)
     assert source.name == "walk"
     assert source.recorded
@@ -53,13 +55,13 @@ def test_a_video_file(tmp_path: Path) -> None:
 def test_one_camera_of_a_folder_under_its_own_name_or_another(tmp_path: Path) -> None:
     folder = write_capture(tmp_path / "capture")
     assert open_source(f"{folder}#cam1").name == "cam1"
-    assert open_source(f"{folder}#cam1", Asked("left")).name == "left"
+    assert open_source(f"{folder}#cam1", SourceRequest("left")).name == "left"
     with pytest.raises(ConfigError, match=r"2 cameras.*#NAME.*cam0, cam1"):
         open_source(str(folder))
     with pytest.raises(ConfigError, match=r"no camera 'cam7'.*cam0, cam1"):
         open_source(f"{folder}#cam7")
     with pytest.raises(ConfigError, match=r"64x48.*'left'.*640x480"):
-        open_source(f"{folder}#cam1", Asked("left", (640, 480)))
+        open_source(f"{folder}#cam1", SourceRequest("left", (640, 480)))
 
 
 def test_a_folder_of_one_camera_needs_no_choice(tmp_path: Path) -> None:
@@ -104,7 +106,7 @@ def test_what_can_be_no_path_is_a_named_error(spec: str, error: type[MocapdError
 def test_a_file_of_another_size_than_its_calibration_is_told_at_the_start(tmp_path: Path) -> None:
     film = write_film(tmp_path / "a.avi", 3)
     with pytest.raises(ConfigError, match=r"64x48.*640x480"):
-        open_source(str(film), Asked(size_px=(640, 480)))
+        open_source(str(film), SourceRequest(size_px=(640, 480)))
 
 
 def test_a_wrong_identity_is_a_config_error() -> None:
@@ -168,7 +170,7 @@ def test_an_origin_knows_its_cameras_its_rig_and_its_frames(place: Path) -> None
     origin = open_origin(address, place, lambda *_: None)
     assert origin.rig.names == ("cam0", "cam1")
     assert origin.count == len(list(origin.frame_sets()))
-    source = origin.source(f"{address}#cam1", Asked("left", pace=Pace(live=False)))
+    source = origin.source(f"{address}#cam1", SourceRequest("left", pace=Pace(live=False)))
     assert (source.name, source.recorded) == ("left", True)
 
 

@@ -11,7 +11,7 @@ import cv2
 from mocapd.boundary.files import is_file, is_folder, read_file, read_text, user_path
 from mocapd.boundary.messages import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
-from mocapd.boundary.pictures import decode_picture, read_header
+from mocapd.boundary.pictures import decode_picture, is_plain_jpeg, read_header
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.errors import MocapdError
 from mocapd.web.wizard_link import PageCommand
@@ -95,6 +95,7 @@ def pictures(place: Place) -> Attempt:
         flags = random.choice((cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE, cv2.IMREAD_UNCHANGED))
         if random.random() < 0.5:
             read_header(data)
+            is_plain_jpeg(data, _SIZE_PX)
             return taken(lambda: decode_picture(data, flags, most_pixels=1_000_000))
         picture = decode_picture(data, flags, _SIZE_PX)
         if picture.shape[:2] != _SIZE_PX[::-1] or picture.dtype != "uint8":

@@ -12,7 +12,7 @@ from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
 from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
 from mocapd.sim import film as film_module
-from mocapd.sim.film import Film, load_film
+from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import scenario_from_dict
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
@@ -37,7 +37,8 @@ def films(place: Place) -> Attempt:
         table(cameras=[camera], fps_hz=10.0, loop_s=0.3, motion=motion, lights=[], room={})
     )
     good = load_film(scenario, place.cache)
-    (kept,) = place.cache.glob("*.film")
+    # films of other code may lie there too
+    (kept,) = place.cache.glob(f"*{film_key(scenario)[:16]}.film")
     data, path = kept.read_bytes(), place.folder / kept.name
     wanted = _shown(good)
 

@@ -5,7 +5,6 @@ from random import Random
 
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
-from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import (
     address_beside,
     cameras_of_origin,
@@ -14,6 +13,7 @@ from mocapd.capture.source_kinds import (
     open_source,
     origin_of,
 )
+from mocapd.capture.source_request import SourceRequest
 from mocapd.config.config_keys import shown
 from mocapd.config.effective import Effective, known_keys, load_config
 from mocapd.config.sources import env_name
@@ -187,7 +187,7 @@ def cameras(place: Place) -> Attempt:
         if is_simulated(text):
             cameras_of_origin(origin_of(text))
         address_beside(place.folder, text)
-        open_source(text, Asked(size_px=(64, 48)))
+        open_source(text, SourceRequest(size_px=(64, 48)))
 
     for good in (str(film), f"{capture}#cam1", "rtsp://10.0.0.2/stream", "0", texts[0]):
         name(good)

@@ -4,7 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.capture.base import Source
-from mocapd.capture.source_kind import Asked, SourceKind
+from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, parse_identity
 from mocapd.capture.webcam.v4l2 import V4l2Source
 
@@ -17,20 +18,20 @@ def _is_node(address: str) -> bool:
     return address.isdigit() or address.startswith("/dev/")
 
 
-def _open_identity(address: str, asked: Asked) -> Source:
-    return _webcam(asked.name or address, parse_identity(address), asked)
+def _open_identity(address: str, request: SourceRequest) -> Source:
+    return _webcam(request.name or address, parse_identity(address), request)
 
 
-def _open_node(address: str, asked: Asked) -> Source:
+def _open_node(address: str, request: SourceRequest) -> Source:
     node = Path(f"/dev/video{address}" if address.isdigit() else address)
-    return _webcam(asked.name or node.name, node, asked)
+    return _webcam(request.name or node.name, node, request)
 
 
-def _webcam(name: str, where: WebcamIdentity | Path, asked: Asked) -> Source:
-    settings = asked.settings
-    if asked.size_px is not None:
-        settings = replace(settings, size_px=asked.size_px)
-    return V4l2Source(name, where, settings, asked.others)
+def _webcam(name: str, where: WebcamIdentity | Path, request: SourceRequest) -> Source:
+    settings = request.settings
+    if request.size_px is not None:
+        settings = replace(settings, size_px=request.size_px)
+    return V4l2Source(name, where, settings, request.others)
 
 
 WEBCAM = SourceKind(

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kind import Asked
 from mocapd.capture.source_kinds import identities_of, open_source
+from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.thread import CaptureStatus, CaptureThread
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
@@ -67,8 +67,10 @@ class OpenCameras:
     def _source(self, camera: DraftCamera) -> Source:
         settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
         others = identities_of((one.id, one.source) for one in self.cameras if one != camera)
-        asked = Asked(camera.id, settings=settings, others=tuple(others.values()), pace=self._pace)
-        return open_source(camera.source, asked)
+        request = SourceRequest(
+            camera.id, settings=settings, others=tuple(others.values()), pace=self._pace
+        )
+        return open_source(camera.source, request)
 
     def _ended(self, error: BaseException) -> None:
         if not isinstance(error, MocapdError):  # those the camera's status tells

@@ -137,21 +137,23 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
         ) from None
 
 
-def _saved(key: str, camera: DraftCamera, lens: Intrinsics, when: datetime) -> SavedIntrinsics:
+def _saved(
+    key: str, camera: DraftCamera, intrinsics: Intrinsics, when: datetime
+) -> SavedIntrinsics:
     K: tuple[Row3, Row3, Row3] = msgspec.convert(
-        np.round(lens.K, 4).tolist(), tuple[Row3, Row3, Row3]
+        np.round(intrinsics.K, 4).tolist(), tuple[Row3, Row3, Row3]
     )
-    dist: Row5 = msgspec.convert(np.round(lens.dist, 7).tolist(), Row5)
+    dist: Row5 = msgspec.convert(np.round(intrinsics.dist, 7).tolist(), Row5)
     return SavedIntrinsics(
         camera=key,
         size_px=camera.size_px,
         when=when.replace(microsecond=0),
         focus=camera.controls.focus,
-        views=len(lens.views),
-        rms_px=round(lens.rms_px, 4),
-        held_out_px=round(lens.held_out_px, 4),
-        focal_deviation=max(round(lens.focal_deviation, 6), 1e-6),
-        free=tuple(lens.free.tolist()),
+        views=len(intrinsics.views),
+        rms_px=round(intrinsics.rms_px, 4),
+        held_out_px=round(intrinsics.held_out_px, 4),
+        focal_deviation=max(round(intrinsics.focal_deviation, 6), 1e-6),
+        free=tuple(intrinsics.free.tolist()),
         K=K,
         dist=dist,
     )
