@@ -33,6 +33,7 @@ ROWS = (
     Row("webcam-frames", 5042, recordings.webcam_frames),
     Row("videos", 9000, recordings.videos),
     Row("wire", 8881, wires.frames),
+    Row("rest-skeleton", 4000, wires.rest_skeletons),
     Row("setup-values", setups.number_of_values(), setups.values),
     Row("setup-sequences", 3898, setups.sequences),
     Row("setup-strokes", 400, setups.solved_strokes),

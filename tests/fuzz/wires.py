@@ -2,7 +2,20 @@
 
 from random import Random
 
-from mocapd.outputs.wire import JSON, MSGPACK, decode, encode_json, encode_msgpack
+import msgspec
+
+from mocapd.body.skeleton import standard_skeleton
+from mocapd.outputs.from_skeleton import rest_skeleton
+from mocapd.outputs.messages import REST_SKELETON, decode_rest_skeleton
+from mocapd.outputs.wire import (
+    JSON,
+    JSON_MIME,
+    MSGPACK,
+    MSGPACK_MIME,
+    decode,
+    encode_json,
+    encode_msgpack,
+)
 from mocapd.outputs.zenoh.zenoh_config import Params, session_config
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError
@@ -45,6 +58,33 @@ def frames(place: Place) -> Attempt:
         else:
             payload = damaged(random, payload)
         decode(payload, encoding)
+        return True
+
+    return attempt
+
+
+def rest_skeletons(place: Place) -> Attempt:
+    """What a client builds an avatar from: lists that are taken belong together."""
+    rest = rest_skeleton(standard_skeleton(1.75), instance="pc", stature_m=1.75)
+    goods = [
+        (msgspec.msgpack.encode(rest), f"{MSGPACK_MIME};{REST_SKELETON}"),
+        (msgspec.json.encode(rest), f"{JSON_MIME};{REST_SKELETON}"),
+    ]
+    for payload, encoding in goods:
+        decode_rest_skeleton(payload, encoding)
+
+    def attempt(random: Random, number: int) -> bool:
+        payload, encoding = random.choice(goods)
+        if random.random() < 0.04:
+            payload = random.choice(_NESTED)
+        elif encoding.startswith(JSON_MIME):
+            payload = mistyped(random, payload, JSON_VALUES)
+        else:
+            payload = damaged(random, payload)
+        read = decode_rest_skeleton(payload, encoding)
+        for bone, parent in enumerate(read.parents):
+            if not -1 <= parent < bone:
+                raise WrongError("a bone before its parent is taken")
         return True
 
     return attempt
