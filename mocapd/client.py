@@ -23,6 +23,7 @@ import zenoh
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
 from mocapd.outputs.zenoh.zenoh_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
@@ -133,15 +134,17 @@ class Client:
         link = link or Link()
         self._opened = ExitStack()
         session = self._opened.enter_context(_connect(link))
-        self._subscriber = self._opened.enter_context(
-            session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
-        )
+        with zenoh_call():
+            self._subscriber = self._opened.enter_context(
+                session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
+            )
         # a thread left waiting in Zenoh would abort the interpreter's exit
         atexit.register(self.close)
 
     def poll(self) -> Body | None:
         """The newest body that was not fetched yet; None: nothing new. Never waits."""
-        sample = self._subscriber.try_recv()
+        with zenoh_call():
+            sample = self._subscriber.try_recv()
         return None if sample is None else _body(sample)
 
     def wait(self, timeout_s: float) -> Body | None:
@@ -153,13 +156,19 @@ class Client:
 
     def __iter__(self) -> Iterator[Body]:
         """Every newest body, waiting for ever: also while the daemon restarts."""
-        for sample in self._subscriber:
+        samples = iter(self._subscriber)
+        while True:
+            with zenoh_call():
+                sample = next(samples, None)
+            if sample is None:
+                return
             yield _body(sample)
 
     def close(self) -> None:
         """Disconnect; may be called twice. Ends an iteration under way in another thread."""
         atexit.unregister(self.close)
-        self._opened.close()
+        with zenoh_call():
+            self._opened.close()
 
     def __enter__(self) -> Self:
         return self
@@ -220,7 +229,8 @@ def _connect(link: Link) -> zenoh.Session:
     started_s = time.monotonic()
     while True:
         try:
-            return _attempt(link)
+            with zenoh_call():
+                return _attempt(link)
         except UnavailableError:
             if _is_over(link, started_s):
                 raise

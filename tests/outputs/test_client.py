@@ -198,17 +198,19 @@ def test_a_frame_of_another_version_says_so() -> None:
             game.wait(30.0)
 
 
-def test_a_game_that_leaves_without_closing_ends_well() -> None:
+@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.2, 0.5])
+def test_a_game_that_leaves_without_closing_ends_well(seconds: float) -> None:
+    """Wherever its thread is: one in five of those that were still connecting was aborted."""
     program = (
         "import sys, threading, time, mocapd.client\n"
         "def read():\n"
         "    for body in mocapd.client.stream(sys.argv[1]): pass\n"
         "threading.Thread(target=read, daemon=True).start()\n"
-        "time.sleep(0.5)\n"
+        f"time.sleep({seconds})\n"
     )
     with running_sink() as running:
         ended = subprocess.run(
-            [sys.executable, "-c", program, running.endpoint], cwd=ROOT, timeout=20, check=False
+            [sys.executable, "-c", program, running.endpoint], cwd=ROOT, timeout=60, check=False
         )
     assert ended.returncode == 0
 
