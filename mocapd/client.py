@@ -24,6 +24,7 @@ from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
 from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
 from mocapd.outputs.zenoh.zenoh_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
@@ -139,16 +140,18 @@ class Client:
         link = link or Link()
         self._opened = ExitStack()
         self._session = self._opened.enter_context(_connect(link))
-        self._subscriber = self._opened.enter_context(
-            self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
-        )
+        with zenoh_call():
+            self._subscriber = self._opened.enter_context(
+                self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
+            )
         self._rest_key = link.rest_key
         # a thread left waiting in Zenoh would abort the interpreter's exit
         atexit.register(self.close)
 
     def poll(self) -> Body | None:
         """The newest body that was not fetched yet; None: nothing new. Never waits."""
-        sample = self._subscriber.try_recv()
+        with zenoh_call():
+            sample = self._subscriber.try_recv()
         return None if sample is None else _body(sample)
 
     def wait(self, timeout_s: float) -> Body | None:
@@ -163,20 +166,28 @@ class Client:
         millisecond; None: nobody answers, or nobody was tracked yet. It changes when the daemon is calibrated
         anew, and a little while it learns the body. Raises InputError when what comes is none of this version.
         """
-        for reply in self._session.get(self._rest_key, timeout=timeout_s):
+        with zenoh_call():
+            replies = list(self._session.get(self._rest_key, timeout=timeout_s))
+        for reply in replies:
             if reply.ok is not None:
                 return decode_rest_skeleton(reply.ok.payload.to_bytes(), str(reply.ok.encoding))
         return None
 
     def __iter__(self) -> Iterator[Body]:
         """Every newest body, waiting for ever: also while the daemon restarts."""
-        for sample in self._subscriber:
+        samples = iter(self._subscriber)
+        while True:
+            with zenoh_call():
+                sample = next(samples, None)
+            if sample is None:
+                return
             yield _body(sample)
 
     def close(self) -> None:
         """Disconnect; may be called twice. Ends an iteration under way in another thread."""
         atexit.unregister(self.close)
-        self._opened.close()
+        with zenoh_call():
+            self._opened.close()
 
     def __enter__(self) -> Self:
         return self
@@ -237,7 +248,8 @@ def _connect(link: Link) -> zenoh.Session:
     started_s = time.monotonic()
     while True:
         try:
-            return _attempt(link)
+            with zenoh_call():
+                return _attempt(link)
         except UnavailableError:
             if _is_over(link, started_s):
                 raise

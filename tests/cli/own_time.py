@@ -1,38 +1,51 @@
-"""How long a process takes by itself: what it waited for a processor is the busy machine's doing."""
+"""How long something takes by itself: what it waited for a processor is the busy machine's doing."""
 
 import subprocess
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
 PATIENCE_S = 120.0  # after which a process is given up, however busy the machine is [s]
 _LOOK_EVERY_S = 0.01
+_OWN = Path("/proc/self/task")
 
 
-def end_within(process: subprocess.Popen[str], limit_s: float) -> str:
-    """What it still says on stderr until it has ended, within this time of its own.
+def end_within(process: subprocess.Popen[str], limit_s: float) -> tuple[str, str]:
+    """What it still says on stdout and stderr until it has ended, within this time of its own.
 
     Killed when it has not; the caller sees that by its exit code.
     """
-    began_s, waits_s = time.monotonic(), dict[Path, float]()
-    threads = Path(f"/proc/{process.pid}/task"), Path("/proc/thread-self").resolve().parent
+    began_s = time.monotonic()
+    took_s = _since_now(Path(f"/proc/{process.pid}/task"), _OWN)
     with ThreadPoolExecutor(1) as pool:
         reading = pool.submit(process.communicate)
-        before_s = _look(threads, waits_s)
         while not reading.done():
-            took_s = time.monotonic() - began_s
-            if took_s - (_look(threads, waits_s) - before_s) > limit_s or took_s > PATIENCE_S:
+            if took_s() > limit_s or time.monotonic() - began_s > PATIENCE_S:
                 process.kill()
             time.sleep(_LOOK_EVERY_S)
-        return reading.result()[1]
+        return reading.result()
 
 
-def _look(folders: tuple[Path, ...], waits_s: dict[Path, float]) -> float:
-    """How long all threads of these folders of /proc have waited for a processor [s]; those that have
-    ended since the last look are remembered in `waits_s`."""
-    for folder in folders:
-        for thread in folder.glob("*/schedstat"):
-            with suppress(OSError, IndexError):  # it has just ended
-                waits_s[thread] = 1e-9 * int(thread.read_text().split()[1])
-    return sum(waits_s.values())
+def own_time() -> Callable[[], float]:
+    """What tells how long this process took from now on [s]."""
+    return _since_now(_OWN)
+
+
+def _since_now(*folders: Path) -> Callable[[], float]:
+    """What tells the time from now on [s], without what threads of these folders of /proc waited for a
+    processor; of those that end, what they had waited when it was asked last."""
+    waits_ns: dict[Path, int] = {}
+
+    def waited_s() -> float:
+        for folder in folders:
+            with suppress(FileNotFoundError):  # the process has just ended
+                for thread in [*folder.iterdir()]:
+                    with suppress(OSError, IndexError):  # or the thread
+                        waited_ns = (thread / "schedstat").read_text().split()[1]
+                        waits_ns[thread] = int(waited_ns)
+        return 1e-9 * sum(waits_ns.values())
+
+    began_s = time.monotonic() - waited_s()
+    return lambda: time.monotonic() - waited_s() - began_s

@@ -113,7 +113,7 @@ class Running:
     def end(self, number: signal.Signals) -> tuple[int, str]:
         """Exit code and stderr after this signal; it has two seconds."""
         self.process.send_signal(number)
-        err = end_within(self.process, 2.0)
+        _, err = end_within(self.process, 2.0)
         return self.process.returncode, err
 
 

@@ -18,6 +18,6 @@ def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(
             assert told, "it ended before it made anything"
             told = process.stderr.readline()
         process.send_signal(signal.SIGTERM)
-        rest = end_within(process, 2.0)
+        _, rest = end_within(process, 2.0)
     assert process.returncode == 0
     assert "Traceback" not in rest

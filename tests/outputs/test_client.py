@@ -137,12 +137,12 @@ def test_it_goes_on_when_the_daemon_comes_back() -> None:
         game = client.Client(client.Link(running.endpoint))
         running.heard()
         running.sink.send(small_frame(seq=1))
-        first = game.wait(5.0)
+        first = game.wait(30.0)
     assert first is not None
     with running_sink(port) as running:
         assert eventually(lambda: running.sink.status().listeners == 1)
         running.sink.send(small_frame(seq=2))
-        second = game.wait(5.0)
+        second = game.wait(30.0)
     assert second is not None
     assert second.seq == 2
     game.close()
@@ -186,7 +186,7 @@ def test_it_waits_for_a_daemon_that_starts_later() -> None:
     with running_sink(port) as running:
         running.heard()
         running.sink.send(small_frame())
-        game.join(10.0)
+        game.join(60.0)
     assert len(got) == 1
 
 
@@ -195,20 +195,22 @@ def test_a_frame_of_another_version_says_so() -> None:
         running.heard()
         running.sink.send(small_frame(schema="mocapd.Skeleton.v9"))
         with pytest.raises(InputError, match="same version of mocapd"):
-            game.wait(5.0)
+            game.wait(30.0)
 
 
-def test_a_game_that_leaves_without_closing_ends_well() -> None:
+@pytest.mark.parametrize("seconds", [0.0, 0.05, 0.2, 0.5])
+def test_a_game_that_leaves_without_closing_ends_well(seconds: float) -> None:
+    """Wherever its thread is: one in five of those that were still connecting was aborted."""
     program = (
         "import sys, threading, time, mocapd.client\n"
         "def read():\n"
         "    for body in mocapd.client.stream(sys.argv[1]): pass\n"
         "threading.Thread(target=read, daemon=True).start()\n"
-        "time.sleep(0.5)\n"
+        f"time.sleep({seconds})\n"
     )
     with running_sink() as running:
         ended = subprocess.run(
-            [sys.executable, "-c", program, running.endpoint], cwd=ROOT, timeout=20, check=False
+            [sys.executable, "-c", program, running.endpoint], cwd=ROOT, timeout=60, check=False
         )
     assert ended.returncode == 0
 

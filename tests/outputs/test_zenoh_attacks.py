@@ -9,17 +9,19 @@ from mocapd.outputs.zenoh.zenoh_limits import MAX_MESSAGE_BYTES
 from tests.attacks.herd import herd
 from tests.attacks.newcomers import times_s
 from tests.attacks.silent import silent_connections
+from tests.cli.own_time import end_within, own_time
 from tests.conftest import ROOT
 from tests.outputs.frames import free_port
 from tests.outputs.test_zenoh_sink import HEALTH
-from tests.outputs.zenoh_pair import other_program, running_sink
+from tests.outputs.zenoh_pair import GET_S, other_program, running_sink
 
 # A daemon that sends to its subscribers until somebody says so, then ends as `mocapd run` does.
 DAEMON = """
-import sys, threading, time
+import sys, threading
 from mocapd.app.running import end_despite_work
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
+from tests.cli.own_time import own_time
 from tests.outputs.frames import whole_frame
 from tests.outputs.test_zenoh_sink import HEALTH
 sink = ZenohSink(Params(port=int(sys.argv[1])), "pc")
@@ -31,9 +33,9 @@ threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).st
 frame = whole_frame()
 while not ended.wait(0.0005):
     sink.send(frame)
-began_s = time.monotonic()
+took_s = own_time()
 sink.close()
-print(time.monotonic() - began_s, flush=True)
+print(took_s(), flush=True)
 end_despite_work(0)
 """
 LEASE_MS = 1500
@@ -63,28 +65,27 @@ def test_frozen_games_hold_up_neither_newcomers_nor_the_end() -> None:
         # Zenoh now closes eight connections whose other side does not take what was sent
         assert None not in times_s(port, count=3, every_s=0.1, within_s=6.0)
         # and has not missed the ninth
-        began_s = time.monotonic()
-        out, err = process.communicate(timeout=20.0)
-        took_s = time.monotonic() - began_s
+        out, err = end_within(process, 5.0)
     assert (process.returncode, err) == (0, "")
     assert float(out) < 3.0  # Zenoh itself takes 10 s
-    assert took_s < 5.0
 
 
 def test_newcomers_are_served_beside_silent_connections() -> None:
     with running_sink() as running, silent_connections(running.port, 150):
-        Client(Link(running.endpoint, connect_timeout_s=3.0)).close()
+        took_s = own_time()
+        Client(Link(running.endpoint, connect_timeout_s=30.0)).close()
+        assert took_s() < 3.0
 
 
 def test_messages_larger_than_any_question_are_dropped() -> None:
     with running_sink() as running, other_program(running.endpoint) as session:
         running.sink.tell(HEALTH)
 
-        def answers(size: int) -> int:
+        def answers(size: int, within_s: float = GET_S) -> int:
             key = "mocapd/v1/pc/health"
-            replies = session.get(key, payload=b"x" * size, timeout=0.5)
+            replies = session.get(key, payload=b"x" * size, timeout=within_s)
             return sum(reply.ok is not None for reply in replies)
 
         assert answers(MAX_MESSAGE_BYTES - 1000) == 1
-        assert answers(MAX_MESSAGE_BYTES + 1000) == 0
+        assert answers(MAX_MESSAGE_BYTES + 1000, within_s=0.5) == 0
         assert answers(0) == 1

@@ -4,7 +4,6 @@ import os
 import socket
 import subprocess
 import sys
-import time
 
 import msgspec
 import psutil
@@ -174,9 +173,15 @@ def test_the_schema_is_served() -> None:
 def test_changes_of_state_are_published_and_the_newest_is_kept() -> None:
     with running_sink(format="json") as running, other_program(running.endpoint) as session:
         with session.declare_subscriber("mocapd/v1/pc/camera/*/status") as subscriber:
-            time.sleep(0.3)  # until the daemon knows of the subscription
-            running.sink.tell(CAMERA)
-            assert b'"state":"live"' in subscriber.recv().payload.to_bytes()
+            heard: list[zenoh.Sample] = []
+
+            def is_told() -> bool:  # as soon as the daemon knows of the subscription
+                running.sink.tell(CAMERA)
+                heard.extend(iter(subscriber.try_recv, None))
+                return bool(heard)
+
+            assert eventually(is_told)
+            assert b'"state":"live"' in heard[0].payload.to_bytes()
         running.sink.tell(msgspec.structs.replace(CAMERA, state="lost"))
         ((encoding, status),) = ask(session, "mocapd/v1/pc/camera/*/status").values()
     assert encoding == "application/json;mocapd.CameraStatus.v1"

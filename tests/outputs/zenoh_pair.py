@@ -12,7 +12,7 @@ from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port
 
-GET_S = 5.0
+GET_S = 30.0
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def other_program(endpoint: str, **more: object) -> zenoh.Session:
     """A client session written out by hand, independent of mocapd's own."""
     config = {
         "mode": "client",
-        "connect": {"endpoints": [endpoint], "timeout_ms": 3000},
+        "connect": {"endpoints": [endpoint], "timeout_ms": 30_000},
         "scouting": {"multicast": {"enabled": False}},
     }
     return zenoh.open(zenoh.Config.from_json5(json.dumps(config | more)))
