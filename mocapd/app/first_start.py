@@ -41,7 +41,7 @@ def prepare_apart(config: "Config") -> None:
     if want in done:
         return
     import mocapd.session.session  # noqa: F401  all that the processes need, imported once for them
-    from mocapd.capture.source_kinds import is_simulated
+    from mocapd.capture.kinds.source_kinds import is_simulated
 
     # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
     # it tells at once what is wrong with them
@@ -117,7 +117,7 @@ def _work(work: Callable[["Config"], None], config: "Config") -> None:
 
 def _make_film(config: "Config") -> None:
     """What the simulated webcams show; its bar gives way to the database's, which takes longer."""
-    from mocapd.capture.source_kinds import open_origin, origin_of
+    from mocapd.capture.kinds.source_kinds import open_origin, origin_of
 
     for origin in {origin_of(camera.source) for camera in config.camera}:
         open_origin(origin, config.cache_dir, lambda *_: None)

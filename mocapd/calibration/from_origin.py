@@ -2,7 +2,7 @@
 
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.capture.capture_folder import CaptureFolder
-from mocapd.capture.folder_kind import FolderOrigin
+from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.capture.origin import Origin
 
 

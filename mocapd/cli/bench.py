@@ -55,7 +55,7 @@ def bench_command(
     Example: mocapd bench --tracker colour --json
     """
     from mocapd.app.libraries import prepare_libraries
-    from mocapd.capture.source_kinds import is_simulated
+    from mocapd.capture.kinds.source_kinds import is_simulated
     from mocapd.outputs.registry import zenoh_section
 
     refuse_variant(variant)

@@ -165,7 +165,7 @@ def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
 
 
 def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
-    from mocapd.capture.source_kinds import address_beside  # imports every kind of source
+    from mocapd.capture.kinds.source_kinds import address_beside  # imports every kind of source
 
     strokes = camera.white_balance
     return replace(

@@ -59,7 +59,7 @@ class CaptureResult:
     evidence: dict[tuple[str, int], Evidence]
 
 
-class _Watched:
+class _TimedTracker:
     """A tracker with a stopwatch; keeps its evidence of the frames asked for."""
 
     def __init__(self, tracker: Tracker, keep: Container[int]) -> None:
@@ -105,7 +105,7 @@ def evaluate(
     gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
     """
     ready = build(from_capture(case.folder).assuming(stature_m), method)
-    watched = _Watched(ready.tracker, keep_evidence)
+    watched = _TimedTracker(ready.tracker, keep_evidence)
     track = track_all(watched, ready.shape, frame_sets(case.folder), on_frame)
     return CaptureResult(
         case=case,

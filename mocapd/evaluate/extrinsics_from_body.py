@@ -43,7 +43,7 @@ class ExtrinsicsScore:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Known:
+class _CaptureKnowledge:
     """What a capture tells of wearer and colours."""
 
     folder: CaptureFolder
@@ -81,7 +81,7 @@ def _relative(first: Camera, second: Camera) -> RigidTransform:
     return camera_from_world(second) @ camera_from_world(first).inverse()
 
 
-def _known(capture: Path) -> _Known:
+def _known(capture: Path) -> _CaptureKnowledge:
     folder = load_folder(capture)
     shirt = from_capture(folder).shirt or ShirtColours()
     colours = colour_model(shirt.model)
@@ -89,10 +89,12 @@ def _known(capture: Path) -> _Known:
         name: white_balance_of(picture, colours, plain=False)
         for name, picture in shirt.white_balance.items()
     }
-    return _Known(folder, folder.stature_m or TrackerSection().stature_m, colours, W)
+    return _CaptureKnowledge(folder, folder.stature_m or TrackerSection().stature_m, colours, W)
 
 
-def find_extrinsics(known: _Known, database: PoseDatabase) -> tuple[Rig, SelfCalibrationReport]:
+def find_extrinsics(
+    known: _CaptureKnowledge, database: PoseDatabase
+) -> tuple[Rig, SelfCalibrationReport]:
     """The rig from the capture's lenses and videos."""
     bare_cameras = known.folder.rig.cameras
     tracks = PatchTracks(bare_cameras, known.stature_m, known.colours, known.W, database)
@@ -100,7 +102,7 @@ def find_extrinsics(known: _Known, database: PoseDatabase) -> tuple[Rig, SelfCal
     return extrinsics_from_body(tracks.observations, bare_cameras, known.stature_m)
 
 
-def rms_cm(known: _Known, rig: Rig, database: PoseDatabase) -> tuple[float, float]:
+def rms_cm(known: _CaptureKnowledge, rig: Rig, database: PoseDatabase) -> tuple[float, float]:
     """Of the upper body's joints, tracked with this rig: as it is, and once the whole track is moved
     rigidly onto the truth, because a room without a board has a world of its own."""
     tracker = ColourTracker(rig, known.stature_m, known.colours, known.W, database)

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
+from mocapd.capture.kinds.source_kinds import identities_of, identity_of, is_settable, open_source
 from mocapd.capture.origin import Origin
 from mocapd.capture.pace import Pace
-from mocapd.capture.source_kinds import identities_of, identity_of, is_settable, open_source
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.config.sections import CameraSection, Config

@@ -14,7 +14,7 @@ from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.file import size_error
-from mocapd.capture.source_kinds import identity_of, origin_of
+from mocapd.capture.kinds.source_kinds import identity_of, origin_of
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 

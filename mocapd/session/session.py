@@ -11,8 +11,13 @@ from functools import partial
 from mocapd.body.shape import BodyShape
 from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
+from mocapd.capture.kinds.source_kinds import (
+    cameras_of_origin,
+    is_simulated,
+    open_origin,
+    origin_of,
+)
 from mocapd.capture.origin import camera_address
-from mocapd.capture.source_kinds import cameras_of_origin, is_simulated, open_origin, origin_of
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig

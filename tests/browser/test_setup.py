@@ -28,6 +28,8 @@ from mocapd.types import Bytes
 from tests.browser.conftest import Served, problems_of
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.long
+
 SCENARIO = ROOT / "calib" / "scenarios" / "first_setup.toml"
 STATURE_CM = 172
 STEP_MS = 120_000  # a step on a busy machine; the figure of the whole is printed, not asserted

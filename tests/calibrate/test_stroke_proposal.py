@@ -23,6 +23,8 @@ from mocapd.types import Bytes, Camera, LabelledPicture
 from tests.calibrate.swatches import MODEL, swatches
 from tests.sim import small
 
+pytestmark = pytest.mark.long
+
 
 class Scene:
     """Two cameras and a person with the arms out, in a warm and a cool lamp."""

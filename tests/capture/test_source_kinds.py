@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.capture.file import FileSource
-from mocapd.capture.pace import Pace
-from mocapd.capture.source_kinds import (
+from mocapd.capture.kinds.source_kinds import (
     SOURCE_FORMS,
     address_beside,
     cameras_of_origin,
@@ -18,6 +17,7 @@ from mocapd.capture.source_kinds import (
     open_source,
     origin_of,
 )
+from mocapd.capture.pace import Pace
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource
 from mocapd.capture.webcam.v4l2 import V4l2Source

@@ -21,6 +21,8 @@ from tests.cli.mocapd_process import mocapd, start
 from tests.cli.small_capture import write_capture
 from tests.wizard.drafts import full_draft
 
+pytestmark = pytest.mark.long
+
 WAIT_S = 60.0
 
 

@@ -5,7 +5,7 @@ from random import Random
 
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
-from mocapd.capture.source_kinds import (
+from mocapd.capture.kinds.source_kinds import (
     address_beside,
     cameras_of_origin,
     identity_of,

@@ -9,7 +9,8 @@ from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import DatabaseParams, build_database
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
+from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
+from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from tests.trackers.filmed import Filmed, film, tracker_of
 from tests.trackers.stepping import Stepping
 
@@ -29,7 +30,7 @@ def measured() -> tuple[Filmed, list[Measure], list[Measure]]:
     for one in (rig, turned):
         ready.reset()
         into = TrackingMeasures()
-        watched = Stepping(MeasuredTracker(ready.tracker, one, ready.shape, into), ready.shape)
+        watched = Stepping(MeasuringTracker(ready.tracker, one, ready.shape, into.add), ready.shape)
         for frames in filmed.frame_sets(filmed.pictures):
             watched.step(frames)
         found.append(list(into.taken()))

@@ -28,6 +28,8 @@ from tests.wizard.board_pictures import (
 )
 from tests.wizard.context import FakeContext, do
 
+pytestmark = pytest.mark.long
+
 STILL_S = 0.2
 
 

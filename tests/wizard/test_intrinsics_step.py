@@ -24,6 +24,8 @@ from tests.wizard.board_pictures import (
 )
 from tests.wizard.context import FakeContext, do
 
+pytestmark = pytest.mark.long
+
 STILL_S = 0.2  # how long each place is shown
 
 

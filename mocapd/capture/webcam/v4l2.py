@@ -47,7 +47,7 @@ class WebcamSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Negotiated:
+class NegotiatedFormat:
     """What the webcam says after opening; everything is read back, nothing assumed."""
 
     node: Path
@@ -79,7 +79,7 @@ class V4l2Source:
     ) -> None:
         self.name = name
         self.torn = 0
-        self.negotiated: Negotiated | None = None
+        self.negotiated: NegotiatedFormat | None = None
         self._where = where
         self._settings = settings if settings is not None else WebcamSettings()
         self._others = others
@@ -189,7 +189,7 @@ class V4l2Source:
         match, node = find_webcam(self._where, self._others, self._sysfs, self._dev)
         return node, match.moved
 
-    def _warn(self, got: Negotiated) -> None:
+    def _warn(self, got: NegotiatedFormat) -> None:
         if environment.CV2_CAME_FIRST:
             _LOG.warning("%s: cv2 was imported before mocapd: a stall takes 10 s to see", self.name)
         if got.moved:
@@ -211,7 +211,7 @@ def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:
 
 def negotiate(
     capture: HasProperties, asked: WebcamSettings, name: str, node: Path, moved: bool
-) -> Negotiated:
+) -> NegotiatedFormat:
     """Set format, size, rate, buffers and controls, and read all of it back.
 
     Raises UnavailableError (unplugged meanwhile, no usable format) or ConfigError (another size).
@@ -238,7 +238,7 @@ def negotiate(
         raise UnavailableError(
             f"delivers {fourcc!r}, neither MJPG nor YUYV", str(node), "use another camera"
         )
-    return Negotiated(
+    return NegotiatedFormat(
         node=node,
         moved=moved,
         fourcc=fourcc,

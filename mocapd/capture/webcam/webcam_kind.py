@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.capture.base import Source
-from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, parse_identity
 from mocapd.capture.webcam.v4l2 import V4l2Source

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
-from mocapd.capture.source_kinds import is_simulated, open_origin
+from mocapd.capture.kinds.source_kinds import is_simulated, open_origin
 from mocapd.session.tracker_setup import Progress
 from mocapd.types import FrameSet
 

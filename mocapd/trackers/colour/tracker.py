@@ -45,7 +45,7 @@ _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Known:
+class _Memory:
     """What is carried from frame to frame while somebody is tracked."""
 
     t_ns: int
@@ -111,7 +111,7 @@ class ColourTracker:
         """Forget pose, light and background. near: a body to be looked for where it is, before everywhere."""
         self._segmenters.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
-        self._known: _Known | None = None
+        self._known: _Memory | None = None
         self._near = near
         self._next_search_ns = 0
         self._turn = 0
@@ -158,8 +158,8 @@ class ColourTracker:
     # --- stages ---
 
     def _follow(
-        self, known: _Known, present: dict[int, float], frames: FrameSet
-    ) -> tuple[_Known, list[View]]:
+        self, known: _Memory, present: dict[int, float], frames: FrameSet
+    ) -> tuple[_Memory, list[View]]:
         """One frame of tracking; a frame without evidence leaves `known` at its old time."""
         p, fitter = self.params, self._fitter
         last = known.state
@@ -203,11 +203,11 @@ class ColourTracker:
             trust = np.clip((confirmed(side, fit) - 0.15) / p.arm_trust, 0.0, 1.0)
             velocity[self._arm_columns[side]] *= 0.0 if side in switched else trust
         names = tuple(self.rig.cameras[v.index].name for v in views)
-        return _Known(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
+        return _Memory(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, present: dict[int, float], frames: FrameSet
-    ) -> tuple[_Known | None, list[View]]:
+    ) -> tuple[_Memory | None, list[View]]:
         """Begin from another tracker's body, if the pictures confirm it."""
         p, pose = self.params, near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
@@ -223,9 +223,9 @@ class ColourTracker:
         if not self._acceptable(fit):
             return None, []
         names = tuple(self.rig.cameras[v.index].name for v in views)
-        return _Known(frames.t_ns, fit.state, fit, wearer.taught_s, names), views
+        return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names), views
 
-    def _is_uncertain(self, known: _Known | None, t_ns: int) -> bool:
+    def _is_uncertain(self, known: _Memory | None, t_ns: int) -> bool:
         """Whether to look for the wearer anew: nobody is known, or what is known agrees badly."""
         if known is None or known.t_ns != t_ns:
             return True
@@ -233,12 +233,12 @@ class ColourTracker:
 
     def _search(
         self,
-        known: _Known | None,
+        known: _Memory | None,
         wearer: _Wearer,
         views: list[View],
         present: dict[int, float],
         frames: FrameSet,
-    ) -> tuple[_Known | None, list[View]]:
+    ) -> tuple[_Memory | None, list[View]]:
         """Look for the wearer from nothing; what is already known stands unless something better is found."""
         p = self.params
         pause_s = p.search_pause_s if known is None else p.uncertain_pause_s
@@ -252,7 +252,7 @@ class ColourTracker:
             if held is None or fit.match > held.match + p.uncertain_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
-                return _Known(frames.t_ns, fit.state, fit, wearer.taught_s, names), seen
+                return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names), seen
         for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
             segmenter.memory.appearance = appearance
         return known, views
@@ -339,7 +339,7 @@ class ColourTracker:
         )
 
 
-def _with(known: _Known, wearer: _Wearer) -> _Known:
+def _with(known: _Memory, wearer: _Wearer) -> _Memory:
     """What is carried on, of a wearer as known to whoever steps the tracker."""
     state = replace(known.state, factors=wearer.factors, information=wearer.information)
     return replace(known, state=state, taught_s=wearer.taught_s)

@@ -33,7 +33,7 @@ MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Measured:
+class BodyMeasurement:
     """The wearer's shape, how it fits the room's scale, and by camera a picture (h,w,3) BGR of the last
     moment with the body drawn over it."""
 
@@ -44,7 +44,7 @@ class Measured:
 
 
 @dataclass(slots=True, eq=False)
-class Watched:
+class BodyWatch:
     """Between the job and the step: the newest body, replaced whole, and an early end."""
 
     body: tuple[BodyState, Skeleton] | None = None
@@ -55,11 +55,11 @@ def measure(
     hub: FrameHub,
     draft: Draft,
     cache_dir: Path,
-    watched: Watched,
+    watched: BodyWatch,
     tell: Tell,
     make_tracker: MakeTracker,
     params: BodyObservationParams | None = None,
-) -> Measured | None:
+) -> BodyMeasurement | None:
     """Measure the wearer of a draft whose room, colours and stature are known; None when stopped.
 
     Raises InputError when too little was seen.
@@ -74,7 +74,7 @@ def measure(
     tell("working out the proportions", SEEN)
     fit = fit_shape(observations.observations, model, draft.rig.cameras)
     last = fit.states[-1], observations.observations[-1]
-    return Measured(
+    return BodyMeasurement(
         BodyShape(draft.stature_m, fit.factors),
         fit,
         scale_of(fit, model, draft.floor_known),
@@ -109,7 +109,7 @@ def _watch(
     rig: Rig,
     ready: ReadyTracker,
     observations: BodyObservations,
-    watched: Watched,
+    watched: BodyWatch,
     tell: Tell,
 ) -> bool:
     """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""

@@ -13,9 +13,9 @@ from mocapd.wizard.body.body_lengths import lengths_cm
 from mocapd.wizard.body.body_measuring import (
     READY,
     SEEN,
+    BodyMeasurement,
+    BodyWatch,
     MakeTracker,
-    Measured,
-    Watched,
     measure,
     measuring_tracker,
 )
@@ -34,8 +34,8 @@ class BodyStep:
 
     def __init__(self, context: Context, make_tracker: MakeTracker = measuring_tracker) -> None:
         self._context, self._make_tracker = context, make_tracker
-        self._watched: Watched | None = None  # while a job measures
-        self._measured: Measured | None = None
+        self._watched: BodyWatch | None = None  # while a job measures
+        self._measured: BodyMeasurement | None = None
         self._skipped = False
         self._measure_next = False
         self._times = 0  # measured
@@ -97,12 +97,12 @@ class BodyStep:
         self._context.draft = replace(self._context.draft, factors=None)
 
     def _start(self) -> None:
-        context, watched = self._context, Watched()
+        context, watched = self._context, BodyWatch()
         self._watched, self._troubles = watched, ()
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
         make_tracker = self._make_tracker
 
-        def done(measured: Measured | None) -> None:
+        def done(measured: BodyMeasurement | None) -> None:
             if measured is not None and watched is self._watched:
                 self._found(measured)
             if watched is self._watched:
@@ -112,7 +112,7 @@ class BodyStep:
             lambda tell: measure(hub, draft, cache_dir, watched, tell, make_tracker), done
         )
 
-    def _found(self, measured: Measured) -> None:
+    def _found(self, measured: BodyMeasurement) -> None:
         draft = self._context.draft
         self._measured, self._times = measured, self._times + 1
         self._pictures = {

@@ -6,7 +6,7 @@ A node that is in use by the setup is "busy" to whoever asks; that is left out h
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mocapd.capture.source_kinds import identity_of
+from mocapd.capture.kinds.source_kinds import identity_of
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
-from mocapd.capture.source_kinds import identities_of
+from mocapd.capture.kinds.source_kinds import identities_of
 from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.wizard.commands import PORTS, Command, SamePort, Verbs

@@ -1,8 +1,7 @@
 """A tracker that is looked over the shoulder: how far each camera's picture lies from the body."""
 
-import threading
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,35 +47,17 @@ class Measure:
     lengths: Floats
 
 
-@dataclass(slots=True, eq=False)
-class TrackingMeasures:
-    """Written by the pipeline's thread, read by the wizard's."""
-
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _all: list[Measure] = field(default_factory=list)
-
-    def add(self, one: Measure) -> None:
-        with self._lock:
-            self._all.append(one)
-
-    def taken(self) -> tuple[Measure, ...]:
-        """Those since the last time."""
-        with self._lock:
-            out, self._all = tuple(self._all), []
-            return out
-
-
-class MeasuredTracker:
+class MeasuringTracker:
     """Steps another tracker, and measures every fourth frame of it; a Tracker itself.
 
     known: the wearer's shape before anything is learned.
     """
 
     def __init__(
-        self, tracker: Tracker, rig: Rig, known: BodyShape, into: TrackingMeasures
+        self, tracker: Tracker, rig: Rig, known: BodyShape, add: Callable[[Measure], None]
     ) -> None:
         self.name, self.probe = tracker.name, tracker.probe
-        self._tracker, self._rig, self._into = tracker, rig, into
+        self._tracker, self._rig, self._add = tracker, rig, add
         self._known, stature_m = known.factors, known.stature_m
         self._mean = skeleton_of(mean_shape(stature_m))
         params = FitParams()
@@ -101,7 +82,7 @@ class MeasuredTracker:
             local = local_from_global(self._mean, body.pose.quats_xyzw)
             self._turn += 1
             if self._turn % EVERY == 0:
-                self._into.add(self._measured(body, local, track, frames))
+                self._add(self._measured(body, local, track, frames))
             self._last = body.t_ns, body.pose.root_m, local
         return track
 

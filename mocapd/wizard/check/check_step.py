@@ -17,7 +17,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.loop import OnDeath
 from mocapd.types import Tracking
 from mocapd.wizard.check.check_measure import Measure
-from mocapd.wizard.check.check_tracking import CheckSettings, CheckTracking, Prepared, prepare
+from mocapd.wizard.check.check_tracking import CheckSettings, CheckTracker, CheckTracking, prepare
 from mocapd.wizard.check.check_verdict import (
     CameraVerdict,
     Delivery,
@@ -150,7 +150,7 @@ class CheckStep:
             self._tracking.stop()
             self._tracking = None
 
-    def _run(self, prepared: Prepared) -> None:
+    def _run(self, prepared: CheckTracker) -> None:
         self._tracking = CheckTracking(
             self._context.hub, prepared, self._settings.smoothing, self._shown, self._died
         )

@@ -18,7 +18,8 @@ from mocapd.trackers.base import Tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuredTracker, TrackingMeasures
+from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
+from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.only_cameras import OnlyCameras
 
@@ -36,7 +37,7 @@ class CheckSettings:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Prepared:
+class CheckTracker:
     """A tracker that is warm, its cameras, and where it leaves what it measures."""
 
     tracker: Tracker
@@ -47,7 +48,7 @@ class Prepared:
 
 def prepare(
     known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
-) -> Prepared:
+) -> CheckTracker:
     """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
     section = settings.tracker
     known = known.assuming(section.stature_m)
@@ -69,10 +70,10 @@ def prepare(
         rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
-        watched=lambda one: MeasuredTracker(one, rig, shape, measures),
+        watched=lambda one: MeasuringTracker(one, rig, shape, measures.add),
     )
     measures.taken()
-    return Prepared(ready.tracker, ready.shape, rig, measures)
+    return CheckTracker(ready.tracker, ready.shape, rig, measures)
 
 
 class CheckTracking:
@@ -81,7 +82,7 @@ class CheckTracking:
     def __init__(
         self,
         hub: FrameHub,
-        prepared: Prepared,
+        prepared: CheckTracker,
         smoothing: str,
         shown: NewestBody,
         died: OnDeath,

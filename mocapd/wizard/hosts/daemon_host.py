@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.capture.source_kinds import is_simulated
+from mocapd.capture.kinds.source_kinds import is_simulated
 from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config

@@ -12,7 +12,7 @@ from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
-from mocapd.capture.source_kinds import identity_of
+from mocapd.capture.kinds.source_kinds import identity_of
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera

@@ -3,7 +3,7 @@
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.base import Source
 from mocapd.capture.file import FileSource, check_size, probe_video
-from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 
 

@@ -8,8 +8,8 @@ from mocapd.boundary.files import is_folder, user_path
 from mocapd.capture.base import Source
 from mocapd.capture.capture_folder import CaptureFolder, folder_source, frame_sets, load_folder
 from mocapd.capture.file import check_size
+from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.origin import OriginKind, Progress, split_address
-from mocapd.capture.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError
 from mocapd.geometry.rig_file import load_rig

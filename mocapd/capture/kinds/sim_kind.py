@@ -5,8 +5,8 @@ from pathlib import Path
 from mocapd.assets import asset_path
 from mocapd.boundary.files import user_path
 from mocapd.capture.base import Source
+from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.origin import Origin, OriginKind, Progress
-from mocapd.capture.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, InputError
 

@@ -2,7 +2,7 @@
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
-from mocapd.capture.source_kind import SourceKind
+from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource
 

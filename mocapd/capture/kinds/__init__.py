@@ -1,0 +1,1 @@
+"""Kinds of sources: what each address means, in one table."""

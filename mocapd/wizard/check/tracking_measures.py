@@ -1,0 +1,24 @@
+"""What a tracker that is looked over the shoulder measured, from the pipeline's thread to the wizard's."""
+
+import threading
+from dataclasses import dataclass, field
+
+from mocapd.wizard.check.check_measure import Measure
+
+
+@dataclass(slots=True, eq=False)
+class TrackingMeasures:
+    """Written by the pipeline's thread, read by the wizard's."""
+
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _all: list[Measure] = field(default_factory=list)
+
+    def add(self, one: Measure) -> None:
+        with self._lock:
+            self._all.append(one)
+
+    def taken(self) -> tuple[Measure, ...]:
+        """Those since the last time."""
+        with self._lock:
+            out, self._all = tuple(self._all), []
+            return out
