@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from mocapd.app.daemon_page import DaemonPage
+from mocapd.app.heap import give_back
 from mocapd.app.logs import set_up_logs
 from mocapd.app.running import Signals
 from mocapd.app.unsafe_settings import unsafe_settings
@@ -125,7 +126,9 @@ class SessionChange:
             self._page.rest()
         began_s = time.monotonic()
         self._service.replace(config, ready.session)
-        _log.info("%s: taken up, within %.2f s", self._why, time.monotonic() - began_s)
+        took_s = time.monotonic() - began_s
+        give_back()
+        _log.info("%s: taken up, within %.2f s", self._why, took_s)
 
 
 def _quiet(_what: str, _done: int, _total: int) -> None:
