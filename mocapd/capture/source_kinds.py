@@ -9,7 +9,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.file_kind import FILE
 from mocapd.capture.folder_kind import FOLDER
 from mocapd.capture.origin import Origin, OriginKind, Progress, split_address
-from mocapd.capture.sim_kind import SIM
+from mocapd.capture.simulated.sim_kind import SIM
 from mocapd.capture.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url_kind import URL

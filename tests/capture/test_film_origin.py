@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from mocapd.capture.film_origin import FilmOrigin
+from mocapd.capture.simulated.film_origin import FilmOrigin
 from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError
 from tests.capture.films import numbered_sim_film

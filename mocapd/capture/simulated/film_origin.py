@@ -12,7 +12,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
 from mocapd.capture.pixels import frozen_pixels
-from mocapd.capture.sim import SimSource
+from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
