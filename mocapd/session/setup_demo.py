@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.assets import asset_path
-from mocapd.capture.kinds.sim_kind import scenario_address
 from mocapd.capture.origin import camera_address
-from mocapd.capture.stage import SceneSource, Stage
+from mocapd.capture.simulated.sim_kind import scenario_address
+from mocapd.capture.simulated.stage import SceneSource, Stage
 from mocapd.clock import monotonic_ns
 from mocapd.session.tracker_setup import Progress
 from mocapd.sim.board.board_clips import load_board_clips

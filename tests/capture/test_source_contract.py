@@ -12,7 +12,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.capture_folder import folder_source, load_folder
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace
-from mocapd.capture.sim import SimSource
+from mocapd.capture.simulated.sim import SimSource
 from mocapd.errors import CameraLost, EndOfStream, MocapdError
 from tests.capture.films import numbered_sim_film, write_capture, write_film
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from mocapd.capture.stage import SceneSource, Stage
+from mocapd.capture.simulated.stage import SceneSource, Stage
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError
 from mocapd.sim.clips import Clip, wearer_clips

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.capture.sim import SimSource
+from mocapd.capture.simulated.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, CannotCreateError, ConfigError
 from mocapd.sim.film import Film, film_key, first_frame, load_film

@@ -8,10 +8,10 @@ from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
 from mocapd.capture.kinds.file_kind import FILE
 from mocapd.capture.kinds.folder_kind import FOLDER
-from mocapd.capture.kinds.sim_kind import SIM
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.kinds.url_kind import URL
 from mocapd.capture.origin import Origin, OriginKind, Progress, split_address
+from mocapd.capture.simulated.sim_kind import SIM
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM

@@ -12,7 +12,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
 from mocapd.capture.pixels import frozen_pixels
-from mocapd.capture.sim import SimSource
+from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
@@ -28,8 +28,7 @@ class FilmOrigin:
     def __init__(self, address: str, film: Film) -> None:
         self.rig_source = address
         self._film = film
-        self._lock = threading.Lock()
-        self._start_ns: int | None = None
+        self._start = _FilmStart(film.scenario, film.first)
 
     @property
     def rig(self) -> Rig:
@@ -72,22 +71,10 @@ class FilmOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
         name = request.name or split_address(address)[1]
-        camera = _FilmCamera(self, self._film, name)
+        camera = _FilmCamera(self._start, self._film, name)
         (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
         check_size(self.rig_source, name, size_px, request.size_px)
         return camera
-
-    def start_ns(self) -> int:
-        """When frame 0 of the film is exposed: now, the first time [ns, CLOCK_MONOTONIC]."""
-        with self._lock:
-            if self._start_ns is None:
-                self._start_ns = monotonic_ns()
-                # with this whoever watches can say where the simulated person was
-                _LOG.info(
-                    "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
-                    *(self._film.first, self._film.scenario.name, self._start_ns, self.fps_hz),
-                )
-            return self._start_ns
 
     def _frame(self, camera: str, i: int, clock_offset_s: float) -> Frame:
         jpeg = self._film.frames[camera][i]
@@ -95,13 +82,34 @@ class FilmOrigin:
         return Frame(camera, i, nanoseconds(i / self.fps_hz + clock_offset_s), pixels, jpeg)
 
 
+class _FilmStart:
+    """Shared by the cameras, which outlive the origin and its pictures; from any thread."""
+
+    def __init__(self, scenario: Scenario, first: int) -> None:
+        self._scenario, self._first = scenario, first
+        self._lock = threading.Lock()
+        self._ns: int | None = None
+
+    def ns(self) -> int:
+        """When frame 0 of the film is exposed: now, the first time [ns, CLOCK_MONOTONIC]."""
+        with self._lock:
+            if self._ns is None:
+                self._ns = monotonic_ns()
+                # with this whoever watches can say where the simulated person was
+                _LOG.info(
+                    "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
+                    *(self._first, self._scenario.name, self._ns, self._scenario.fps_hz),
+                )
+            return self._ns
+
+
 class _FilmCamera(SimSource):
-    def __init__(self, origin: FilmOrigin, film: Film, camera: str) -> None:
+    def __init__(self, start: _FilmStart, film: Film, camera: str) -> None:
         super().__init__(film, camera)
-        self._origin = origin
+        self._start = start
 
     def open(self) -> None:
-        self._epoch_ns = self._origin.start_ns()
+        self._epoch_ns = self._start.ns()
         super().open()
 
 

@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Mapping
 
-from mocapd.capture.sim import SimCamera
+from mocapd.capture.simulated.sim import SimCamera
 from mocapd.clock import monotonic_ns
 from mocapd.sim.clips import Clip
 from mocapd.sim.scenario import Scenario

@@ -55,7 +55,7 @@ def _cameras(origin: str) -> tuple[str, ...]:
 
 def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
     # what draws is imported for such cameras only: it takes a second
-    from mocapd.capture.film_origin import open_film
+    from mocapd.capture.simulated.film_origin import open_film
     from mocapd.sim.scenario import load_scenario
 
     return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress)
