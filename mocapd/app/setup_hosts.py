@@ -14,7 +14,7 @@ from mocapd.wizard.saving import load_draft
 
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
-    from mocapd.wizard.step import StepName
+    from mocapd.wizard.step_names import StepName
 
 
 def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mocapd.app.running import Signals
     from mocapd.config.sections import Config
     from mocapd.web.runtime_file import Place, Running
-    from mocapd.wizard.step import StepName
+    from mocapd.wizard.step_names import StepName
 
 LOOK_EVERY_S = 0.25
 HANG_UP_S = 0.5  # for browsers, at the end [s]
@@ -140,7 +140,7 @@ def _what_next(state_dir: Path, options: PageOptions) -> str:
 
 
 def _step(name: str | None) -> "StepName | None":
-    from mocapd.wizard.step import StepName
+    from mocapd.wizard.step_names import StepName
 
     if name is None:
         return None

@@ -20,7 +20,8 @@ from mocapd.web.host import Host
 from mocapd.web.links import BadMessageError, send_bytes, serve, understood
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.bone_shapes import bone_shapes
-from mocapd.wizard.step import Shape, StepName
+from mocapd.wizard.step import Shape
+from mocapd.wizard.step_names import StepName
 
 DEFAULT_WIDTH_PX = 480
 BODY_WAIT_S = 0.08  # the pose of a frame comes a little after the frame [s]

@@ -9,7 +9,8 @@ from mocapd.errors import MocapdError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.step import Scene, StepName, StepView, T, Tell
+from mocapd.wizard.step import Scene, StepView, T, Tell
+from mocapd.wizard.step_names import StepName
 
 
 class Context(Protocol):

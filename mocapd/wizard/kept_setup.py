@@ -18,7 +18,7 @@ from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_draft import KeptDraft, Table, check_kept, draft_of, kept_draft
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 
 FILE_NAME = "setup-draft.msgpack"
 MOST_BYTES = 256 << 20

@@ -16,7 +16,7 @@ from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, read_kept, write_kept
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 
 FORGOTTEN = timedelta(days=7)  # rooms and lights are others by then
 

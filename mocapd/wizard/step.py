@@ -1,4 +1,4 @@
-"""The steps of the wizard by name, and what a step shows."""
+"""What a step of the wizard shows, and what a simulated person then does."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -10,17 +10,6 @@ from mocapd.errors import MocapdError
 T = TypeVar("T")
 Tell = Callable[[str, float], None]  # what is being done, share done 0..1; from the job's thread
 Json = object  # what `json.dumps` takes
-
-
-class StepName(StrEnum):
-    """The steps in their order."""
-
-    CAMERAS = "cameras"
-    LENS = "lens"
-    ROOM = "room"
-    COLOUR = "colour"
-    BODY = "body"
-    CHECK = "check"
 
 
 class Scene(StrEnum):

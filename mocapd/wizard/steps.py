@@ -17,7 +17,7 @@ from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import MakeStep
 
 

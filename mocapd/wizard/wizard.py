@@ -17,9 +17,10 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import Json, Problem, Scene, StepName, StepState, T, Tell
+from mocapd.wizard.step import Json, Problem, Scene, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
-from mocapd.wizard.wizard_view import WizardView, steps_done, with_offer
+from mocapd.wizard.step_names import StepName, steps_done
+from mocapd.wizard.wizard_view import WizardView, with_offer
 
 _TICK_S = 0.05
 _MOST_COMMANDS = 32  # that wait to be taken, of up to 8 MB each; a person never gets there

@@ -1,10 +1,10 @@
-"""What the page may see of the wizard: a snapshot of its step, and which steps are done."""
+"""What the page may see of the wizard: a snapshot of its step."""
 
 from dataclasses import dataclass, replace
 
-from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
-from mocapd.wizard.step import Json, Problem, StepName, StepState, StepView
+from mocapd.wizard.step import Json, Problem, StepState, StepView
+from mocapd.wizard.step_names import StepName
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,20 +20,6 @@ class WizardView:
     saved: bool
     ended: bool
     steps: tuple[StepName, ...] = tuple(StepName)
-
-
-def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
-    """The steps whose result is in the draft; saved: it was, since the start."""
-    ids = {camera.id for camera in draft.cameras}
-    results = {
-        StepName.CAMERAS: bool(ids),
-        StepName.LENS: bool(ids) and ids <= draft.intrinsics.keys(),
-        StepName.ROOM: draft.rig is not None and ids == set(draft.rig.names),
-        StepName.COLOUR: bool(ids) and ids <= draft.colours.keys(),
-        StepName.BODY: draft.stature_m is not None,
-        StepName.CHECK: saved,
-    }
-    return frozenset(name for name, is_done in results.items() if is_done)
 
 
 def with_offer(view: StepView, offer: KeptSetup) -> StepView:

@@ -27,7 +27,8 @@ from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.step import Json, StepName, Tell
+from mocapd.wizard.step import Json, Tell
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.steps import SetupCameras, all_steps
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView

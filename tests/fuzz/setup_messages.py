@@ -4,7 +4,7 @@ import base64
 import json
 from collections.abc import Mapping
 
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 from tests.fuzz.damaged_pictures import png, strokes_on
 from tests.wizard.drafts import SIZE_PX
 

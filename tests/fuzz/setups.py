@@ -10,7 +10,7 @@ import numpy as np
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.colour.stroke_images import decode_strokes
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 from tests.fuzz.damaged_pictures import png, sample, strokes_on
 from tests.fuzz.mutations import JSON_VALUES, mistyped
 from tests.fuzz.row import Attempt, Place, each_of

@@ -28,7 +28,8 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import StepName, StepState
+from mocapd.wizard.step import StepState
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView
 

@@ -22,7 +22,8 @@ from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.step import Problem, Shape, StepName, StepState, StepView
+from mocapd.wizard.step import Problem, Shape, StepState, StepView
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring
 

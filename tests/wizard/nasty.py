@@ -34,7 +34,8 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.step import StepName, Tell
+from mocapd.wizard.step import Tell
+from mocapd.wizard.step_names import StepName
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import SIZE_PX, full_draft
 from tests.wizard.fake_webcam import FakeWebcam

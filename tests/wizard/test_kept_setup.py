@@ -17,7 +17,7 @@ from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, _Kept, read_kept, write_kept
 from mocapd.wizard.setup_keeper import SetupKeeper, kept_cameras
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 from tests.wizard.drafts import begun, drafted, full_draft, same
 from tests.wizard.fake_webcam import FakeWebcam
 

@@ -11,7 +11,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame, LabelledPicture
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.commands import OF_WIZARD
-from mocapd.wizard.step import StepName
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from tests.wizard.drafts import SIZE_PX, full_draft
 from tests.wizard.fake_webcam import FakeWebcam

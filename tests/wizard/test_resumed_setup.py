@@ -15,7 +15,8 @@ from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
 from mocapd.wizard.kept_setup import FILE_NAME, read_kept
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import StepName, StepState, StepView
+from mocapd.wizard.step import StepState, StepView
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import MakeStep, Wizard
 from mocapd.wizard.wizard_view import WizardView
 from tests.wizard.drafts import begun, drafted, same

@@ -17,7 +17,8 @@ from mocapd.types import Camera, Rig
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.step import Json, Scene, StepName, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView
 

@@ -6,7 +6,7 @@ import msgspec
 
 from mocapd.calibration.board_spec import FEWEST_SQUARES, MOST_SQUARES, BoardSpec, dictionaries
 from mocapd.printing.board_pdf import fitted_board
-from mocapd.wizard.commands import Board
+from mocapd.wizard.intrinsics.intrinsics_verbs import Board
 from mocapd.wizard.step import Json
 
 RULER_MM = 100.0

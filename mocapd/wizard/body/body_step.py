@@ -19,11 +19,13 @@ from mocapd.wizard.body.body_measuring import (
     measure,
     measuring_tracker,
 )
+from mocapd.wizard.body.body_verbs import BODY, MeasureBody, SkipBody, Stature
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
-from mocapd.wizard.commands import BODY, Command, MeasureBody, SkipBody, Stature
+from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
-from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepState, StepView
+from mocapd.wizard.step_names import StepName
 
 
 class BodyStep:

@@ -21,21 +21,14 @@ from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.camera_nodes import node_of, offers, unused_nodes
+from mocapd.wizard.cameras.cameras_verbs import CAMERAS, ChangeMode, LeaveOut, Lock, Name, TakeIn
 from mocapd.wizard.cameras.light_check import light_problems
 from mocapd.wizard.cameras.picture_watch import PictureWatch
-from mocapd.wizard.commands import (
-    CAMERAS,
-    ChangeMode,
-    Command,
-    LeaveOut,
-    Lock,
-    Name,
-    OfCamera,
-    TakeIn,
-)
+from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Json, Problem, StepName, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Problem, StepState, StepView, Tell
+from mocapd.wizard.step_names import StepName
 
 _LIST_EVERY_NS = 4 * NS_PER_S
 _LIGHT_EVERY_NS = NS_PER_S // 2

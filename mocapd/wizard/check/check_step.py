@@ -18,6 +18,7 @@ from mocapd.pipeline.loop import OnDeath
 from mocapd.types import Tracking
 from mocapd.wizard.check.check_measure import Measure
 from mocapd.wizard.check.check_tracking import CheckSettings, CheckTracker, CheckTracking, prepare
+from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
 from mocapd.wizard.check.check_verdict import (
     CameraVerdict,
     Delivery,
@@ -25,13 +26,14 @@ from mocapd.wizard.check.check_verdict import (
     room_problems,
     verdict_json,
 )
-from mocapd.wizard.commands import CHECK, Command, MeasureAgain, Save
+from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
-from mocapd.wizard.step import Problem, Scene, StepName, StepState, StepView
+from mocapd.wizard.step import Problem, Scene, StepState, StepView
+from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0
 SEEK_S = 12.0  # without anybody found, after which the reasons are told

@@ -21,13 +21,15 @@ from mocapd.wizard.colour.colour_solving import (
     StrokeDrawing,
     solve_colours,
 )
+from mocapd.wizard.colour.colour_verbs import COLOUR, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.colour.still_pictures import Countdown, StillPictures
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
-from mocapd.wizard.commands import COLOUR, Command, Freeze, Personal, Propose, Strokes
+from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftColours
-from mocapd.wizard.step import Json, Problem, Scene, Shape, StepName, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Problem, Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step_names import StepName
 
 _COUNTDOWN_S = 3.0
 

@@ -9,11 +9,13 @@ from types import MappingProxyType
 from typing import Protocol
 
 from mocapd.errors import InputError, MocapdError
-from mocapd.wizard.commands import ROOM, Command, Method, Verbs
+from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
+from mocapd.wizard.extrinsics.extrinsics_verbs import ROOM, Method
 from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
-from mocapd.wizard.step import StepName, StepView
+from mocapd.wizard.step import StepView
+from mocapd.wizard.step_names import StepName
 
 
 class ExtrinsicsMethod(Protocol):

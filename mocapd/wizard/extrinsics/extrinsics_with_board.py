@@ -21,12 +21,13 @@ from mocapd.wizard.board.board_form import usual_board
 from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
 from mocapd.wizard.camera_trouble import stopped_cameras
-from mocapd.wizard.commands import BOARD_ROOM, Command, Floor, SkipFloor, Solve
+from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
+from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
 

@@ -18,7 +18,8 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.hosts.open_cameras import OpenCameras
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import Scene, StepName
+from mocapd.wizard.step import Scene
+from mocapd.wizard.step_names import StepName
 from mocapd.wizard.steps import SetupCameras, all_steps, only
 from mocapd.wizard.wizard import Wizard
 

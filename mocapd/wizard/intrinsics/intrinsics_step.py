@@ -19,15 +19,24 @@ from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import BoardWatch
 from mocapd.wizard.board.sightings import BoardSightings
 from mocapd.wizard.camera_trouble import stopped_cameras
-from mocapd.wizard.commands import LENS, Board, Command, Finish, MeasureLens, Ruler, UseSaved
+from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
+from mocapd.wizard.intrinsics.intrinsics_verbs import (
+    LENS,
+    Board,
+    Finish,
+    MeasureLens,
+    Ruler,
+    UseSaved,
+)
 from mocapd.wizard.intrinsics.intrinsics_views import CameraIntrinsics, IntrinsicsOffer
 from mocapd.wizard.intrinsics.saved_intrinsics import (
     SavedIntrinsics,
     find_saved_intrinsics,
     read_intrinsics,
 )
-from mocapd.wizard.step import Problem, Scene, Shape, StepName, StepState, StepView, Tell
+from mocapd.wizard.step import Problem, Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step_names import StepName
 
 _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
 

@@ -1,0 +1,14 @@
+"""What a person can say in the step Check: each verb with its arguments and their ranges."""
+
+from mocapd.wizard.commands import Command, Verbs
+
+
+class MeasureAgain(Command, frozen=True):
+    """Judge another five seconds."""
+
+
+class Save(Command, frozen=True):
+    """Write the calibration."""
+
+
+CHECK: Verbs = {"measure": MeasureAgain, "save": Save}

@@ -1,0 +1,67 @@
+"""What a person can say in the step Lens: each verb with its arguments and their ranges."""
+
+from typing import Annotated
+
+import msgspec
+
+from mocapd.calibration.board_spec import (
+    LARGEST_SQUARE_M,
+    MOST_SQUARES,
+    SMALLEST_SQUARE_M,
+    BoardKind,
+)
+from mocapd.wizard.commands import Command, OfCamera, Verbs
+
+_SMALLEST_MM, _LARGEST_MM = 1000.0 * SMALLEST_SQUARE_M, 1000.0 * LARGEST_SQUARE_M
+Squares = Annotated[int, msgspec.Meta(ge=1, le=MOST_SQUARES)]
+
+Millimetres = Annotated[float, msgspec.Meta(ge=_SMALLEST_MM, lt=_LARGEST_MM)]
+
+
+class Board(Command, frozen=True):
+    """What is printed on it; None: as before."""
+
+    refused = "this board cannot be"
+    fix = (
+        f"give up to {MOST_SQUARES} squares each way, of {_SMALLEST_MM:g} to {_LARGEST_MM:g} mm, as "
+        "they were printed"
+    )
+    kind: BoardKind | None = None
+    columns: Squares | None = None
+    rows: Squares | None = None
+    square_mm: Millimetres | None = None
+    marker_mm: Annotated[float, msgspec.Meta(ge=0.0, lt=_LARGEST_MM)] | None = None
+    dictionary: Annotated[str, msgspec.Meta(max_length=40)] | None = None
+    inverted: bool | None = None
+    legacy: bool | None = None
+
+
+class Ruler(Command, frozen=True):
+    """How long the printed 100 mm are; farther off, something else was measured."""
+
+    refused = "this cannot be the ruler"
+    fix = "measure the line that should be 100 mm long, in millimetres"
+    mm: Annotated[float, msgspec.Meta(ge=50.0, le=150.0)]
+
+
+class UseSaved(Command, frozen=True):
+    """The lens of before; None: all of them."""
+
+    camera: str | None = None
+
+
+class MeasureLens(OfCamera, frozen=True):
+    """Not the saved lens but a new one."""
+
+
+class Finish(Command, frozen=True):
+    """With the lenses as good as they are."""
+
+
+LENS: Verbs = {
+    "board": Board,
+    "ruler": Ruler,
+    "use_saved": UseSaved,
+    "measure": MeasureLens,
+    "finish": Finish,
+}

@@ -1,0 +1,37 @@
+"""The steps of the wizard by name, in their order, and when each is done."""
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+
+from mocapd.wizard.draft import Draft
+
+
+class StepName(StrEnum):
+    """The steps in their order."""
+
+    CAMERAS = "cameras"
+    LENS = "lens"
+    ROOM = "room"
+    COLOUR = "colour"
+    BODY = "body"
+    CHECK = "check"
+
+
+def _ids(draft: Draft) -> set[str]:
+    return {camera.id for camera in draft.cameras}
+
+
+_IS_DONE: Mapping[StepName, Callable[[Draft, bool], bool]] = {
+    StepName.CAMERAS: lambda draft, _: bool(draft.cameras),
+    StepName.LENS: lambda draft, _: bool(draft.cameras) and _ids(draft) <= draft.intrinsics.keys(),
+    StepName.ROOM: lambda draft, _: draft.rig is not None and _ids(draft) == set(draft.rig.names),
+    StepName.COLOUR: lambda draft, _: bool(draft.cameras) and _ids(draft) <= draft.colours.keys(),
+    StepName.BODY: lambda draft, _: draft.stature_m is not None,
+    StepName.CHECK: lambda _, saved: saved,
+}
+"""Whether the result of a step is in the draft, given whether that was saved since the start."""
+
+
+def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
+    """The steps whose result is in the draft; saved: it was, since the start."""
+    return frozenset(name for name, is_done in _IS_DONE.items() if is_done(draft, saved))
