@@ -1,6 +1,6 @@
 """The step Body: the stature is typed, the proportions are measured while the wearer bends the arms.
 
-Its commands are `commands.BODY`.
+Its commands are `body_verbs.BODY`.
 """
 
 from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """The step Cameras: each is there, names its trouble, settles, and is locked.
 
-Its commands are `commands.CAMERAS`.
+Its commands are `cameras_verbs.CAMERAS`.
 
 `details`: `cameras`: [{id, label, source, size_px, fps_hz, measured_hz, taken, phase, share, lockable,
 controls: {name: value}, problems: [{what, where, fix}], offer: {size_px, fps_hz} or null}], `others`:

@@ -1,6 +1,6 @@
 """A webcam in another USB port than when it was calibrated: asked about once, in the step Cameras.
 
-Its command is `commands.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
+Its command is `cameras_verbs.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
 """
 
 from collections.abc import Mapping, Sequence

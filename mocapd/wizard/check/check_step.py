@@ -1,6 +1,6 @@
 """Check: the tracker runs on what was found, five seconds of moving are judged, and it is saved.
 
-Its commands are `commands.CHECK`.
+Its commands are `check_verbs.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
 `lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before).
 """

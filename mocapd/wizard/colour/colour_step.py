@@ -1,6 +1,6 @@
 """The step Colour: a picture of each camera is frozen, strokes are proposed and corrected, the light is solved.
 
-Its commands are `commands.COLOUR`. The wearer's own colours are used from the start, as soon as every
+Its commands are `colour_verbs.COLOUR`. The wearer's own colours are used from the start, as soon as every
 colour has strokes: no two printers and dyes agree.
 """
 

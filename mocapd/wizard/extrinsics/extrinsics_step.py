@@ -1,6 +1,6 @@
-"""The step Room: where the cameras stand, with the board or from the wearer alone.
+"""The step Room hands over to the way that was chosen, the board or the wearer alone.
 
-Its commands are `commands.ROOM` and the method's own.
+Its commands are `extrinsics_verbs.ROOM` and the method's own.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,6 +1,6 @@
 """The extrinsics with the board: held where cameras see it together, then laid on the floor.
 
-Its commands are `commands.BOARD_ROOM`.
+Its commands are `extrinsics_verbs.BOARD_ROOM`.
 """
 
 from dataclasses import replace

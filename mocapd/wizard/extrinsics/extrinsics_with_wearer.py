@@ -1,6 +1,6 @@
 """The extrinsics without a board: the wearer in the shirt walks about for 20 to 30 s.
 
-Its commands are `commands.WEARER_ROOM`.
+Its commands are `extrinsics_verbs.WEARER_ROOM`.
 
 It needs intrinsics, colours and stature. A rig that is there already, of cameras that were bumped since, is
 where the search begins.

@@ -1,6 +1,6 @@
 """The step Lens: the board is shown to every camera, whose intrinsics are solved as soon as enough was seen.
 
-Its commands are `commands.LENS`.
+Its commands are `intrinsics_verbs.LENS`.
 """
 
 from collections.abc import Sequence
