@@ -1,6 +1,7 @@
 """Keeps Python's cyclic garbage collector out of the frames' way."""
 
 import gc
+import threading
 from types import TracebackType
 
 from mocapd.clock import NS_PER_S
@@ -15,17 +16,22 @@ class IdleCollection:
     A full collection walks every container object; with numba, zenoh and matplotlib loaded that is
     120,000 of them and 90 ms (measured), in the midst of whatever frame triggers it. So those alive
     on entry are frozen (never walked again) and what is made later, which is little, is collected
-    between frames. It is the process's own setting: one at a time.
+    between frames. It is the process's own setting: of several, the last to leave puts it back.
     """
+
+    _lock = threading.Lock()
+    _inside = 0  # guarded by it
 
     def __init__(self) -> None:
         self._young_ns: int | None = None  # when each was last collected
         self._all_ns: int | None = None
 
     def __enter__(self) -> "IdleCollection":
-        gc.collect()
-        gc.freeze()
-        gc.disable()
+        with self._lock:
+            IdleCollection._inside += 1
+            gc.collect()
+            gc.freeze()
+            gc.disable()
         return self
 
     def __exit__(
@@ -34,8 +40,11 @@ class IdleCollection:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        gc.enable()
-        gc.unfreeze()
+        with self._lock:
+            IdleCollection._inside -= 1
+            if not IdleCollection._inside:
+                gc.enable()
+                gc.unfreeze()
 
     def idle(self, now_ns: int) -> None:
         """Nothing is waiting: collect what is due, young objects each second, all twice a minute."""

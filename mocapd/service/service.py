@@ -7,6 +7,8 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 
+import numpy as np
+
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.thread import CaptureStatus
@@ -24,6 +26,7 @@ from mocapd.service.health import camera_message, gone_message, health_message
 from mocapd.service.publisher import Publisher
 from mocapd.service.running_session import RunningSession
 from mocapd.session.session import Session
+from mocapd.types import Rig
 
 
 class ThreadDiedError(RuntimeError):
@@ -85,17 +88,21 @@ class Service:
     def replace(self, config: Config, session: Session) -> None:
         """Go on with this session, on the same outputs: frames are numbered on, and state is told anew.
 
-        Takes as long as the cameras take to let go: a webcam opens only once. Whoever has joined the old
-        session's frames has left them. Once the service is told to end, nothing begins any more.
+        Where the cameras stand as before, the tracker begins from the newest body. Takes as long as the cameras
+        take to let go: a webcam opens only once. Whoever has joined the old session's frames has left them. Once
+        the service is told to end, nothing begins any more.
         """
         running = RunningSession(config, session, self.bodies, self.died)
-        before, had_rig = self._running.inputs, self.session.rig is not None
+        before, world = self._running.inputs, self.session.rig
         self._running.stop()
         self._earlier = _added(self._running.metrics(), self._earlier)
         self._running = running
         if self._ended.is_set():
             return
-        if had_rig or session.rig:
+        newest = self.bodies.newest()
+        if newest is not None and _is_same_world(world, session.rig):
+            session.tracker.reset(near=newest.body)
+        if world or session.rig:
             self._tell_calibration()
         for name, camera in before.items():
             if name not in running.inputs:
@@ -195,6 +202,19 @@ class Service:
             if session.rig
             else CalibrationInfo(instance, "", ())
         )
+
+
+def _is_same_world(before: Rig | None, after: Rig | None) -> bool:
+    """Whether a place is told alike by both: a camera of both has not moved."""
+    if before is None or after is None:
+        return False
+    known = {camera.name: camera for camera in before.cameras}
+    return any(
+        camera.name in known
+        and np.array_equal(camera.R, known[camera.name].R)
+        and np.array_equal(camera.t_m, known[camera.name].t_m)
+        for camera in after.cameras
+    )
 
 
 def _added(metrics: Metrics, earlier: Metrics | None) -> Metrics:

@@ -140,6 +140,14 @@ def test_stopping_wakes_a_loop_without_frames_and_is_no_death() -> None:
     assert gc.isenabled()
 
 
+def test_of_two_that_keep_garbage_away_the_last_lets_it_come_back() -> None:
+    with IdleCollection():
+        with IdleCollection():
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+    assert gc.isenabled()
+
+
 def test_garbage_is_collected_when_idle_and_only_then() -> None:
     class Node:
         def __init__(self) -> None:

@@ -3,7 +3,7 @@
 import gc
 import weakref
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.types import Rig
+from mocapd.types import BodyState, Rig
 from tests.capture.films import SIZE_PX
 from tests.e2e.fake_cameras import FakeCamera
 from tests.geometry.rigs import ring
@@ -69,6 +69,33 @@ def test_frames_are_numbered_on_and_counted_on(service: Service, sink: Recorder)
     assert all(b.seq == a.seq + 1 for a, b in pairwise(sink.frames))
     assert service.snapshot().metrics.sets_made > before
     assert not service.wait(0.0)
+
+
+class HeirTracker(CannedTracker):
+    """Remembers whose body it was given."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.near: list[BodyState | None] = []
+
+    def reset(self, near: BodyState | None = None) -> None:
+        self.near.append(near)
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_the_body_is_handed_on_where_the_cameras_stand_as_before(
+    service: Service, moved: bool
+) -> None:
+    heir, rig = HeirTracker(), Rig(ring(2))
+    if moved:
+        rig = Rig(tuple(replace(camera, t_m=camera.t_m + 0.1) for camera in rig.cameras))
+    service.replace(config_of(), replace(session_of("a", "b", rig=rig), tracker=heir))
+    if moved:
+        assert heir.near == []
+    else:
+        (body,) = heir.near
+        assert body is not None
+        assert body.pose is not None
 
 
 def test_state_is_told_anew_also_of_cameras_that_are_no_more(
