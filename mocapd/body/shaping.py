@@ -8,7 +8,7 @@ from mocapd.body.model import BodyModel, shaped
 from mocapd.types import Floats
 
 
-class ShapedBody(NamedTuple):
+class Shaped(NamedTuple):
     """T-pose vertices (V,3), joints `rest` (J,3) and centres of the triangles (T,3) [m]."""
 
     vertices: Floats
@@ -22,14 +22,14 @@ class Shaper:
     def __init__(self, model: BodyModel) -> None:
         self.model = model
         self._factors: Floats | None = None
-        self._shaped = ShapedBody(model.vertices_m, model.rest_m, model.centres_m)
+        self._shaped = Shaped(model.vertices_m, model.rest_m, model.centres_m)
 
-    def __call__(self, factors: Floats) -> ShapedBody:
+    def __call__(self, factors: Floats) -> Shaped:
         """The body with these factors (n_shape,). The arrays are not to be written to."""
         if self._factors is None or not np.array_equal(factors, self._factors):
             m = self.model
             vertices, rest = shaped(m, factors)
             offset = (factors - 1.0) @ m.d_centres.reshape(len(factors), -1)
-            self._shaped = ShapedBody(vertices, rest, m.centres_m + offset.reshape(-1, 3))
+            self._shaped = Shaped(vertices, rest, m.centres_m + offset.reshape(-1, 3))
             self._factors = factors.copy()
         return self._shaped

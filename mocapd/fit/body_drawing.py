@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
-from mocapd.body.shaping import ShapedBody, Shaper
+from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.types import Camera, Floats, Ints
@@ -118,7 +118,7 @@ class IdMapRenderer:
         return PartialRender(ids, zbuffer, self.posed)
 
     def draw(
-        self, root_m: Floats, local_xyzw: Floats, body: ShapedBody, roi: Roi
+        self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         """Id map and triangles (h,w) of a pose of this body."""
         self._project(root_m, local_xyzw, body, roi)
@@ -127,7 +127,7 @@ class IdMapRenderer:
         return ids, triangle_at
 
     def draw_coarse(
-        self, root_m: Floats, local_xyzw: Floats, body: ShapedBody, roi: Roi
+        self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi
     ) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         """As `draw`, at every second pixel each way: (h+1)//2, (w+1)//2."""
         self._project(root_m, local_xyzw, body, roi)
@@ -165,7 +165,7 @@ class IdMapRenderer:
         label_triangles(triangle_at, colour, ids)
         return zbuffer
 
-    def _project(self, root_m: Floats, local_xyzw: Floats, body: ShapedBody, roi: Roi) -> None:
+    def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:
         image_scale = self.image_scale
         # in two calls: within one compiled function the second would be rounded otherwise, depending on
         # what the cache of compiled code holds

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import joint_shape_derivatives
-from mocapd.body.shaping import ShapedBody
+from mocapd.body.shaping import Shaped
 from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer
@@ -83,7 +83,7 @@ class CameraRows:
     def gather(
         self,
         drawing: IdMapRenderer,
-        body: ShapedBody,
+        body: Shaped,
         pictures: ComparedPictures,
         search: Search,
         n_shape: int,

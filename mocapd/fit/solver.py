@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.shaping import ShapedBody, Shaper
+from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
@@ -78,7 +78,7 @@ class _Pass:
     """What is the same for all cameras in one iteration."""
 
     state: MotionState
-    body: ShapedBody
+    body: Shaped
     search: Search
     n_shape: int
     redraw: bool

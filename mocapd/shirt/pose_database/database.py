@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.model import BodyModel, build_model
-from mocapd.body.shaping import ShapedBody
+from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
@@ -180,7 +180,7 @@ def render(
     is_shirt = np.zeros(len(model.vertices_m), dtype=bool)
     is_shirt[model.triangles[model.colour > 0]] = True
 
-    body = ShapedBody(model.vertices_m, model.rest_m, model.centres_m)
+    body = Shaped(model.vertices_m, model.rest_m, model.centres_m)
 
     def draw(part: slice) -> None:
         render_poses(

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays, TriangleArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
-from mocapd.body.shaping import ShapedBody
+from mocapd.body.shaping import Shaped
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_window, pack, resample
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 
@@ -20,7 +20,7 @@ CANVAS = 80  # [px] the shirt is drawn at twice the map's resolution, then cropp
 def render_poses(
     local_xyzw: NDArray[np.float32],
     camera_from_root_xyzw: NDArray[np.float32],
-    body: ShapedBody,
+    body: Shaped,
     skin: SkinArrays,
     surface: TriangleArrays,
     is_shirt: NDArray[np.bool_],
