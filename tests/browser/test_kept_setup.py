@@ -3,13 +3,10 @@
 import stat
 from pathlib import Path
 
-import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mocapd.wizard.kept_setup import FILE_NAME
 from tests.browser.conftest import Served, problems_of
-
-pytestmark = pytest.mark.long
 
 STEP_MS = 60_000
 
