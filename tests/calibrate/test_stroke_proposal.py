@@ -8,6 +8,7 @@ from mocapd.calibrate.colours.light_hypotheses import black_body_rgb, light_hypo
 from mocapd.calibrate.colours.stroke_proposal import (
     Proposal,
     interiors,
+    of_one_dye,
     propose_strokes,
     propose_strokes_together,
 )
@@ -157,3 +158,17 @@ def test_the_table_names_every_picture() -> None:
     assert score.patches == pytest.approx(0.5)
     assert score.W_error == pytest.approx(0.1 * np.sqrt(3))
     assert "cam7" in table({"cam7": score})
+
+
+def test_a_wall_of_nearly_the_same_colour_is_left_out_and_shade_is_not() -> None:
+    rng = np.random.default_rng(3)
+    lit = np.array([158.0, 153.0, 242.0])  # a pink sleeve, BGR
+    picture = np.tile(lit, (40, 60, 1))
+    picture[:, 30:] *= np.linspace(1.0, 0.5, 30)[None, :, None]  # its far side is in shade
+    picture[:10] = [94.0, 110.0, 131.0]  # a wall above it
+    pixels = np.clip(picture + rng.normal(0.0, 3.0, picture.shape), 0, 255).astype(np.uint8)
+    strokes = np.zeros((40, 60), np.uint8)
+    strokes[4:30, 5:55] = 10
+    kept = of_one_dye(strokes, pixels)
+    assert (kept[4:10, 5:55] > 0).mean() < 0.01
+    assert (kept[10:30, 5:55] == 10).mean() > 0.98

@@ -17,6 +17,9 @@ from mocapd.types import Bytes, Camera, Floats, Rig
 
 _CONFIRMED = 0.4  # share of a rendered patch that the picture confirms, for it to get strokes
 _LEAST_PX = 4  # work px of a stroke; less is a speck
+_SPREAD_OF_MEDIAN = 1.4826  # standard deviation of a normal distribution in its median deviations
+_LEAST_SPREAD = 0.008  # of r, g, b as shares of their sum: a camera's noise
+_FAR = 4.0  # standard deviations at which a pixel is of another thing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,13 +99,34 @@ def interiors(rendered: Bytes, classified: Bytes) -> Bytes:
     return out
 
 
+def of_one_dye(strokes: Bytes, pixels: Bytes) -> Bytes:
+    """The strokes (H,W) without the pixels whose hue is not that of most of their part: a wall of nearly the
+    same colour beside a sleeve widens the colour's model until it finds sleeves everywhere.
+
+    Shade keeps the hue, so r, g, b are compared as shares of their sum; pixels (H,W,3) BGR.
+    """
+    out = np.zeros_like(strokes)
+    for colour in range(1, COLOURS + 1):
+        count, parts = cv2.connectedComponents((strokes == colour).astype(np.uint8))
+        for part in range(1, count):
+            rows, columns = np.nonzero(parts == part)
+            bgr = pixels[rows, columns].astype(np.float64) + 1.0
+            share = bgr / bgr.sum(axis=1, keepdims=True)
+            apart = np.abs(share - np.median(share, axis=0))
+            spread = np.maximum(_SPREAD_OF_MEDIAN * np.median(apart, axis=0), _LEAST_SPREAD)
+            kept = (apart < _FAR * spread).all(axis=1)
+            out[rows[kept], columns[kept]] = colour
+    return out
+
+
 def _proposal(
     reader: LightReader, index: int, pixels: Bytes, reading: Reading, model: ColourModel
 ) -> Proposal:
     drawing, view = reader.drawing(index), reading.view
     rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
     at = (view.roi[0] * drawing.image_scale, view.roi[1] * drawing.image_scale)
-    strokes = _enlarged(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
+    inside = _enlarged(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
+    strokes = of_one_dye(inside, pixels)
     means, counts = stroke_means(pixels, strokes)
     W = solve_white_balance(means, model.mean, counts, precision=shade_precision(model))
     return Proposal(
