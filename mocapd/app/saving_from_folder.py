@@ -7,7 +7,6 @@ from pathlib import Path
 import mocapd
 from mocapd.boundary.files import is_file
 from mocapd.calibrate.board.recordings import find_recordings
-from mocapd.calibrate.colours.colour_solution import white_balances
 from mocapd.calibrate.colours.stroke_check import require_good_strokes
 from mocapd.calibrate.extrinsics.folder_calibration import CameraReport, FolderCalibration
 from mocapd.calibration.calibration_file import write_calibration
@@ -22,7 +21,7 @@ from mocapd.calibration.saved_calibration import (
 )
 from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
-from mocapd.shirt.colour.from_pictures import colour_model
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.colour.strokes import read_labelled, strokes_beside
 from mocapd.types import Camera, Floats, LabelledPicture, Rig
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name

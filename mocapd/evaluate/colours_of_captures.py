@@ -7,14 +7,13 @@ import argparse
 import sys
 from pathlib import Path
 
-from mocapd.calibrate.colours.colour_solution import white_balances
 from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
 from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.colour_proposals import ProposalScore, score_by_strokes, table
-from mocapd.shirt.colour.from_pictures import colour_model
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
 

@@ -27,7 +27,7 @@ from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.trackers.colour.tracker import ColourTracker
@@ -85,10 +85,7 @@ def _known(capture: Path) -> _CaptureKnowledge:
     folder = load_folder(capture)
     shirt = from_capture(folder).shirt or ShirtColours()
     colours = colour_model(shirt.model)
-    W = {
-        name: white_balance_of(picture, colours, plain=False)
-        for name, picture in shirt.white_balance.items()
-    }
+    W = white_balances(shirt.white_balance, colours)
     return _CaptureKnowledge(folder, folder.stature_m or TrackerSection().stature_m, colours, W)
 
 

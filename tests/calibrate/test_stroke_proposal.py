@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.colours.colour_solution import personal_colour_model, white_balances
+from mocapd.calibrate.colours.colour_solution import personal_colour_model
 from mocapd.calibrate.colours.light_hypotheses import black_body_rgb, light_hypotheses
 from mocapd.calibrate.colours.stroke_proposal import (
     Proposal,
@@ -15,7 +15,7 @@ from mocapd.calibrate.colours.stroke_proposal import (
 from mocapd.errors import InputError
 from mocapd.evaluate.colour_proposals import score_by_labels, score_by_strokes, table
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.from_pictures import colour_model
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.setup import SimSetup, setup_of

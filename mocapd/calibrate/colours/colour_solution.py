@@ -1,18 +1,11 @@
-"""What strokes in the present light give: each camera's white balance, and the wearer's own shirt's colours."""
+"""What strokes in the present light give: the colours of the wearer's own shirt."""
 
 from collections.abc import Mapping
 
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
-from mocapd.shirt.colour.from_pictures import white_balance_of
+from mocapd.shirt.colour.from_pictures import white_balances
 from mocapd.shirt.colour.white_balance import balanced
-from mocapd.types import Floats, LabelledPicture
-
-
-def white_balances(
-    pictures: Mapping[str, LabelledPicture], model: ColourModel
-) -> dict[str, Floats]:
-    """W (3,3), model_from_camera on RGB 0..1, by camera, as the full tracker reads it."""
-    return {name: white_balance_of(p, model, plain=False) for name, p in pictures.items()}
+from mocapd.types import LabelledPicture
 
 
 def personal_colour_model(

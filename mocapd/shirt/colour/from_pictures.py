@@ -1,5 +1,7 @@
 """What a tracker knows of the shirt's colours: a colour model and white balances, from painted pictures."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from mocapd.body.shirt_patches import standard_shirt
@@ -32,3 +34,10 @@ def white_balance_of(picture: LabelledPicture, model: ColourModel, plain: bool) 
     return solve_white_balance(
         means, model.mean, counts.astype(float), precision=None if plain else shade_precision(model)
     )
+
+
+def white_balances(
+    pictures: Mapping[str, LabelledPicture], model: ColourModel, plain: bool = False
+) -> dict[str, Floats]:
+    """W (3,3), model_from_camera on RGB 0..1, by camera; `plain` as in `white_balance_of`."""
+    return {name: white_balance_of(one, model, plain) for name, one in pictures.items()}

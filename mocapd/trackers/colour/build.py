@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from mocapd.calibration.record import Calibration, ShirtColours
-from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.colour.section import ColourSection
@@ -22,10 +22,7 @@ def build_colour_tracker(
     section = section if section is not None else ColourSection()
     shirt = calibration.shirt or ShirtColours()
     colours = colour_model(shirt.model)
-    W = {
-        camera: white_balance_of(picture, colours, plain=False)
-        for camera, picture in shirt.white_balance.items()
-    }
+    W = white_balances(shirt.white_balance, colours)
     usual = Params()
     params = replace(
         usual,

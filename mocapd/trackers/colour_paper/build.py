@@ -1,7 +1,7 @@
 """Make a tracker of the published method from what is known of rig, wearer and shirt, and the pose database."""
 
 from mocapd.calibration.record import Calibration, ShirtColours
-from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour_paper.params import published
 from mocapd.trackers.colour_paper.section import ColourPaperSection
@@ -20,10 +20,7 @@ def build_paper_tracker(
     section = section if section is not None else ColourPaperSection()
     shirt = calibration.shirt or ShirtColours()
     colours = colour_model(shirt.model)
-    W = {
-        camera: white_balance_of(picture, colours, plain=True)
-        for camera, picture in shirt.white_balance.items()
-    }
+    W = white_balances(shirt.white_balance, colours, plain=True)
     params = published(section.baseline, section.tolerant)
     rig = known_rig(calibration)
     return PaperTracker(rig, stature_m(calibration), colours, W, database, params, tracking)

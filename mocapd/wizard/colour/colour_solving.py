@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.colours.colour_solution import personal_colour_model, white_balances
+from mocapd.calibrate.colours.colour_solution import personal_colour_model
 from mocapd.calibrate.colours.lookalikes import (
     Lookalike,
     colours_alone,
@@ -15,7 +15,7 @@ from mocapd.calibrate.colours.lookalikes import (
 )
 from mocapd.calibrate.colours.stroke_check import StrokeProblem, check_strokes
 from mocapd.shirt.colour.colour_model import MIN_PIXELS, ColourModel
-from mocapd.shirt.colour.from_pictures import colour_model
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.colour.strokes import COLOURS, stroke_means
 from mocapd.types import Bytes, Floats, LabelledPicture
 from mocapd.wizard.colour.stroke_images import encode_seen

@@ -16,7 +16,7 @@ from mocapd.errors import InputError
 from mocapd.geometry.camera_model import from_camera
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.types import Camera, Floats, Rig
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase
 from mocapd.wizard.draft import Draft
@@ -65,10 +65,7 @@ def walk_and_solve(
     placed = replace(draft, rig=Rig(place_nominally(bare_cameras)), factors=None)
     shirt = calibration_of(placed).shirt or ShirtColours()
     colours = colour_model(shirt.model)
-    W = {
-        name: white_balance_of(picture, colours, plain=False)
-        for name, picture in shirt.white_balance.items()
-    }
+    W = white_balances(shirt.white_balance, colours)
     database = load(cache_dir, lambda what, share: tell(what, READY * share))
     tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
