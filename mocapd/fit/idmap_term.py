@@ -57,8 +57,9 @@ def sum_rows(
     triangles, _, patch, bones, weights, d_centres, sleeves, sleeve_start = surface
     parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
     rest, R, joints, _ = posed
-    joint_shape_derivatives(parents, d_rest, R, d_joints)
     n_shape = len(sums.b) - 3 - 3 * len(joint_of_group)
+    if n_shape > 0:
+        joint_shape_derivatives(parents, d_rest, R, d_joints)
     cost: float = accumulate(
         *pictures, search.offsets, len(search.offsets), search.grid_px, search.radius_px,
         search.robust_px, search.phase, search.every, search.edge_weight, xy,

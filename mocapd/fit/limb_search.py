@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES, PoseSpace
-from mocapd.body.shirt_patches import SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.fit_params import LimbSearchParams
@@ -25,7 +24,6 @@ from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints
 
 _LIBRARY = 2048
-_IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,16 +204,9 @@ class ArmSearch:
         return fit, tuple(changed)
 
 
-def confirmed(side: str, fit: Fit) -> float:
-    """0..1: share of an arm's patches that the pictures confirm; an arm out of sight is not confirmed."""
-    p = SLEEVE_PATCHES[side]
-    asked = fit.visible[p].sum() + fit.unexplained[p].sum()
-    return float(fit.matched[p].sum() / (max(asked, _IN_SIGHT * fit.visible.sum()) + 1.0))
-
-
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
     """Whether too little of an arm is confirmed by the pictures."""
-    return confirmed(side, fit) < params.uncertain_arm
+    return fit.confirmed_arms[side] < params.uncertain_arm
 
 
 def _part(rows: Floats, turn: int, size: int) -> Floats:

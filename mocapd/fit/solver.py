@@ -6,6 +6,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
-from mocapd.body.shirt_patches import standard_shirt
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.fit_params import FitParams
@@ -27,6 +28,8 @@ from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.types import Camera, Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
+_IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
+_NO_PIXELS = np.zeros(N_LABELS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +43,7 @@ class View:
     dt_s: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__
 class Fit:
     """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
     information of the evidence alone on pose and shape."""
@@ -61,6 +64,16 @@ class Fit:
     def explained(self) -> float:
         """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
         return float(self.matched.sum() / max(self.visible.sum() + self.unexplained.sum(), 1.0))
+
+    @cached_property
+    def confirmed_arms(self) -> dict[str, float]:
+        """0..1 by side: share of an arm's patches that the pictures confirm; one out of sight is not."""
+        in_sight = _IN_SIGHT * self.visible.sum()
+        confirmed = {}
+        for side, p in SLEEVE_PATCHES.items():
+            asked = self.visible[p].sum() + self.unexplained[p].sum()
+            confirmed[side] = float(self.matched[p].sum() / (max(asked, in_sight) + 1.0))
+        return confirmed
 
     def confirmed_colours(self) -> int:
         """How many colours of the shirt are confirmed in one of their patches."""
@@ -210,9 +223,9 @@ class Fitter:
         rows = [self._rows[view.index] for view in views]
         return Fit(
             state,
-            np.sum([r.visible for r in rows], axis=0),
-            np.sum([r.matched for r in rows], axis=0),
-            np.sum([r.unexplained for r in rows], axis=0),
+            sum((r.visible for r in rows), _NO_PIXELS),
+            sum((r.matched for r in rows), _NO_PIXELS),
+            sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
             sum(r.cost for r in rows),
         )

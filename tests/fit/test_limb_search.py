@@ -17,7 +17,6 @@ from mocapd.fit.limb_search import (
     arm_of,
     best_arm_poses,
     candidates,
-    confirmed,
     is_uncertain,
 )
 from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
@@ -227,9 +226,9 @@ def test_an_arm_is_confirmed_where_the_pictures_show_it() -> None:
     moved = swapped(truth, "left", standing("hanging", "hanging"))
     wrong = by.fit(moved, views, 1 / 30, 1, learn_shape=False)
     for side in SIDES:
-        assert confirmed(side, right) > 0.9
-    assert confirmed("left", wrong) < 0.4
-    assert confirmed("right", wrong) > 0.9
+        assert right.confirmed_arms[side] > 0.9
+    assert wrong.confirmed_arms["left"] < 0.4
+    assert wrong.confirmed_arms["right"] > 0.9
 
 
 def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:

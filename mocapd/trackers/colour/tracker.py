@@ -12,7 +12,7 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.limb_search import ArmSearch, confirmed, is_uncertain
+from mocapd.fit.limb_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
@@ -200,7 +200,7 @@ class ColourTracker:
         velocity = p.velocity_memory * last.velocity + (1.0 - p.velocity_memory) * velocity
         for side in SIDES:
             # what is hardly seen is hardly known to move; what was changed over jumped
-            trust = np.clip((confirmed(side, fit) - 0.15) / p.arm_trust, 0.0, 1.0)
+            trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
             velocity[self._arm_columns[side]] *= 0.0 if side in switched else trust
         names = tuple(self.rig.cameras[v.index].name for v in views)
         return _Memory(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
