@@ -85,11 +85,13 @@ class IdMapRenderer:
         body = self._shaper(state.factors)
         self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
         seen = self._depth > 0.2
-        if seen.sum() < len(seen) // 2:
+        n_seen = np.count_nonzero(seen)
+        if n_seen < len(seen) // 2:
             return None
-        lo, hi = self.xy[seen].min(axis=0), self.xy[seen].max(axis=0)
-        x0, y0 = max(0, int(lo[0]) - margin) & ~1, max(0, int(lo[1]) - margin) & ~1
-        x1, y1 = min(w, int(hi[0]) + margin), min(h, int(hi[1]) + margin)
+        # a column at a time: numpy's min(axis=0) of (V,2) takes ten times as long
+        x, y = (self.xy if n_seen == len(seen) else self.xy[seen]).T
+        x0, y0 = max(0, int(x.min()) - margin) & ~1, max(0, int(y.min()) - margin) & ~1
+        x1, y1 = min(w, int(x.max()) + margin), min(h, int(y.max()) + margin)
         return (x0, y0, x1, y1) if x1 - x0 >= 16 and y1 - y0 >= 16 else None
 
     def render(self, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:
