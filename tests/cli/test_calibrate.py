@@ -11,7 +11,7 @@ from mocapd.body.shirt_patches import standard_shirt
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.saved_session import load_saved
 from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
-from tests.cli.mocapd_process import Outcome, mocapd
+from tests.cli.mocapd_process import Outcome, mocapd_here
 
 SIZE_PX = (640, 480)
 BOARD = ("--board", "charuco", "--square", "0.07", "--marker", "0.052")
@@ -26,7 +26,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def calibrate(env: dict[str, str], folder: Path, out: Path, *words: str) -> Outcome:
     size = () if "--board-size" in words else ("--board-size", "5x6")
-    return mocapd(
+    return mocapd_here(
         env,
         "calibrate",
         "--from-folder",
