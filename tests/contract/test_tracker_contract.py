@@ -121,9 +121,7 @@ def test_it_tracks_a_person_and_all_it_says_is_well_formed(case: TrackerCase) ->
     assert track.quality > 0.3
 
 
-def test_it_goes_on_from_another_trackers_body_at_once(
-    case: TrackerCase, tracked: Tracked
-) -> None:
+def test_it_goes_on_from_another_trackers_body_at_once(case: TrackerCase, tracked: Tracked) -> None:
     """Without the frames in which a person who comes is not believed yet, and without a jump."""
     half = len(case.person) // 2
     tracks = tracked.tracks
