@@ -1,6 +1,7 @@
 """The articulated body as flat arrays for the kernels: surface, skin weights, groups, shape derivatives."""
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,8 +78,12 @@ class BodyModel:
         return len(self.d_rest)
 
 
+@lru_cache(maxsize=8)  # every part of the program asks for the same few, and each takes 0.1 s
 def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
-    """The model of the mean body of this stature; space: `upper_body` unless another is given."""
+    """The model of the mean body of this stature; space: `upper_body` unless another is given.
+
+    The same object to whoever asks for the same.
+    """
     space = space if space is not None else upper_body()
     build = build_whole_surface if space.whole else build_surface
     mean = BodyShape(stature_m, np.ones(space.n_shape))

@@ -1,7 +1,7 @@
 """From recordings to a rig, and what is said of recordings that do not give one."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from mocapd.geometry.camera_model import centre, normalised, project
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Bytes
 from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
+from tests.calibrate.seen_once import seen_once
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 RIG = cameras(2)
@@ -28,6 +29,13 @@ RIG = cameras(2)
 
 def quiet(what: str, done: int, total: int) -> None:
     """Progress that nobody looks at."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def boards_seen_once() -> Iterator[None]:
+    """Most of the tests calibrate from the same pictures."""
+    with seen_once():
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -115,9 +115,9 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras() -> None:
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
-    seen = observations(24, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
+    seen = observations(20, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
     short = SelfCalibrationParams(
-        rounds=14, averaged=4, surface_uncertainty=1e-3
+        rounds=8, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
     stiff = replace(short, off_sd_m=1e-4)
     free_rig, _ = extrinsics_from_body(seen, lenses(), STATURE_M, short)

@@ -1,4 +1,7 @@
-"""Bad input, as a user meets it: one clear line on stderr, and the exit code."""
+"""Bad input, as a user meets it: one clear line on stderr, and the exit code.
+
+Some in a process of their own, whose streams nobody else writes to; the others by the command's entry.
+"""
 
 import socket
 from collections.abc import Callable
@@ -6,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.mocapd_process import Outcome, mocapd
+from tests.cli.mocapd_process import Outcome, mocapd, mocapd_here
 from tests.cli.small_capture import (
     camera_entry,
     write_capture,
@@ -29,7 +32,7 @@ def track(capture: Path, clean_env: dict[str, str], tmp_path: Path) -> Track:
 
     def run(*words: str | Path) -> Outcome:
         out = tmp_path / "track.npz"
-        return mocapd(clean_env, "track", capture, "--out", out, "--tracker", "canned", *words)
+        return mocapd_here(clean_env, "track", capture, "--out", out, "--tracker", "canned", *words)
 
     return run
 
@@ -68,14 +71,18 @@ def test_a_camera_of_another_size_than_its_calibration(track: Track, capture: Pa
     assert_one_line(track(), 78, capture / "cam1.mp4", "32x32", "64x48")
 
 
-def test_a_video_that_is_damaged(track: Track, capture: Path) -> None:
+def test_a_video_that_is_damaged(clean_env: dict[str, str], capture: Path, tmp_path: Path) -> None:
     video = capture / "cam1.mp4"
     video.write_bytes(video.read_bytes()[:200])
-    assert_one_line(track(), 66, video)
+    # how much the libraries say of it depends on how they were imported
+    outcome = mocapd(
+        clean_env, "track", capture, "--out", tmp_path / "t.npz", "--tracker", "canned"
+    )
+    assert_one_line(outcome, 66, video)
 
 
 def test_a_capture_that_is_not_there(clean_env: dict[str, str], tmp_path: Path) -> None:
-    outcome = mocapd(clean_env, "track", tmp_path / "none", "--out", tmp_path / "t.npz")
+    outcome = mocapd_here(clean_env, "track", tmp_path / "none", "--out", tmp_path / "t.npz")
     assert_one_line(outcome, 66, tmp_path / "none")
 
 
@@ -95,7 +102,7 @@ def test_the_option_of_earlier_versions_names_what_to_write_now(track: Track) ->
 
 def test_several_cameras_without_a_rig(clean_env: dict[str, str], capture: Path) -> None:
     cameras = [f"{name}={capture / name}.mp4" for name in ("cam0", "cam1")]
-    outcome = mocapd(clean_env, "run", "--camera", cameras[0], "--camera", cameras[1])
+    outcome = mocapd_here(clean_env, "run", "--camera", cameras[0], "--camera", cameras[1])
     assert_one_line(outcome, 78, "rig", "--rig")
 
 
@@ -126,16 +133,18 @@ def test_a_taken_port(clean_env: dict[str, str], capture: Path) -> None:
 
 
 def test_no_camera_is_configured(clean_env: dict[str, str]) -> None:
-    assert_one_line(mocapd(clean_env, "run"), 78, "camera", "mocapd cameras")
+    assert_one_line(mocapd_here(clean_env, "run"), 78, "camera", "mocapd cameras")
 
 
 def test_a_camera_that_the_rig_does_not_have(clean_env: dict[str, str], capture: Path) -> None:
     words = ("run", "--rig", capture / "rig.json", "--camera", "left=/dev/video0")
-    assert_one_line(mocapd(clean_env, *words), 78, "'left'", "cam0, cam1")
+    assert_one_line(mocapd_here(clean_env, *words), 78, "'left'", "cam0, cam1")
 
 
 def test_a_scenario_that_does_not_exist(clean_env: dict[str, str]) -> None:
-    assert_one_line(mocapd(clean_env, "run", "--capture", "sim:moon"), 66, "'moon'", "living_room")
+    assert_one_line(
+        mocapd_here(clean_env, "run", "--capture", "sim:moon"), 66, "'moon'", "living_room"
+    )
 
 
 def test_nobody_to_watch(clean_env: dict[str, str]) -> None:
@@ -160,5 +169,5 @@ def test_check_config_says_where_it_is_wrong(clean_env: dict[str, str], tmp_path
     home = Path(clean_env["HOME"]) / ".config" / "mocapd"
     home.mkdir(parents=True)
     (home / "config.toml").write_text("\n\n[zenoh]\nport = 'x'\n")
-    outcome = mocapd(clean_env, "check-config")
+    outcome = mocapd_here(clean_env, "check-config")
     assert_one_line(outcome, 78, f"{home / 'config.toml'}:4", 'zenoh.port = "x"', "a whole number")

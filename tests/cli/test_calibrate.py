@@ -1,6 +1,7 @@
 """`mocapd calibrate --from-folder`: the file it writes, what it prints, and how it refuses."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
@@ -11,10 +12,18 @@ from mocapd.body.shirt_patches import standard_shirt
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.saved_session import load_saved
 from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
-from tests.cli.mocapd_process import Outcome, mocapd
+from tests.calibrate.seen_once import seen_once
+from tests.cli.mocapd_process import Outcome, mocapd_here
 
 SIZE_PX = (640, 480)
 BOARD = ("--board", "charuco", "--square", "0.07", "--marker", "0.052")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def boards_seen_once() -> Iterator[None]:
+    """All commands but those of another board calibrate from the same pictures."""
+    with seen_once():
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +35,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def calibrate(env: dict[str, str], folder: Path, out: Path, *words: str) -> Outcome:
     size = () if "--board-size" in words else ("--board-size", "5x6")
-    return mocapd(
+    return mocapd_here(
         env,
         "calibrate",
         "--from-folder",

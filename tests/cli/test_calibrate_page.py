@@ -15,10 +15,12 @@ from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
 import pytest
+import tomli_w
 
 from mocapd.wizard.saving import save_draft
-from tests.cli.mocapd_process import mocapd, start
+from tests.cli.mocapd_process import Outcome, mocapd, mocapd_here, start
 from tests.cli.small_capture import write_capture
+from tests.sim import small
 from tests.wizard.drafts import full_draft
 
 pytestmark = pytest.mark.long
@@ -41,6 +43,14 @@ def cameras(tmp_path: Path) -> tuple[str, ...]:
     """As words of the command line: recordings, as webcams there are none."""
     folder = write_capture(tmp_path / "capture")
     return tuple(f"--camera={name}={folder / name}.mp4" for name in ("cam0", "cam1"))
+
+
+@pytest.fixture
+def simulated(tmp_path: Path) -> str:
+    """A scenario of small pictures, as `--capture` takes it."""
+    scenario = tmp_path / "small.toml"
+    scenario.write_text(tomli_w.dumps(small.table()))
+    return f"sim:{scenario}"
 
 
 @contextmanager
@@ -94,7 +104,7 @@ def test_it_serves_a_setup_and_a_second_one_attaches_to_it(
         told = status(url)
         assert told["cameras"] == ["cam0", "cam1"]
         assert told["setup"] == "cameras"
-        second = mocapd(env, "calibrate", "--no-browser", "--step", "check")
+        second = mocapd_here(env, "calibrate", "--no-browser", "--step", "check")
         assert second.code == 0, second.err
         assert url in second.out
         until_s = time.monotonic() + WAIT_S
@@ -106,9 +116,9 @@ def test_it_serves_a_setup_and_a_second_one_attaches_to_it(
     assert not list(Path(env["XDG_RUNTIME_DIR"]).rglob("page*"))
 
 
-def test_it_attaches_to_a_running_daemon(env: dict[str, str]) -> None:
+def test_it_attaches_to_a_running_daemon(env: dict[str, str], simulated: str) -> None:
     words = ("--tracker", "canned", "--set", "zenoh.enabled=false", "--set", "osc.enabled=false")
-    with running(env, "run", "--capture", "sim:living_room", *words) as daemon:
+    with running(env, "run", "--capture", simulated, *words) as daemon:
         url = announced(env, daemon)
         assert status(url)["setup"] is None
         outcome = mocapd(env, "calibrate", "--no-browser")
@@ -121,9 +131,9 @@ def test_it_attaches_to_a_running_daemon(env: dict[str, str]) -> None:
 
 
 def test_with_two_daemons_the_one_of_this_name_or_folder_is_taken(
-    env: dict[str, str], tmp_path: Path
+    env: dict[str, str], tmp_path: Path, simulated: str
 ) -> None:
-    words = ("run", "--capture", "sim:living_room", "--tracker", "canned")
+    words = ("run", "--capture", simulated, "--tracker", "canned")
     off = ("--set", "zenoh.enabled=false", "--set", "osc.enabled=false")
     stage = tmp_path / "stage"
     with (
@@ -137,16 +147,16 @@ def test_with_two_daemons_the_one_of_this_name_or_folder_is_taken(
             (("--state-dir", stage), "cave"),
             ((), "game"),
         ):
-            outcome = mocapd(env, "calibrate", "--no-browser", *chosen)
+            outcome = mocapd_here(env, "calibrate", "--no-browser", *chosen)
             assert outcome.code == 0, outcome.err
             assert urls[name] in outcome.out
-        refused = mocapd(env, "calibrate", "--no-browser", "--state-dir", tmp_path / "none")
+        refused = mocapd_here(env, "calibrate", "--no-browser", "--state-dir", tmp_path / "none")
         assert refused.code == 78
         assert "game" in refused.err
         assert "--set instance=NAME" in refused.err
         assert all(url in refused.out for url in urls.values())
         assert ended(cave)[0] == 0
-        last = mocapd(env, "calibrate", "--no-browser")
+        last = mocapd_here(env, "calibrate", "--no-browser")
         assert urls["game"] in last.out
 
 
@@ -206,11 +216,19 @@ def test_one_step_alone_needs_a_calibration_and_keeps_the_rest(
         (("--out", "rig.json"), "--from-folder"),
         (("--from-folder", ".", "--out", "rig.json"), "--board-size and --square"),
         (("--camera", "cam0"), "ID=SOURCE"),
-        (("--camera", "cam0=nowhere.mp4"), "no such camera or file"),
     ],
 )
 def test_what_cannot_be_is_refused(env: dict[str, str], words: tuple[str, ...], says: str) -> None:
-    outcome = mocapd(env, "calibrate", "--no-browser", *words)
+    assert_refused(mocapd_here(env, "calibrate", "--no-browser", *words), says)
+
+
+def test_a_camera_that_is_not_there_is_refused(env: dict[str, str]) -> None:
+    """In a process of its own, since others begin to make the pose database beside it."""
+    outcome = mocapd(env, "calibrate", "--no-browser", "--camera", "cam0=nowhere.mp4")
+    assert_refused(outcome, "no such camera or file")
+
+
+def assert_refused(outcome: Outcome, says: str) -> None:
     assert outcome.code in (66, 78)
     assert says in outcome.err
     assert len(outcome.err.splitlines()) == 1

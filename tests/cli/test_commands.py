@@ -15,7 +15,7 @@ import mocapd as package
 from mocapd.cli.demo import watch_command
 from mocapd.config.sections import Config
 from mocapd.outputs.registry import ZenohSection
-from tests.cli.mocapd_process import COMMAND, mocapd
+from tests.cli.mocapd_process import COMMAND, mocapd, mocapd_here
 from tests.cli.small_capture import FRAMES, write_capture
 
 COMMANDS = ("run", "demo", "track", "watch", "cameras", "check-config", "version")
@@ -23,13 +23,13 @@ COMMANDS = ("run", "demo", "track", "watch", "cameras", "check-config", "version
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_help_of_each_command_has_an_example(command: str, clean_env: dict[str, str]) -> None:
-    outcome = mocapd(clean_env, command, "--help")
+    outcome = mocapd_here(clean_env, command, "--help")
     assert outcome.code == 0
     assert f"Example: mocapd {command}" in outcome.out
 
 
 def test_the_help_names_every_command(clean_env: dict[str, str]) -> None:
-    outcome = mocapd(clean_env, "--help")
+    outcome = mocapd_here(clean_env, "--help")
     for command in COMMANDS:
         assert f"  {command} " in outcome.out
 
@@ -40,7 +40,7 @@ def test_version(clean_env: dict[str, str]) -> None:
 
 def test_check_config_tells_every_key_and_its_origin(clean_env: dict[str, str]) -> None:
     env = clean_env | {"MOCAPD_LOG_LEVEL": "debug"}
-    outcome = mocapd(env, "check-config", "--set", "zenoh.port=7448")
+    outcome = mocapd_here(env, "check-config", "--set", "zenoh.port=7448")
     assert outcome.code == 0
     lines = {line.split()[0]: line for line in outcome.out.splitlines()}
     assert lines["zenoh.port"].split() == ["zenoh.port", "=", "7448", "#", "command", "line"]
@@ -50,7 +50,7 @@ def test_check_config_tells_every_key_and_its_origin(clean_env: dict[str, str]) 
 
 def test_check_config_changed_and_json(clean_env: dict[str, str]) -> None:
     words = ("check-config", "--changed", "--json", "--camera", "left=/dev/video0")
-    outcome = mocapd(clean_env, *words)
+    outcome = mocapd_here(clean_env, *words)
     told = json.loads(outcome.out)
     assert list(told) == ["camera"]
     assert told["camera"]["value"][0]["source"] == "/dev/video0"
@@ -59,7 +59,7 @@ def test_check_config_changed_and_json(clean_env: dict[str, str]) -> None:
 
 def test_the_readme_holds_the_table_of_keys(clean_env: dict[str, str]) -> None:
     readme = Path(__file__).resolve().parents[2] / "README.md"
-    table = mocapd(clean_env, "check-config", "--markdown").out
+    table = mocapd_here(clean_env, "check-config", "--markdown").out
     assert table in readme.read_text(), "renew it: mocapd check-config --markdown"
 
 
@@ -76,7 +76,7 @@ def test_track_writes_every_frame_and_the_same_bytes_twice(
     capture = write_capture(tmp_path / "capture")
     for name in ("a.npz", "b.npz"):
         words = ("track", capture, "--out", tmp_path / name, "--tracker", "canned")
-        outcome = mocapd(clean_env, *words)
+        outcome = mocapd_here(clean_env, *words)
         assert outcome.code == 0, outcome.err
         assert outcome.out == ""
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
@@ -91,7 +91,7 @@ def test_score_track_reads_what_track_writes(
     clean_env: dict[str, str], tmp_path: Path, dev_captures: Callable[[str], Path], shared_dir: Path
 ) -> None:
     capture, out = dev_captures("mono_shirt_signals"), tmp_path / "t.npz"
-    assert mocapd(clean_env, "track", capture, "--out", out, "--tracker", "canned").code == 0
+    assert mocapd_here(clean_env, "track", capture, "--out", out, "--tracker", "canned").code == 0
     score = [sys.executable, str(shared_dir / "tools" / "score_track.py"), str(capture), str(out)]
     done = subprocess.run([*score, "--json"], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout)

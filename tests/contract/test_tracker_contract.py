@@ -3,7 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -24,6 +24,31 @@ DAY_NS = 86_400_000_000_000
 def built(request: pytest.FixtureRequest) -> TrackerCase:
     assert request.param in CASES, "add its case to tests/contract/tracker_cases.py"
     return CASES[request.param]()
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """The first run over the person's frames after a reset. Several tests compare another run with it.
+
+    stages: those heard of; written: whether a frame differed afterwards.
+    """
+
+    tracks: list[Track]
+    stages: list[str]
+    written: bool
+
+
+@pytest.fixture(scope="module")
+def tracked(built: TrackerCase) -> Tracked:
+    frames = [f for one in built.person for f in one.frames.values()]
+    before = [f.pixels.copy() for f in frames]
+    stages: list[str] = []
+    built.tracker.reset()
+    built.tracker.tracker.probe = stages.append
+    tracks = run(built.tracker, built.person)
+    built.tracker.tracker.probe = unprobed
+    written = any(not np.array_equal(b, f.pixels) for b, f in zip(before, frames, strict=True))
+    return Tracked(tracks, stages, written)
 
 
 @pytest.fixture
@@ -96,10 +121,10 @@ def test_it_tracks_a_person_and_all_it_says_is_well_formed(case: TrackerCase) ->
     assert track.quality > 0.3
 
 
-def test_it_goes_on_from_another_trackers_body_at_once(case: TrackerCase) -> None:
+def test_it_goes_on_from_another_trackers_body_at_once(case: TrackerCase, tracked: Tracked) -> None:
     """Without the frames in which a person who comes is not believed yet, and without a jump."""
     half = len(case.person) // 2
-    tracks = run(case.tracker, case.person)
+    tracks = tracked.tracks
     assert tracks[0].body.tracking is not Tracking.LIVE or not TRACKERS[case.tracker.name].sees
     before = tracks[half - 1].body
     case.tracker.reset(near=replace(before, tracker="another"))
@@ -112,10 +137,12 @@ def test_it_goes_on_from_another_trackers_body_at_once(case: TrackerCase) -> Non
         assert np.sqrt((apart_m**2).mean()) < 0.1
 
 
-def test_a_body_that_the_pictures_do_not_confirm_is_not_believed(case: TrackerCase) -> None:
+def test_a_body_that_the_pictures_do_not_confirm_is_not_believed(
+    case: TrackerCase, tracked: Tracked
+) -> None:
     if not TRACKERS[case.tracker.name].sees:
         return
-    body = run(case.tracker, case.person)[-1].body
+    body = tracked.tracks[-1].body
     case.tracker.reset(near=replace(body, t_ns=case.empty[0].t_ns - 1, tracker="another"))
     assert all(t.body.tracking is not Tracking.LIVE for t in run(case.tracker, case.empty))
 
@@ -140,18 +167,14 @@ def test_what_it_lacks_is_said_before_it_is_built(case: TrackerCase) -> None:
             build(name, blind, Resources())
 
 
-def test_each_stage_of_a_step_is_heard_of(case: TrackerCase) -> None:
-    stages: list[str] = []
-    case.tracker.tracker.probe = stages.append
-    run(case.tracker, case.person)
-    case.tracker.tracker.probe = unprobed
-    assert bool(stages) == TRACKERS[case.tracker.name].sees
+def test_each_stage_of_a_step_is_heard_of(case: TrackerCase, tracked: Tracked) -> None:
+    assert bool(tracked.stages) == TRACKERS[case.tracker.name].sees
 
 
-def test_the_same_frames_after_reset_give_the_same_output(case: TrackerCase) -> None:
-    first = run(case.tracker, case.person)
-    case.tracker.reset()
-    for one, other in zip(first, run(case.tracker, case.person), strict=True):
+def test_the_same_frames_after_reset_give_the_same_output(
+    case: TrackerCase, tracked: Tracked
+) -> None:
+    for one, other in zip(tracked.tracks, run(case.tracker, case.person), strict=True):
         assert_same(one.body, other.body)
 
 
@@ -168,12 +191,9 @@ def test_what_was_handed_out_does_not_change_afterwards(case: TrackerCase) -> No
     assert_same(kept, copy)
 
 
-def test_frames_are_not_written_to(case: TrackerCase) -> None:
-    before = [f.pixels.copy() for one in case.person for f in one.frames.values()]
+def test_frames_are_not_written_to(case: TrackerCase, tracked: Tracked) -> None:
     assert not any(f.pixels.flags.writeable for one in case.person for f in one.frames.values())
-    run(case.tracker, case.person)
-    after = [f.pixels for one in case.person for f in one.frames.values()]
-    assert all(np.array_equal(b, a) for b, a in zip(before, after, strict=True))
+    assert not tracked.written
 
 
 @pytest.mark.parametrize("missing", [0, -1])
@@ -219,12 +239,10 @@ def test_a_pause_in_time_is_no_error(case: TrackerCase) -> None:
     assert track.body.tracking is Tracking.LIVE
 
 
-def test_time_is_only_what_the_frames_say(case: TrackerCase) -> None:
+def test_time_is_only_what_the_frames_say(case: TrackerCase, tracked: Tracked) -> None:
     """The same pictures a whole number of days later: the same states, at the frames' times."""
-    first = run(case.tracker, case.person)
-    case.tracker.reset()
     later = [shifted(one, DAY_NS) for one in case.person]
-    for one, other in zip(first, run(case.tracker, later), strict=True):
+    for one, other in zip(tracked.tracks, run(case.tracker, later), strict=True):
         assert_same(one.body, replace(other.body, t_ns=other.body.t_ns - DAY_NS))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from tests.trackers.stepping import Stepping
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
 PERIOD_NS = 33_333_333
-N_PERSON, N_EMPTY = 14, 6
+N_PERSON, N_EMPTY = 10, 6
 
 
 @dataclass(frozen=True)
@@ -71,24 +72,41 @@ def canned_case() -> TrackerCase:
     return TrackerCase(Stepping(tracker, known_shape(known)), sets, sets)
 
 
-def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) -> TrackerCase:
+@dataclass(frozen=True, eq=False)
+class Filmed:
+    """What both shirt trackers are built from, and what is shown to them."""
+
+    known: Calibration
+    database: PoseDatabase
+    person: list[FrameSet]
+    empty: list[FrameSet]
+
+
+@cache
+def filmed() -> Filmed:
     """Two simulated webcams in a room with things in it; a pose database of a fiftieth of the size."""
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
     scenario = small.scenario(cameras=cameras)
     renderers = camera_renderers(World(scenario))
     known = calibration_of_setup(setup_of(scenario, renderers))
-    tracker = build_tracker(known, build_database(DatabaseParams(count=1600, cells=32)))
     offset_ns = {"right": 11_000_000}
     person = {r.camera.name: [r.frame(i) for i in range(N_PERSON)] for r in renderers}
     empty = {
         r.camera.name: [r.picture(None, np.ones(2), noise_key=i) for i in range(N_EMPTY)]
         for r in renderers
     }
-    return TrackerCase(
-        Stepping(tracker, known_shape(known)),
+    return Filmed(
+        known,
+        build_database(DatabaseParams(count=1600, cells=32)),
         frame_sets(person, offset_ns=offset_ns),
         frame_sets(empty, offset_ns=offset_ns),
     )
+
+
+def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) -> TrackerCase:
+    shown = filmed()
+    tracker = build_tracker(shown.known, shown.database)
+    return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
 
 
 # One line per tracker of mocapd.trackers.registry.TRACKERS.

@@ -204,7 +204,9 @@ def _run(cloth: Mask) -> tuple[int, int] | None:
     if not len(seen):
         return None
     breaks = np.flatnonzero(np.diff(seen) > _GAP + 1)
-    start, end = seen[np.r_[0, breaks + 1]], seen[np.r_[breaks, len(seen) - 1]] + 1
+    first = np.concatenate([[0], breaks + 1])
+    last = np.concatenate([breaks, [len(seen) - 1]])
+    start, end = seen[first], seen[last] + 1
     centre = len(cloth) // 2
     worth = end - start - np.maximum(0, np.maximum(start - centre, centre - end))
     best = int(np.argmax(worth))

@@ -8,10 +8,6 @@ opening.
 from dataclasses import dataclass
 from typing import Protocol
 
-import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
-
-import cv2
-
 from mocapd.capture.webcam.camera_controls import Control, ControlDevice, power_line_code
 from mocapd.errors import ConfigError
 
@@ -70,6 +66,11 @@ class ControlResult:
 
 def control_steps(controls: Controls) -> tuple[tuple[str, int, float], ...]:
     """(name, cv2 property, value) in the order to set them: each automatic before its value."""
+    # the configuration names Controls, and whoever reads it need not have OpenCV
+    import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+
+    import cv2
+
     groups = (
         (
             ("auto_exposure", cv2.CAP_PROP_AUTO_EXPOSURE, controls.auto_exposure),

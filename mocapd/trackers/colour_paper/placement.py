@@ -176,7 +176,7 @@ def _normal_equations(
         d[:, 0, 0] = d[:, 1, 1] = 1.0 / z[:, 0]
         d[:, :, 2] = -xy / z
         d = d @ c.camera.R
-        J = np.concatenate([d, np.cross(arm[:, None, :], d)], axis=2).reshape(-1, 6)
+        J = np.concatenate([d, _cross(arm[:, None, :], d)], axis=2).reshape(-1, 6)
         size2 = (residual**2).sum(axis=1)
         # Geman-McClure: a wrong limb of one camera's guess must not turn the trunk
         w = c.weight / (1.0 + size2 / scale_rad**2) ** 2
@@ -185,3 +185,11 @@ def _normal_equations(
         gradient += J.T @ (wide * residual.ravel())
         hessian += J.T @ (wide[:, None] * J)
     return cost, gradient, hessian
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """(n,2,3) of (n,1,3) and (n,2,3): what np.cross gives, in half the time for a few points."""
+    out = np.empty_like(b)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
+    return out
