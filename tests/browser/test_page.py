@@ -1,6 +1,5 @@
 """The live view of a running daemon in a real browser, and who is let in."""
 
-import os
 import re
 import signal
 import subprocess
@@ -15,12 +14,11 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.conftest import PAGE_URL, problems_of
+from tests.browser.conftest import FOR_THE_DOCS, PAGE_URL, problems_of
 from tests.cli.mocapd_process import mocapd, start
 from tests.outputs.frames import free_port
 
 WAIT_MS = 60_000
-FOR_THE_DOCS = "MOCAPD_SCREENSHOTS" in os.environ
 # what is tracked matters to the docs' picture only: the canned body takes no time to compute
 TRACKER = () if FOR_THE_DOCS else ("--set", "tracker.name=canned")
 
