@@ -1,6 +1,5 @@
 """Captures of simulated scenarios, exported once: drawing them takes longer than what looks at them."""
 
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -10,17 +9,14 @@ from mocapd.sim.scenario import Scenario
 
 
 def kept_capture(scenario: Scenario, seconds: float, cache_home: Path) -> Path:
-    """The folder of so much of this scenario; nobody may change it.
+    """The folder of so much of this scenario, named as that; nobody may change it.
 
     It is made anew when the scenario or the code that draws it has changed.
     """
-    name = f"{scenario.name}-{seconds:g}s"
-    folder = cache_home / "captures" / f"{name}-{film_key(scenario)[:16]}"
+    folder = cache_home / "captures" / f"{film_key(scenario)[:16]}-{seconds:g}s"
     if not folder.is_dir():
-        for stale in folder.parent.glob(f"{name}-*"):
-            shutil.rmtree(stale, ignore_errors=True)
         folder.parent.mkdir(exist_ok=True)
         partial = Path(tempfile.mkdtemp(dir=folder.parent, prefix="partial-"))
-        export_capture(scenario, partial, seconds)
+        export_capture(scenario, partial / scenario.name, seconds)
         partial.rename(folder)
-    return folder
+    return folder / scenario.name
