@@ -85,7 +85,7 @@ def draw(page: Page, camera: str, strokes: Bytes) -> None:
         page.mouse.move(*at[0])
         page.mouse.down()
         for point in at[1:]:
-            page.mouse.move(*point, steps=3)
+            page.mouse.move(*point)
         page.mouse.up()
 
 
