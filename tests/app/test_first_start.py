@@ -14,8 +14,8 @@ from tests.outputs.frames import free_port
 
 
 def run(env: dict[str, str], capture: Path, *words: str) -> Outcome:
-    setting = ("--set", f"zenoh.port={free_port()}")
-    return mocapd(env, "run", "--capture", capture, "--tracker", "canned", *setting, *words)
+    settings = ("--set", f"zenoh.port={free_port()}", "--set", "web.enabled=false")
+    return mocapd(env, "run", "--capture", capture, "--tracker", "canned", *settings, *words)
 
 
 def test_a_start_that_was_prepared_is_not_prepared_again(

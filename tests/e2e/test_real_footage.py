@@ -115,6 +115,7 @@ def test_the_daemon_publishes_lost_while_it_plays_them_at_their_own_pace(
 ) -> None:
     port = free_port()
     words: list[str | Path] = ["run", "--set", f"zenoh.port={port}", "--set", "osc.enabled=false"]
+    words += ["--set", "web.enabled=false"]
     for name in files:
         words += ["--camera", f"{name.partition('.')[0]}={real_video / folder / name}"]
     if len(files) > 1:
