@@ -15,6 +15,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from tests.conftest import environment
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
+FOR_THE_DOCS = "MOCAPD_SCREENSHOTS" in os.environ  # pictures show what users see, and take time
 PAGE_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
 
 

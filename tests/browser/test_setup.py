@@ -10,6 +10,7 @@ import time
 import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 
 import cv2
@@ -19,14 +20,17 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from mocapd.evaluate.score import JOINT_SETS
-from mocapd.sim.export import export_capture
-from mocapd.sim.renderer import camera_renderers
+from mocapd.session.setup_demo import Demo
+from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
-from mocapd.sim.setup import scribble_picture
 from mocapd.sim.world import World
 from mocapd.types import Bytes
-from tests.browser.conftest import Served, problems_of
+from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, write_kept
+from mocapd.wizard.step_names import StepName
+from tests.browser.conftest import FOR_THE_DOCS, Served, problems_of
 from tests.conftest import ROOT
+from tests.sim.kept_capture import kept_capture
 
 pytestmark = pytest.mark.long
 
@@ -38,12 +42,14 @@ STEP_MS = 120_000  # a step on a busy machine; the figure of the whole is printe
 
 @dataclass
 class Setup:
-    """What one way through all steps left behind. seconds: by step; heard: what the browser said."""
+    """What one way through all steps left behind. seconds: by step; heard: what the browser said;
+    forgotten: whether the setup of before was, when a new one was begun."""
 
     saved: Path
     seconds: dict[str, float] = field(default_factory=dict)
     heard: list[str] = field(default_factory=list)
     log: str = ""
+    forgotten: bool = False
 
 
 def shown(page: Page, step: str) -> None:
@@ -79,15 +85,14 @@ def draw(page: Page, camera: str, strokes: Bytes) -> None:
         page.mouse.move(*at[0])
         page.mouse.down()
         for point in at[1:]:
-            page.mouse.move(*point, steps=3)
+            page.mouse.move(*point)
         page.mouse.up()
 
 
-def truth_strokes(camera: str) -> Bytes:
-    """Where a careful user would draw, from the simulator's labels."""
-    scenario = load_scenario(SCENARIO)
-    renderer = {r.camera.name: r for r in camera_renderers(World(scenario))}[camera]
-    return scribble_picture(scenario, renderer).labels
+def truth_strokes(camera: str, cache_home: Path) -> Bytes:
+    """Where a careful user would draw, from the simulator's labels: of the film that the setup shows."""
+    film = load_film(load_scenario(SCENARIO), cache_home / "mocapd")
+    return film.setup.scribbles[camera].labels
 
 
 def rms_after_turning_cm(capture: Path, track: Path) -> float:
@@ -111,8 +116,16 @@ def rms_after_turning_cm(capture: Path, track: Path) -> float:
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory, user_env: dict[str, str]) -> Iterator[Served]:
-    """The setup on simulated webcams, in a process of its own."""
-    served = Served(tmp_path_factory.mktemp("state"), user_env)
+    """The setup on simulated webcams, in a process of its own; another one before it was not finished."""
+    state_dir = tmp_path_factory.mktemp("state")
+    cameras = tuple(
+        DraftCamera(one.name, Demo.source_of(one.name), one.size_px)
+        for one in load_scenario(SCENARIO).cameras
+    )
+    draft = Draft(cameras=cameras, stature_m=1.81)
+    unfinished = KeptSetup(datetime.now(UTC), frozenset({StepName.BODY}), draft)
+    write_kept(state_dir / FILE_NAME, unfinished)
+    served = Served(state_dir, user_env)
     yield served
     served.stop()
 
@@ -128,9 +141,9 @@ def page(browser: Browser, pictures: Path) -> Iterator[Page]:
 
 
 @pytest.fixture(scope="module")
-def setup(served: Served, page: Page, pictures: Path) -> Setup:
+def setup(served: Served, page: Page, pictures: Path, cache_home: Path) -> Setup:
     """One way through the whole setup; screenshots of each step as it is done."""
-    by_hand = truth_strokes("cam1")
+    by_hand = truth_strokes("cam1", cache_home)
     out = Setup(served.state_dir / "calibration.toml", heard=problems_of(page))
     began = time.monotonic()
 
@@ -143,6 +156,10 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
         out.seconds[step], began = now - began, now
 
     page.goto(served.url)
+    expect(page.locator("#kept-setup")).to_contain_text("A setup from", timeout=STEP_MS)
+    page.locator("#begin-anew").click(timeout=STEP_MS)
+    expect(page.locator("#kept-setup")).to_be_hidden(timeout=STEP_MS)
+    out.forgotten = not (served.state_dir / FILE_NAME).exists()
     shown(page, "cameras")
     done(page)
     finished("cameras")
@@ -150,8 +167,9 @@ def setup(served: Served, page: Page, pictures: Path) -> Setup:
     page.click("#next")
 
     shown(page, "lens")
-    page.wait_for_timeout(6000)
-    shoot("lens")
+    if FOR_THE_DOCS:  # a picture of the step while views are collected
+        page.wait_for_timeout(6000)
+        shoot("lens")
     done(page)
     finished("lens")
     page.locator("#next").focus()
@@ -213,6 +231,10 @@ def test_the_whole_setup_is_done_and_saved(setup: Setup) -> None:
     assert str(setup.saved) in setup.log, "it says on the terminal what was written"
 
 
+def test_begun_anew_the_setup_of_before_is_forgotten(setup: Setup) -> None:
+    assert setup.forgotten
+
+
 def test_the_browser_had_nothing_to_complain_of(setup: Setup) -> None:
     assert setup.heard == []
 
@@ -235,13 +257,12 @@ def test_lenses_and_room_are_the_true_ones(setup: Setup) -> None:
 
 
 def test_a_recording_is_tracked_with_the_saved_file(
-    setup: Setup, tmp_path: Path, user_env: dict[str, str]
+    setup: Setup, tmp_path: Path, user_env: dict[str, str], cache_home: Path
 ) -> None:
     """As well as with the true rig, but for the direction in which the board lay."""
     scenario = load_scenario(SCENARIO)
     late = msgspec.structs.replace(scenario, scribble_s=0.0)
-    capture = tmp_path / "capture"
-    export_capture(late, capture, 2.0)
+    capture = kept_capture(late, 2.0, cache_home)
     errors = {}
     for name, options in (("true", []), ("saved", ["--calibration", str(setup.saved)])):
         track = tmp_path / f"{name}.npz"

@@ -6,7 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -76,21 +76,22 @@ yaw_deg = -15.0
 class Running:
     """A daemon on two simulated cameras, with ports of its own."""
 
-    def __init__(self, env: dict[str, str], scenario: Path) -> None:
-        self.env, self.scenario = env, scenario
+    def __init__(self, env: dict[str, str], folder: Path, tracker: str) -> None:
+        self.env, self.scenario = env, folder / "small.toml"
+        self.scenario.write_text(SCENARIO)
         self.osc_port = free_port(socket.SOCK_DGRAM)
         zenoh_port = free_port(socket.SOCK_STREAM)
         self.endpoint = f"tcp/127.0.0.1:{zenoh_port}"
         self.process = start(
             env,
-            *("run", "--capture", f"sim:{scenario}"),
+            *("run", "--capture", f"sim:{self.scenario}", "--tracker", tracker),
             *("--instance", "e2e", "--set", f"zenoh.port={zenoh_port}"),
             *("--set", f'osc.destinations=["127.0.0.1:{self.osc_port}"]'),
         )
 
-    def subscribe(self) -> dict[str, Any]:
-        """What a subscriber in another process received."""
-        words = (self.endpoint, str(self.osc_port), str(FRAMES))
+    def subscribe(self, frames: int) -> dict[str, Any]:
+        """What a subscriber in another process received, until it had so many."""
+        words = (self.endpoint, str(self.osc_port), str(frames))
         with subprocess.Popen(
             [sys.executable, "-m", "tests.e2e.subscriber", *words],
             env=self.env,
@@ -140,19 +141,25 @@ def joint_errors_m(
 
 
 @pytest.fixture
-def daemon(clean_env: dict[str, str], tmp_path: Path) -> Iterator[Running]:
-    scenario = tmp_path / "small.toml"
-    scenario.write_text(SCENARIO)
-    running = Running(clean_env, scenario)
-    try:
-        yield running
-    finally:
+def begin(clean_env: dict[str, str], tmp_path: Path) -> Iterator[Callable[[str], Running]]:
+    """Starts a daemon with this tracker; it has ended after the test."""
+    begun: list[Running] = []
+
+    def one(tracker: str) -> Running:
+        begun.append(Running(clean_env, tmp_path, tracker))
+        return begun[-1]
+
+    yield one
+    for running in begun:
         running.process.kill()
         running.process.communicate()
 
 
-def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(daemon: Running) -> None:
-    received = daemon.subscribe()
+def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
+    begin: Callable[[str], Running],
+) -> None:
+    daemon = begin("colour")
+    received = daemon.subscribe(FRAMES)
 
     frames = received["zenoh"]
     assert len(frames) == FRAMES
@@ -183,8 +190,9 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(daemon: Running) -
     assert rms_m < WORST_RMS_M, np.sqrt(np.mean(errors_m**2, axis=1)).round(3)
 
 
-def test_ctrl_c_ends_it_with_130(daemon: Running) -> None:
-    daemon.subscribe()
+def test_ctrl_c_ends_it_with_130(begin: Callable[[str], Running]) -> None:
+    daemon = begin("canned")
+    daemon.subscribe(5)
     assert daemon.end(signal.SIGINT)[0] == 130
 
 

@@ -8,18 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.sim.export import export_capture
 from tests.cli.mocapd_process import mocapd
+from tests.sim.kept_capture import kept_capture
 from tests.sim.small import LAMP_OFF_S, scenario
 
 SECONDS, APPEARS_S = 1.5, 0.2
 
 
 @pytest.fixture(scope="module")
-def capture(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("captures") / "small"
-    export_capture(scenario(person_appears_s=APPEARS_S), folder, SECONDS)
-    return folder
+def capture(cache_home: Path) -> Path:
+    return kept_capture(scenario(person_appears_s=APPEARS_S), SECONDS, cache_home)
 
 
 def test_its_help_has_an_example(clean_env: dict[str, str]) -> None:

@@ -13,16 +13,15 @@ from mocapd.evaluate.roc_of_capture import roc_of_capture
 from mocapd.evaluate.score import score
 from mocapd.evaluate.truth import read_label
 from mocapd.session.offline import RecordedTrack
-from mocapd.sim.export import export_capture
+from tests.sim.kept_capture import kept_capture
 from tests.sim.small import scenario
 
 LABELLED = (0, 15, 30)
 
 
 @pytest.fixture(scope="module")
-def perfect(tmp_path_factory: pytest.TempPathFactory) -> CaptureResult:
-    folder = tmp_path_factory.mktemp("captures") / "small"
-    export_capture(scenario(person_appears_s=0.2), folder, 1.1)
+def perfect(cache_home: Path) -> CaptureResult:
+    folder = kept_capture(scenario(person_appears_s=0.2), 1.1, cache_home)
     case = open_case(folder)
     with np.load(folder / "truth.npz") as truth:
         seen = truth["visible"]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy.optimize
+import scipy  # its parts when they are used: they take long to import
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_reprojection import (

@@ -7,10 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
-import scipy.sparse
-import scipy.sparse.linalg
+import scipy  # its parts when they are used: they take long to import
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_motion import board_paths
@@ -97,7 +94,7 @@ class _Problem:
             ]
         )
 
-    def slope(self, x: Floats) -> scipy.sparse.csr_matrix:
+    def slope(self, x: Floats) -> "scipy.sparse.csr_matrix":
         """d error by x."""
         intrinsics, cameras, boards, delay = self.steps(x)
         scene = with_steps(self.scene, intrinsics, cameras, boards, delay)
@@ -177,7 +174,7 @@ def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
     def step(y: Floats) -> Floats:
         return _solved_lower(L, y, 1)
 
-    def slope(y: Floats) -> scipy.sparse.linalg.LinearOperator:
+    def slope(y: Floats) -> "scipy.sparse.linalg.LinearOperator":
         J = problem.slope(step(y))
         return scipy.sparse.linalg.LinearOperator(
             J.shape,

@@ -1,0 +1,22 @@
+"""Captures of simulated scenarios, exported once: drawing them takes longer than what looks at them."""
+
+import tempfile
+from pathlib import Path
+
+from mocapd.sim.export import export_capture
+from mocapd.sim.film import film_key
+from mocapd.sim.scenario import Scenario
+
+
+def kept_capture(scenario: Scenario, seconds: float, cache_home: Path) -> Path:
+    """The folder of so much of this scenario, named as that; nobody may change it.
+
+    It is made anew when the scenario or the code that draws it has changed.
+    """
+    folder = cache_home / "captures" / f"{film_key(scenario)[:16]}-{seconds:g}s"
+    if not folder.is_dir():
+        folder.parent.mkdir(exist_ok=True)
+        partial = Path(tempfile.mkdtemp(dir=folder.parent, prefix="partial-"))
+        export_capture(scenario, partial / scenario.name, seconds)
+        partial.rename(folder)
+    return folder / scenario.name
