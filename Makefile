@@ -9,7 +9,7 @@ PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 
 # What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
 LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 14) and sys.platform == "linux" \
 	and platform.machine() in ("x86_64", "aarch64")))
-# --no-compile: Python compiles what is imported, when it is; all of it at once takes a third of the time here.
+# --no-compile: a third of pip's time, done on all cores after it (some packages carry files that are for other Pythons).
 PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 
 .DEFAULT_GOAL := help
@@ -53,11 +53,14 @@ env dev:
 			"x86_64 or aarch64): pip chooses the versions" >&2; \
 		$(PIP_INSTALL) --editable '$(PROJECT)'; \
 	fi && \
+	{ $(BIN)/python -m compileall -qq -j 0 $(VENV)/lib || true; } && \
 	for stamp in $(STAMPS); do echo "$$want" > $$stamp || exit 1; done
 
 demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one live line
 	@$(BIN)/mocapd demo
 
+# What is compiled is kept for the next process, whatever the caller's own wish: there are a hundred and more.
+test: export PYTHONDONTWRITEBYTECODE :=
 test: dev ## run all tests
 	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
 
