@@ -38,7 +38,10 @@ def test_the_newest_frame_wins() -> None:
         with _sending(running.sink.send):
             assert eventually(frames_that_were_not_fetched_are_gone, 30.0)
         assert seqs == sorted(set(seqs))
-        assert eventually(lambda: game.poll() is None)
+        last = 1_000_000
+        running.sink.send(small_frame(seq=last))
+        assert eventually(lambda: (body := game.poll()) is not None and body.seq == last)
+        assert game.poll() is None
         assert game.wait(0.05) is None
 
 

@@ -1,5 +1,6 @@
 """The Zenoh sink and another program, over real sessions on this machine."""
 
+import faulthandler
 import os
 import socket
 import subprocess
@@ -112,14 +113,40 @@ def test_status_says_who_listens() -> None:
         game = subprocess.Popen(
             [sys.executable, "-c", program, running.endpoint], stdin=subprocess.PIPE
         )
-        with game, other_program(running.endpoint) as session:
-            session.declare_subscriber("mocapd/v1/pc/health")  # connected, but not for frames
+        with game:
             running.heard()
             status = running.sink.status()
             assert status.listeners == 1
             assert f"(pid {game.pid})" in status.detail
             game.communicate()
         assert eventually(lambda: running.sink.status().listeners == 0)
+
+
+def test_a_program_that_takes_no_frames_is_no_listener() -> None:
+    with running_sink() as running, other_program(running.endpoint) as session:
+        session.declare_subscriber("mocapd/v1/pc/health")
+        assert ask(session, "mocapd/v1/pc/schema/**")  # by now the other is known, too
+        assert running.sink.status().listeners == 0
+
+
+def test_status_can_be_asked_while_programs_come_and_go() -> None:
+    """The session's admin space, which says who subscribes, stopped the session for good (see zenoh_listeners)."""
+    program = (
+        "import sys, zenoh, json\n"
+        "config = {'mode': 'client', 'connect': {'endpoints': [sys.argv[1]]},"
+        " 'scouting': {'multicast': {'enabled': False}}}\n"
+        "with zenoh.open(zenoh.Config.from_json5(json.dumps(config))) as session:\n"
+        "    for n in range(40000):\n"
+        "        session.declare_subscriber(f'mocapd/v1/pc/skeleton/{n % 50}').undeclare()\n"
+    )
+    faulthandler.dump_traceback_later(60.0, exit=True)  # nothing else ends what Zenoh holds
+    with running_sink() as running:
+        game = subprocess.Popen([sys.executable, "-c", program, running.endpoint])
+        while game.poll() is None:
+            running.sink.status()
+        assert game.returncode == 0
+        assert eventually(lambda: running.sink.status().listeners == 0)
+    faulthandler.cancel_dump_traceback_later()
 
 
 def state_of(running: Running) -> CalibrationInfo:

@@ -1,31 +1,13 @@
-"""Who subscribes to the frames, for the status line."""
+"""Who is connected to the daemon's Zenoh session, for the status line.
 
-import json
+Which of them subscribe, the session's admin space would say, but must not be asked: it answers while it holds
+the routing tables' lock for reading and takes it again for each reply, so that a subscriber that is declared
+between the two stops the whole session for good (seen with eclipse-zenoh 1.10.2 within seconds).
+"""
 
 import zenoh
 
 from mocapd.outputs.socket_owners import owners_of
-
-
-def subscribers(session: zenoh.Session, key: str) -> tuple[str, ...]:
-    """Ids of the remote sessions that subscribe to `key`, sorted.
-
-    Read from this session's own admin space (keys `@/<zid>/<mode>/subscriber/<key expression>`),
-    which never leaves the process: about 0.3 ms.
-    """
-    own = str(session.zid())
-    found: set[str] = set()
-    for reply in session.get(f"@/{own}/*/subscriber/**"):
-        sample = reply.ok
-        if sample is None:
-            continue
-        wanted = str(sample.key_expr).partition("/subscriber/")[2]
-        if not zenoh.KeyExpr(wanted).intersects(key):
-            continue
-        sources = json.loads(sample.payload.to_bytes())
-        for kind in ("routers", "peers", "clients"):
-            found.update(sources.get(kind, ()))
-    return tuple(sorted(found - {own}))
 
 
 class ListenerNames:
@@ -37,18 +19,18 @@ class ListenerNames:
     def __init__(self) -> None:
         self._names: dict[str, str] = {}
 
-    def of(self, session: zenoh.Session, zids: tuple[str, ...]) -> tuple[str, ...]:
-        """One name per session id, such as `godot (pid 12)` or `192.168.1.7`."""
-        if not set(zids) <= self._names.keys():
-            self._look_up(session)
-        self._names = {zid: self._names.get(zid, "unknown") for zid in zids}
-        return tuple(self._names[zid] for zid in zids)
-
-    def _look_up(self, session: zenoh.Session) -> None:
+    def of(self, session: zenoh.Session) -> tuple[str, ...]:
+        """One name per connected session, such as `godot (pid 12)` or `192.168.1.7`, in a lasting order."""
         addresses = {
             str(link.zid): link.dst.partition("/")[2].rpartition(":")
             for link in session.info.links()
         }
+        if not addresses.keys() <= self._names.keys():
+            self._look_up(addresses)
+        self._names = {zid: self._names[zid] for zid in sorted(addresses)}
+        return tuple(self._names.values())
+
+    def _look_up(self, addresses: dict[str, tuple[str, str, str]]) -> None:
         local_ports = frozenset(
             int(port) for host, _, port in addresses.values() if host in ("127.0.0.1", "[::1]")
         )

@@ -14,7 +14,7 @@ from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_close import close_soon
 from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints
-from mocapd.outputs.zenoh.zenoh_listeners import ListenerNames, subscribers
+from mocapd.outputs.zenoh.zenoh_listeners import ListenerNames
 from mocapd.outputs.zenoh.zenoh_open import open_session
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
@@ -87,13 +87,14 @@ class ZenohSink:
         self._state.set(message)
 
     def status(self) -> SinkStatus:
-        """`refused` counts the frames made while nobody listened."""
+        """`refused` counts the frames made while nobody listened; `listeners` the programs that are connected
+        while one of them takes frames."""
         session = self._session
         if session is None:
             return SinkStatus(self._sent, self._unheard, 0, "closed")
+        heard = any(_is_heard(publisher) for publisher in list(self._publishers.values()))
         if self._params.connect:
             # the router knows who listens behind it, we only know whether anybody does
-            heard = any(_is_heard(publisher) for publisher in list(self._publishers.values()))
             detail = f"joined {', '.join(self._params.connect)}"
             return SinkStatus(
                 self._sent,
@@ -101,12 +102,9 @@ class ZenohSink:
                 -1 if heard else 0,
                 detail if heard else f"{detail}, nobody listens",
             )
-        zids = subscribers(session, keys.skeleton(self.instance, keys.ANY))
-        names = ", ".join(self._listener_names.of(session, zids))
-        where = ", ".join(listen_endpoints(self._params))
-        return SinkStatus(
-            self._sent, self._unheard, len(zids), names or f"nobody listens on {where}"
-        )
+        names = self._listener_names.of(session) if heard else ()
+        nobody = f"nobody listens on {', '.join(listen_endpoints(self._params))}"
+        return SinkStatus(self._sent, self._unheard, len(names), ", ".join(names) or nobody)
 
     def close(self) -> None:
         """Take back the token, so that clients learn of the end, then everything else.
