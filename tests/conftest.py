@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+import tomli_w
 from hypothesis import settings
 
 if TYPE_CHECKING:  # numba takes a second to import, and most tests need none of it
@@ -82,6 +83,16 @@ def environment(folder: Path, cache_home: Path) -> dict[str, str]:
     return env | {"NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
 
 
+@pytest.fixture(scope="session")
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A scenario of small pictures, as `--capture` takes it; its film is made once for all tests."""
+    from tests.sim import small
+
+    scenario = tmp_path_factory.mktemp("scenario") / "small.toml"
+    scenario.write_text(tomli_w.dumps(small.table()))
+    return f"sim:{scenario}"
+
+
 class _SkippedForNothing:
     """With MOCAPD_REQUIRE_SHARED set (.ci/run), a test skipped for want of ../shared fails the run."""
 
@@ -104,9 +115,15 @@ class _SkippedForNothing:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """In a process that shares the tests with others (`make test`), what takes long comes first."""
+    """In a process that shares the tests with others (`make test`), what takes long comes first, and what
+    needs many kernels last: another process has compiled them by then."""
     if hasattr(config, "workerinput"):
-        items.sort(key=lambda item: item.get_closest_marker("long") is None)
+        items.sort(
+            key=lambda item: (
+                item.get_closest_marker("long") is None,
+                item.get_closest_marker("kernels") is not None,
+            )
+        )
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -19,8 +19,6 @@ from tests.cli.mocapd_process import mocapd, start
 from tests.outputs.frames import free_port
 
 WAIT_MS = 60_000
-# what is tracked matters to the docs' picture only: the canned body takes no time to compute
-TRACKER = () if FOR_THE_DOCS else ("--set", "tracker.name=canned")
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +27,13 @@ def runtime_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def url(user_env: dict[str, str], runtime_dir: Path) -> Iterator[str]:
+def url(user_env: dict[str, str], runtime_dir: Path, simulated: str) -> Iterator[str]:
     """Of a daemon on simulated webcams, told by the `mocapd calibrate` that attaches to it."""
+    # what is seen and tracked matters to the docs' picture only
+    words = ("demo",) if FOR_THE_DOCS else ("run", "--capture", simulated, "--tracker", "canned")
     env = user_env | {"XDG_RUNTIME_DIR": str(runtime_dir)}
     outputs = ("--set", f"zenoh.port={free_port()}", "--set", "osc.enabled=false")
-    process = start(env, "demo", *outputs, *TRACKER)
+    process = start(env, *words, *outputs)
     try:
         wait_for_page(process)
         told = mocapd(env, "calibrate", "--no-browser")

@@ -22,6 +22,8 @@ from mocapd.geometry.camera_model import centre, to_camera
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 
+pytestmark = pytest.mark.kernels
+
 STATURE_M = 1.75
 MODEL = build_model(STATURE_M)
 CAMERAS = tuple(

@@ -24,7 +24,7 @@ from mocapd.types import Bytes, Camera, LabelledPicture
 from tests.calibrate.swatches import MODEL, swatches
 from tests.sim import small
 
-pytestmark = pytest.mark.long
+pytestmark = pytest.mark.kernels
 
 
 class Scene:

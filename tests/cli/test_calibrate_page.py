@@ -15,12 +15,10 @@ from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
 import pytest
-import tomli_w
 
 from mocapd.wizard.saving import save_draft
 from tests.cli.mocapd_process import Outcome, mocapd, mocapd_here, start
 from tests.cli.small_capture import write_capture
-from tests.sim import small
 from tests.wizard.drafts import full_draft
 
 pytestmark = pytest.mark.long
@@ -43,14 +41,6 @@ def cameras(tmp_path: Path) -> tuple[str, ...]:
     """As words of the command line: recordings, as webcams there are none."""
     folder = write_capture(tmp_path / "capture")
     return tuple(f"--camera={name}={folder / name}.mp4" for name in ("cam0", "cam1"))
-
-
-@pytest.fixture
-def simulated(tmp_path: Path) -> str:
-    """A scenario of small pictures, as `--capture` takes it."""
-    scenario = tmp_path / "small.toml"
-    scenario.write_text(tomli_w.dumps(small.table()))
-    return f"sim:{scenario}"
 
 
 @contextmanager

@@ -17,6 +17,8 @@ from mocapd.types import BodyState, FrameSet, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
 from tests.trackers.stepping import Stepping
 
+pytestmark = pytest.mark.kernels
+
 DAY_NS = 86_400_000_000_000
 
 

@@ -22,7 +22,7 @@ from tests.cli.own_time import end_within
 from tests.cli.small_capture import write_capture
 from tests.outputs.frames import free_port
 
-pytestmark = pytest.mark.long
+pytestmark = pytest.mark.kernels
 
 FRAMES = 90
 SETTLED_S = 1.0  # from the first frame with a person on

@@ -21,7 +21,7 @@ from tests.cli.mocapd_process import mocapd, start
 from tests.conftest import ABSENT, SHARED
 from tests.outputs.frames import free_port
 
-pytestmark = pytest.mark.long
+pytestmark = pytest.mark.kernels
 
 CLIPS = tuple(sorted(path.stem for path in SHARED.glob("realvideo/intel_asl/*.mkv")))
 RIGS = ("pose2sim_SinglePerson", "caliscope_charuco")

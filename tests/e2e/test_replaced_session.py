@@ -11,6 +11,8 @@ from tests.cli.own_time import end_within
 from tests.conftest import environment
 from tests.e2e.replaced import Daemon, Game, save_in_the_wizard, wait_until, write_calibration
 
+pytestmark = pytest.mark.kernels
+
 STATURE_M = 1.75
 MOST_S = 1.0  # without a frame, while the cameras are closed and opened
 TAKEN_UP = "taken up, within"

@@ -43,9 +43,11 @@ def catches(pid: int, number: signal.Signals) -> bool:
     return bool(caught >> (number - 1) & 1)
 
 
-def told_after(seconds: float, number: signal.Signals, env: dict[str, str]) -> tuple[int, str]:
+def told_after(
+    seconds: float, number: signal.Signals, env: dict[str, str], simulated: str
+) -> tuple[int, str]:
     """Exit code and stderr of a daemon that is told so long after its first handler was in place."""
-    words = ("run", "--capture", "sim:living_room", *QUIET)
+    words = ("run", "--capture", simulated, *QUIET)
     with start(env, *words) as process:
         try:
             wait_until(lambda: catches(process.pid, signal.SIGTERM))
@@ -61,19 +63,21 @@ def told_after(seconds: float, number: signal.Signals, env: dict[str, str]) -> t
     ("number", "code", "moments"), [(signal.SIGTERM, 0, 20), (signal.SIGINT, 130, 4)]
 )
 def test_it_ends_in_order_from_its_first_import_on(
-    env: dict[str, str], number: signal.Signals, code: int, moments: int
+    env: dict[str, str], simulated: str, number: signal.Signals, code: int, moments: int
 ) -> None:
     with ThreadPoolExecutor(2) as two:
-        ends = two.map(lambda i: told_after(1.2 * i / moments, number, env), range(moments))
+        ends = two.map(
+            lambda i: told_after(1.2 * i / moments, number, env, simulated), range(moments)
+        )
     for ended, err in ends:
         assert ended == code, err
         assert "Traceback" not in err
 
 
 def test_without_a_terminal_sighup_ends_nothing_from_its_first_import_on(
-    env: dict[str, str],
+    env: dict[str, str], simulated: str
 ) -> None:
-    words = ("run", "--capture", "sim:living_room", *QUIET)
+    words = ("run", "--capture", simulated, *QUIET)
     with start(env, *words) as process:
         wait_until(lambda: catches(process.pid, signal.SIGHUP))
         process.send_signal(signal.SIGHUP)  # nothing is read yet

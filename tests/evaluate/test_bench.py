@@ -18,6 +18,8 @@ from mocapd.types import BodyState, Frame, FrameSet
 from tests.cli.mocapd_process import mocapd
 from tests.cli.small_capture import FRAMES, write_capture
 
+pytestmark = pytest.mark.kernels
+
 PERIOD_NS = 33_333_333
 SETS = CHUNK + 10
 

@@ -12,6 +12,8 @@ from tests.cli.mocapd_process import mocapd
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import LAMP_OFF_S, scenario
 
+pytestmark = pytest.mark.kernels
+
 SECONDS, APPEARS_S = 1.5, 0.2
 
 

@@ -33,6 +33,8 @@ from mocapd.types import Bytes
 from mocapd.vision.distance_maps import DistanceMaps
 from tests.geometry.rigs import ring
 
+pytestmark = pytest.mark.kernels
+
 
 def test_blocks_of_one_colour_have_it_and_others_are_mixed() -> None:
     colour_of = standard_shirt().colour_of_patch

@@ -16,6 +16,8 @@ from mocapd.session.offline import RecordedTrack
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import scenario
 
+pytestmark = pytest.mark.kernels
+
 LABELLED = (0, 15, 30)
 
 

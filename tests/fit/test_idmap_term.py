@@ -24,6 +24,8 @@ from tests.fit import naive_idmap_term
 from tests.fit.naive_idmap_term import Posed, Sums, posed
 from tests.fit.synthetic import CAMERAS, MODEL, fitter, standing, stepped, views_of
 
+pytestmark = pytest.mark.kernels
+
 TICK_S = 1.0 / 30.0
 # joints that the shirt tells of
 UPPER = [

@@ -27,6 +27,8 @@ from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
 from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
+pytestmark = pytest.mark.kernels
+
 NO_CLOUD, NO_LIBRARY = np.empty((0, 6)), np.empty((0, 3, 4))
 BONES = ("Shoulder", "UpperArm", "LowerArm")
 

@@ -21,6 +21,8 @@ from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
+pytestmark = pytest.mark.kernels
+
 
 @pytest.fixture
 def capture(tmp_path: Path) -> Path:

@@ -17,6 +17,8 @@ from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balan
 from mocapd.types import Bytes
 from tests.vision.naive import NAMES
 
+pytestmark = pytest.mark.kernels
+
 FRAMES = (60, 120, 180)
 
 

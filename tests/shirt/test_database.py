@@ -34,6 +34,8 @@ from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
 from mocapd.shirt.pose_database.pose_sampling import SamplingParams, poses_from_cube, random_cube
 from mocapd.types import Camera
 
+pytestmark = pytest.mark.kernels
+
 SMALL = DatabaseParams(count=1500, pool=1.4, cells=24)
 
 

@@ -14,6 +14,8 @@ from mocapd.types import BodyState, Bytes, Floats, FrameSet, Tracking
 from tests.trackers.filmed import Filmed, Pictures, film, tracker_of
 from tests.trackers.stepping import Stepping
 
+pytestmark = pytest.mark.kernels
+
 UPPER = [
     j for name, j in INDEX.items() if not any(s in name for s in ("Leg", "Foot", "Toes", "head"))
 ]

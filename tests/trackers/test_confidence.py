@@ -12,6 +12,8 @@ from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.types import Floats
 from tests.fit.synthetic import fitter, standing, views_of
 
+pytestmark = pytest.mark.kernels
+
 RIGHT = [INDEX["right" + bone] for bone in ("LowerArm", "Hand")]
 LEFT = [INDEX["left" + bone] for bone in ("LowerArm", "Hand")]
 TORSO = [INDEX[name] for name in ("hips", "spine", "chest", "upperChest", "neck")]

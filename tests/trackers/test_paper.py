@@ -40,6 +40,8 @@ from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Tracking
 from tests.trackers.stepping import Stepping
 
+pytestmark = pytest.mark.kernels
+
 STATURE_M = 1.75
 FRAME_NS = 33_333_333
 MODEL = build_model(STATURE_M)

@@ -27,6 +27,8 @@ from tests.trackers.stepping import Stepping
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
+pytestmark = pytest.mark.kernels
+
 ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
 
 

@@ -14,6 +14,8 @@ from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from tests.trackers.filmed import Filmed, film, tracker_of
 from tests.trackers.stepping import Stepping
 
+pytestmark = pytest.mark.kernels
+
 TURN_RAD = np.radians(1.0)
 
 

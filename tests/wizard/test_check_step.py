@@ -28,6 +28,8 @@ from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft
 
+pytestmark = pytest.mark.kernels
+
 ALL_ARRIVE = Delivery(received=150, lost=0, rate_hz=29.9, asked_hz=30.0, width_px=640)
 
 

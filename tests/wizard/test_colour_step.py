@@ -23,6 +23,8 @@ from mocapd.wizard.step import Scene, StepState, StepView, Tell
 from tests.wizard.context import FakeContext, do
 from tests.wizard.wearer import SimulatedWearer, wearer
 
+pytestmark = pytest.mark.kernels
+
 NAMES = standard_shirt().colour_names
 
 
