@@ -62,7 +62,7 @@ class Served:
             self.process.send_signal(signal.SIGTERM)
         assert self.process.stdout is not None
         self.log.extend(self.process.stdout)
-        self.process.wait(timeout=20)
+        self.process.wait(timeout=120)
         return self.process.returncode
 
 

@@ -18,7 +18,7 @@ from tests.browser.conftest import FOR_THE_DOCS, PAGE_URL, problems_of
 from tests.cli.mocapd_process import mocapd, start
 from tests.outputs.frames import free_port
 
-WAIT_MS = 60_000
+WAIT_MS = 240_000
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def url(user_env: dict[str, str], runtime_dir: Path, simulated: str) -> Iterator
         yield found.group().partition("#")[0]
     finally:
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=30)
+        process.communicate(timeout=120)
 
 
 def wait_for_page(process: "subprocess.Popen[str]") -> None:

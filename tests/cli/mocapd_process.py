@@ -20,6 +20,7 @@ import pytest
 
 from mocapd.cli.main import main
 
+PATIENCE_S = 600.0  # after which a process is given up: a busy machine compiles for minutes
 COMMAND = (sys.executable, "-m", "mocapd.cli.main")
 
 
@@ -40,7 +41,7 @@ def mocapd(env: dict[str, str], *words: str | Path, cwd: Path | None = None) -> 
         cwd=cwd,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=PATIENCE_S,
         check=False,
     )
     return Outcome(done.returncode, done.stdout, done.stderr)

@@ -28,7 +28,7 @@ from tests.cli.mocapd_process import COMMAND
 from tests.e2e.test_daemon import SCENARIO
 from tests.outputs.frames import free_port
 
-PATIENCE_S = 120.0
+PATIENCE_S = 600.0  # a first start on a busy machine compiles for minutes
 INSTANCE = "replaced"
 
 
@@ -183,7 +183,8 @@ class Daemon:
     def page(self) -> Running:
         """Its page, as soon as it is announced."""
         folder = self.folder / "runtime" / "mocapd"
-        wait_until(lambda: running(folder), "a page")
+        wait_until(lambda: running(folder) or self.process.poll() is not None, "a page")
+        assert self.process.poll() is None, self.log
         return running(folder)[0]
 
     def reload(self) -> None:

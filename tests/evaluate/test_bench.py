@@ -88,8 +88,11 @@ def test_a_tracker_without_stages_is_timed_as_a_whole(recording: BenchInput) -> 
 
 
 def test_in_a_long_run_time_goes_on(recording: BenchInput) -> None:
-    tracker = StagedTracker()
-    figures = endure(ready(tracker), recording, 0.02, lambda done, total: None)
+    for minutes in (0.02, 0.2, 2.0):  # a busy machine may not get round in the first
+        tracker = StagedTracker()
+        figures = endure(ready(tracker), recording, minutes, lambda done, total: None)
+        if figures.sets > SETS:
+            break
     assert figures.sets == len(tracker.times_ns) > SETS
     assert all(np.diff(tracker.times_ns) > 0)
     assert len(figures.median_ms) == len(figures.p95_ms) == len(figures.cpu_ms) == 4

@@ -244,6 +244,6 @@ def test_the_sample_prints_the_left_hand() -> None:
         assert printing.stdout is not None
         line = printing.stdout.readline()
         printing.terminate()
-        printing.communicate(timeout=10)
+        printing.communicate(timeout=60)
     x, y, z = wire.decode(wire.encode_msgpack(whole_frame())).joints["leftHand"].p
     assert f"{x:+.2f} {y:+.2f} {z:+.2f}" in line

@@ -201,8 +201,8 @@ def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
 def _solved_lower(L: Floats, b: Floats, transposed: int) -> Floats:
     """inv(L) b, or inv(L^T) b, for a lower triangle without zeros on its diagonal.
 
-    LSMR asks for thousands of these, small ones: `scipy.linalg.solve_triangular`, which is the same with
-    checks around it, takes five times as long.
+    LSMR asks for thousands of these, small ones: scipy's function of LAPACK's with checks around it takes five
+    times as long.
     """
     x: Floats = scipy.linalg.lapack.dtrtrs(L, b, lower=1, trans=transposed)[0]
     return x
