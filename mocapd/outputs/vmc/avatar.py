@@ -16,17 +16,17 @@ _REFLECTED = np.array([-1.0, 1.0, 1.0])  # at the plane x = 0
 class Avatar:
     """Bones (B,) by VRM 1.0 name, the hips first, parents before their children; in the T-pose, axes of the world.
 
-    parents (B,): the nearest bone above, -1 for the hips. offsets_m (B,3): from the node directly above, in that
-    node's axes [m]; of the hips nothing is read. rest_xyzw, above_xyzw (B,4): global rotations of the bone and of the
-    node directly above it, which in a file need not be a bone. hips_from_world (4,4): into the axes of the node above the
-    hips. hips_height_m: of the hips above the floor. is_straight: whether all those rotations are none.
+    parents (B,): the nearest bone above, -1 for the hips. offsets_m (B,3): from the node directly above, in that node's
+    axes [m]; of the hips nothing is read. rest_xyzw (B,4): global rotation of the bone; from_above_xyzw (B,4): the inverse of
+    that of the node directly above, which in a file need not be a bone. hips_from_world (4,4): into the axes of the node
+    above the hips. hips_height_m: of the hips above the floor. is_straight: whether all those rotations are none.
     """
 
     names: tuple[str, ...]
     parents: Ints
     offsets_m: Floats
     rest_xyzw: Floats
-    above_xyzw: Floats
+    from_above_xyzw: Floats
     hips_from_world: Floats
     hips_height_m: float
     is_straight: bool

@@ -15,25 +15,31 @@ from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.types import Floats
 
 _UNITY = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0])  # of position and quaternion
-_UNMOVED = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-_ON_FLOOR = np.array([1.0, 0.0, 1.0])
 _MIRRORED_M = np.array([-1.0, 1.0, 1.0])
 _MIRRORED_XYZW = np.array([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placing:
-    """heading_xyzw (4,): turns the person about the vertical through the world's origin; by_root: heading and travel over
-    the floor are told of the root, not of the hips."""
+    """Where the person is turned to, and which of root and hips carries it.
 
-    heading_xyzw: Floats
-    by_root: bool
+    R (3,3): about the vertical through the world's origin; root_xyzw, hips_xyzw (4,): the same, or none; root_share (3,):
+    by axis, 1 where the root carries the way.
+    """
+
+    R: Floats
+    root_xyzw: Floats
+    hips_xyzw: Floats
+    root_share: Floats
 
 
 def placing(turn_deg: float, yaw_deg: float, by_root: bool) -> Placing:
-    """Both turns together, counter-clockwise seen from above."""
-    heading_rad = math.radians(turn_deg + yaw_deg)
-    return Placing(rotations.exp(np.array([0.0, heading_rad, 0.0])), by_root)
+    """Both turns together, counter-clockwise seen from above. by_root: they and the way over the floor are the root's."""
+    heading_xyzw = rotations.exp(np.array([0.0, math.radians(turn_deg + yaw_deg), 0.0]))
+    R, none_xyzw = rotations.to_matrix(heading_xyzw), rotations.IDENTITY_XYZW
+    if by_root:
+        return Placing(R, heading_xyzw, none_xyzw, np.array([1.0, 0.0, 1.0]))
+    return Placing(R, none_xyzw, heading_xyzw, np.zeros(3))
 
 
 def placed(
@@ -44,19 +50,14 @@ def placed(
     hips_m (3,): the person's hips in the world; turned_xyzw (B,4): global rotations of the avatar's bones relative to the
     T-pose. scale: the avatar's size by the person's.
     """
+    at_m = where.R @ (hips_m * scale)
+    root_m = at_m * where.root_share
     out = np.empty((1 + len(turned_xyzw), 7))
-    at_m = hips_m * scale
-    if where.by_root:
-        out[0, :3] = rotations.rotate(where.heading_xyzw, at_m * _ON_FLOOR)
-        out[0, 3:] = where.heading_xyzw
-        at_m, hips_xyzw = at_m - at_m * _ON_FLOOR, turned_xyzw[0]
-    else:
-        out[0] = _UNMOVED
-        at_m = rotations.rotate(where.heading_xyzw, at_m)
-        hips_xyzw = rotations.multiply(where.heading_xyzw, turned_xyzw[0])
+    out[0, :3], out[0, 3:] = root_m, where.root_xyzw
     out[1:, :3] = avatar.offsets_m
-    out[1, :3] = avatar.hips_from_world[:3, :3] @ at_m + avatar.hips_from_world[:3, 3]
-    out[1:, 3:] = _local(avatar, hips_xyzw, turned_xyzw)
+    # what the root does not carry is straight up, which its heading leaves as it is
+    out[1, :3] = avatar.hips_from_world[:3, :3] @ (at_m - root_m) + avatar.hips_from_world[:3, 3]
+    out[1:, 3:] = _local(avatar, where.hips_xyzw, turned_xyzw)
     out *= _UNITY
     return out
 
@@ -66,17 +67,16 @@ def reflected(hips_m: Floats, turned_xyzw: Floats) -> tuple[Floats, Floats]:
     return hips_m * _MIRRORED_M, turned_xyzw * _MIRRORED_XYZW
 
 
-def _local(avatar: Avatar, hips_xyzw: Floats, turned_xyzw: Floats) -> Floats:
-    """Rotations (B,4) relative to the node directly above, which is turned as the bone above it is.
+def _local(avatar: Avatar, heading_xyzw: Floats, turned_xyzw: Floats) -> Floats:
+    """Rotations (B,4) relative to the node directly above, which is turned as the bone above it is; the hips by the heading.
 
     With D the rotation since the T-pose, a of the bone above, G those of the T-pose, n of the node above:
     (D_a G_n)^-1 (D_b G_b).
     """
-    above_xyzw = turned_xyzw[avatar.parents]
-    above_xyzw[0] = rotations.IDENTITY_XYZW
-    local_xyzw = rotations.multiply(rotations.inverse(above_xyzw), turned_xyzw)
-    local_xyzw[0] = hips_xyzw
-    if not avatar.is_straight:
-        local_xyzw = rotations.multiply(local_xyzw, avatar.rest_xyzw)
-        local_xyzw = rotations.multiply(rotations.inverse(avatar.above_xyzw), local_xyzw)
-    return rotations.canonical(local_xyzw)
+    from_above_xyzw = rotations.inverse(turned_xyzw[avatar.parents])
+    from_above_xyzw[0] = heading_xyzw
+    local_xyzw = rotations.multiply(from_above_xyzw, turned_xyzw)
+    if avatar.is_straight:
+        return local_xyzw
+    local_xyzw = rotations.multiply(local_xyzw, avatar.rest_xyzw)
+    return rotations.multiply(avatar.from_above_xyzw, local_xyzw)

@@ -14,7 +14,7 @@ from mocapd.types import Floats, Ints
 
 LEAF_CONFIDENCE = 0.05  # below which a leaf is taken to be untracked
 MAX_LAYOUTS = 32  # kept laid out; leaves come and go
-_UNEVEN = 0.01  # by how much the squared length of a quaternion may differ from 1
+_UNEVEN = 1e-3  # by how much the squared length of a quaternion may differ from 1
 _MOST = 1e6  # of any number that is sent; float32 holds far more, an avatar does not
 _HIPS = "hips"
 

@@ -89,7 +89,7 @@ def avatar_of_nodes(nodes: Sequence[VrmNode], bones: Mapping[str, int]) -> Avata
         np.array(parents, dtype=np.int64),
         np.array([poses[bones[name]][0][:3, 3] for name in names]),
         rest_xyzw,
-        above_xyzw,
+        rotations.inverse(above_xyzw),
         np.asarray(np.linalg.inv(hips_above), dtype=np.float64),
         float(hips_m[1]),
         is_straight=bool(min(rest_xyzw[:, 3].min(), above_xyzw[:, 3].min()) > _STRAIGHT),
