@@ -11,7 +11,7 @@ _THUMB_ABOVE = {unity: vrm for vrm, unity in _THUMB_BELOW.items()}
 
 
 def unity_name(bone: str) -> str:
-    """`leftThumbMetacarpal` to `LeftThumbProximal`, `hips` to `Hips`."""
+    """As Unity spells it: hips is Hips, leftThumbMetacarpal is LeftThumbProximal."""
     name = bone[:1].upper() + bone[1:]
     for side in ("Left", "Right"):
         if name.startswith(side):
