@@ -21,6 +21,7 @@ UNCALIBRATED, CALIBRATED = 0, 3
 # T begins anew after 18 hours: a float32 of more seconds than these has steps of 1/128 s, and would soon
 # not tell two frames apart
 T_PERIOD_S = 65536.0
+MOST_PERSONS = 16  # each has sockets and layouts of their own
 _MOST_PORT = 65535
 
 
@@ -61,7 +62,7 @@ class VmcSink:
 
     def send(self, frame: SkeletonFrame) -> None:
         """Send one frame, unless it comes sooner than `rate_hz` says."""
-        if not self._is_open:
+        if not self._is_open or not 0 <= frame.person < MOST_PERSONS:
             return
         performer = self._performers.get(frame.person)
         if performer is None:
@@ -113,7 +114,7 @@ class VmcSink:
         for text in self._params.destinations:
             address, port = parse_destination(text, KEY)
             port += person * self._params.port_step
-            if 0 < port <= _MOST_PORT:
+            if port <= _MOST_PORT:
                 shown = f"[{address}]:{port}" if ":" in address else f"{address}:{port}"
                 with suppress(UnavailableError):
                     performer.destinations += (Destination(shown, KEY),)
