@@ -21,24 +21,29 @@ def read_file(path: Path, most_bytes: int) -> bytes:
     A device, a pipe or a socket is refused before it is read: /dev/zero has no end, and a pipe that
     nobody writes to would be waited for.
     """
+    data = read_beginning(path, most_bytes + 1)
+    if len(data) > most_bytes:
+        raise InputError(
+            f"is larger than {most_bytes / 1e6:g} MB", str(path), "is it the file that was meant?"
+        )
+    return data
+
+
+def read_beginning(path: Path, most_bytes: int) -> bytes:
+    """The first bytes of a regular file, all of it when it is shorter. Raises as `read_file`."""
     try:
         # not blocking: opening a pipe would wait for its writer
         with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
             told = os.fstat(file.fileno())
             if not stat.S_ISREG(told.st_mode):
                 raise InputError("is no regular file", str(path), _FIX)
-            data = file.read(most_bytes + 1)
+            return file.read(most_bytes)
     except FileNotFoundError:
         raise MissingError("no such file", str(path), "check the path") from None
     except ValueError:  # a NUL in the path
         raise InputError("is no path", repr(str(path)), _FIX) from None
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", str(path), _FIX) from None
-    if len(data) > most_bytes:
-        raise InputError(
-            f"is larger than {most_bytes / 1e6:g} MB", str(path), "is it the file that was meant?"
-        )
-    return data
 
 
 def read_text(path: Path, most_bytes: int) -> str:

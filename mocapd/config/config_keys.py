@@ -51,7 +51,9 @@ class Key:
     def wants_text(self) -> bool:
         """Whether a value in a flag or a variable is text and needs no quotes."""
         bare = _bare(self.type)
-        return bare in (str, Path) or get_origin(bare) is Literal
+        if get_origin(bare) is Literal:
+            return all(isinstance(choice, str) for choice in get_args(bare))
+        return bare in (str, Path)
 
     @property
     def is_path(self) -> bool:

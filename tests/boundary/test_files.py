@@ -34,6 +34,15 @@ def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
         files.read_file(tmp_path / "large", 1000)
 
 
+def test_of_a_large_file_only_the_beginning_is_read(tmp_path: Path) -> None:
+    with (tmp_path / "large").open("wb") as file:
+        file.write(b"head")
+        file.truncate(1 << 40)
+    assert files.read_beginning(tmp_path / "large", 6) == b"head\0\0"
+    (tmp_path / "small").write_bytes(b"he")
+    assert files.read_beginning(tmp_path / "small", 6) == b"he"
+
+
 def test_a_missing_file_has_its_own_name(tmp_path: Path) -> None:
     with pytest.raises(files.MissingError, match="no such file"):
         files.read_file(tmp_path / "none", 10)

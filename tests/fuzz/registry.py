@@ -2,6 +2,7 @@
 
 from tests.fuzz import (
     announcements,
+    avatars,
     boundaries,
     caches,
     calibrations,
@@ -34,6 +35,7 @@ ROWS = (
     Row("videos", 9000, recordings.videos),
     Row("wire", 8881, wires.frames),
     Row("rest-skeleton", 4000, wires.rest_skeletons),
+    Row("vrm-avatars", 6000, avatars.vrms),
     Row("setup-values", setups.number_of_values(), setups.values),
     Row("setup-sequences", 3898, setups.sequences),
     Row("setup-strokes", 400, setups.solved_strokes),

@@ -4,6 +4,7 @@ import errno
 import ipaddress
 import os
 import socket
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mocapd.errors import ConfigError, UnavailableError
@@ -12,6 +13,7 @@ from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.osc.osc_frame import FrameBundles, Shape, shape_of
 from mocapd.outputs.wire import SkeletonFrame
 
+KEY = "osc.destinations"
 MAX_LAYOUTS = 32  # shapes of frames kept laid out; cameras and tracking states come and go
 
 
@@ -26,8 +28,8 @@ class Params:
             parse_destination(destination)
 
 
-def parse_destination(text: str) -> tuple[str, int]:
-    """`127.0.0.1:39541` or `[::1]:39541` to address and port. Raises ConfigError.
+def parse_destination(text: str, key: str = KEY) -> tuple[str, int]:
+    """`127.0.0.1:39541` or `[::1]:39541` to address and port. Raises ConfigError about this key.
 
     A name would be looked up, which may block, and `localhost` may mean ::1, where few games listen.
     """
@@ -37,16 +39,16 @@ def parse_destination(text: str) -> tuple[str, int]:
         ipaddress.ip_address(address)
         number = int(port)
     except ValueError as error:
-        raise _bad_destination(text) from error
+        raise _bad_destination(text, key) from error
     if not 0 < number < 65536:
-        raise _bad_destination(text)
+        raise _bad_destination(text, key)
     return address, number
 
 
-def _bad_destination(text: str) -> ConfigError:
+def _bad_destination(text: str, key: str) -> ConfigError:
     return ConfigError(
         f"{text!r} is no numeric address and port",
-        "osc.destinations",
+        key,
         "write for example 127.0.0.1:39541 (not localhost)",
     )
 
@@ -58,9 +60,9 @@ class Destination:
     call, and after two frames in a row without refusal somebody listens.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, key: str = KEY) -> None:
         self.text = text
-        address, port = parse_destination(text)
+        address, port = parse_destination(text, key)
         self.is_local = ipaddress.ip_address(address).is_loopback
         self.sent = 0
         self.refused = 0
@@ -74,7 +76,7 @@ class Destination:
         except OSError as error:
             self._socket.close()
             raise UnavailableError(
-                f"no way to {text}: {error.strerror}", "osc.destinations", "check the address"
+                f"no way to {text}: {error.strerror}", key, "check the address"
             ) from error
 
     def send(self, datagrams: list[bytearray]) -> None:
@@ -114,6 +116,17 @@ class Destination:
         self._socket.close()
 
 
+def status_of(destinations: Sequence[Destination]) -> SinkStatus:
+    """Of all of them together; `listeners` is -1 when only other machines are sent to."""
+    local = [d for d in destinations if d.is_local]
+    return SinkStatus(
+        sent=sum(d.sent for d in destinations),
+        refused=sum(d.refused for d in destinations),
+        listeners=sum(d.is_heard for d in local) if local or not destinations else -1,
+        detail="; ".join(d.detail for d in destinations) or "closed",
+    )
+
+
 class OscSink:
     """Sends every frame to every destination. Nobody listening is counted, not an error."""
 
@@ -145,15 +158,8 @@ class OscSink:
         """Nothing is sent: a datagram reaches nobody who comes later, and the frames say the rest."""
 
     def status(self) -> SinkStatus:
-        """Frames over all destinations; `listeners` is -1 when only other machines are sent to."""
-        destinations = self._destinations
-        local = [d for d in destinations if d.is_local]
-        return SinkStatus(
-            sent=sum(d.sent for d in destinations),
-            refused=sum(d.refused for d in destinations),
-            listeners=sum(d.is_heard for d in local) if local or not destinations else -1,
-            detail="; ".join(d.detail for d in destinations) or "closed",
-        )
+        """Frames over all destinations."""
+        return status_of(self._destinations)
 
     def close(self) -> None:
         """Close the sockets; may be called twice."""

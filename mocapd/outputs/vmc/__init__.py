@@ -1,0 +1,1 @@
+"""Skeleton frames as Virtual Motion Capture protocol over UDP: what VTuber programs and game engines read."""

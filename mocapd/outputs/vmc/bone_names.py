@@ -1,0 +1,42 @@
+"""VRM 1.0 bone names in Unity's spelling, the other side of each, and which of them are leaves.
+
+VMC names bones as Unity's HumanBodyBones, where case matters. VRM 0.x counts the thumb as Unity
+does, VRM 1.0 begins it with the metacarpal. Sources: VMC protocol specification;
+vrm-c/vrm-specification humanoid.md.
+"""
+
+_FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+_THUMB_BELOW = {"ThumbMetacarpal": "ThumbProximal", "ThumbProximal": "ThumbIntermediate"}
+_THUMB_ABOVE = {unity: vrm for vrm, unity in _THUMB_BELOW.items()}
+
+
+def unity_name(bone: str) -> str:
+    """As Unity spells it: hips is Hips, leftThumbMetacarpal is LeftThumbProximal."""
+    name = bone[:1].upper() + bone[1:]
+    for side in ("Left", "Right"):
+        if name.startswith(side):
+            return side + _THUMB_BELOW.get(name[len(side) :], name[len(side) :])
+    return name
+
+
+def vrm1_name(bone: str) -> str:
+    """A bone of VRM 0.x by its name in VRM 1.0."""
+    for side in ("left", "right"):
+        if bone.startswith(side):
+            return side + _THUMB_ABOVE.get(bone[len(side) :], bone[len(side) :])
+    return bone
+
+
+def other_side(bone: str) -> str:
+    """`leftHand` to `rightHand` and back; a bone in the middle is its own."""
+    if bone.startswith("left"):
+        return "right" + bone[4:]
+    return "left" + bone[5:] if bone.startswith("right") else bone
+
+
+def is_leaf(bone: str) -> bool:
+    """Whether it is left out while nothing is known of it: toes, fingers, eyes and jaw.
+
+    A receiver leaves such a bone as its avatar has it, and would crush it were it told to be straight.
+    """
+    return bone == "jaw" or bone.endswith(("Toes", "Eye")) or any(f in bone for f in _FINGERS)

@@ -1,0 +1,101 @@
+"""The messages of one VMC frame, laid out once; per frame only numbers are overwritten.
+
+Performer to Marionette, protocol V2.7 (protocol.vmc.info/english): `/VMC/Ext/OK iiii`,
+`/VMC/Ext/T f`, `/VMC/Ext/Root/Pos sfffffff`, `/VMC/Ext/Bone/Pos sfffffff`. Types are i, f and s
+only and argument lists complete: several receivers do not survive others.
+"""
+
+import struct
+from collections.abc import Iterator, Sequence
+from typing import Literal
+
+from mocapd.outputs.osc import osc_encoding as osc
+from mocapd.outputs.vmc.bone_names import unity_name
+from mocapd.types import Floats
+
+Bundling = Literal["two", "one", "off"]
+
+OK, OK_TYPES = "/VMC/Ext/OK", "iiii"
+TIME, TIME_TYPES = "/VMC/Ext/T", "f"
+ROOT, BONE, POSE_TYPES = "/VMC/Ext/Root/Pos", "/VMC/Ext/Bone/Pos", "sfffffff"
+
+_POSE_BYTES = 28
+_ok_numbers = struct.Struct(">4i")
+_time_number = struct.Struct(">f")
+_LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
+
+_Place = tuple[bytearray, int]  # where in which datagram a message's numbers begin
+
+
+class VmcPackets:
+    """The datagrams for these bones, by VRM 1.0 name; without any, OK and T alone.
+
+    two: bundles of at most 1472 bytes, trunk and arms before legs: of 22 bones it makes two; one: a single bundle,
+    whatever its size; off: a datagram for each message.
+    """
+
+    def __init__(self, bones: Sequence[str], bundling: Bundling) -> None:
+        legs = [bone for bone in bones if bone.endswith(_LEGS)]
+        rest = [bone for bone in bones if not bone.endswith(_LEGS)]
+        messages = {
+            OK: osc.message(OK, OK_TYPES, 0, 0, 0, 0),
+            TIME: osc.message(TIME, TIME_TYPES, 0),
+        }
+        if bones:
+            messages[ROOT] = _pose_message(ROOT, "root")
+        head = list(messages)
+        messages |= {bone: _pose_message(BONE, unity_name(bone)) for bone in bones}
+        numbers_at: dict[str, _Place] = {}
+        self.datagrams: list[bytearray] = []
+        for run in _runs(([*head, *rest], legs), messages, bundling):
+            data, starts = osc.bundle([messages[name] for name in run])
+            if bundling == "off":
+                data, starts = bytearray(messages[run[0]]), (0,)
+            self.datagrams.append(data)
+            for name, start in zip(run, starts, strict=True):
+                numbers_at[name] = data, start + _numbers_offset(name)
+        self._ok_at, self._time_at = numbers_at[OK], numbers_at[TIME]
+        self._poses_at = [numbers_at[name] for name in ([ROOT, *bones] if bones else ())]
+
+    def pose(self, numbers: Floats) -> None:
+        """Overwrite root and bones with (1 + B, 7): positions and quaternions, in the order of `bones`."""
+        raw = numbers.astype(">f4").tobytes()
+        for k, (data, at) in enumerate(self._poses_at):
+            data[at : at + _POSE_BYTES] = raw[k * _POSE_BYTES : (k + 1) * _POSE_BYTES]
+
+    def say(self, loaded: bool, calibration: int, tracking: bool, time_s: float) -> None:
+        """Overwrite OK and T; calibration: VMC's state, 3 when calibrated."""
+        _ok_numbers.pack_into(*self._ok_at, loaded, calibration, 0, tracking)
+        _time_number.pack_into(*self._time_at, time_s)
+
+
+def _pose_message(address: str, name: str) -> bytes:
+    return osc.message(address, POSE_TYPES, name, *(0.0,) * 6, 1.0)
+
+
+def _numbers_offset(name: str) -> int:
+    """Where in the message of this name, an address or a bone, the numbers begin [bytes]."""
+    if name in (OK, TIME):
+        return osc.arguments_offset(name, OK_TYPES if name == OK else TIME_TYPES)
+    if name == ROOT:
+        return osc.arguments_offset(ROOT, POSE_TYPES) + len(osc.string("root"))
+    return osc.arguments_offset(BONE, POSE_TYPES) + len(osc.string(unity_name(name)))
+
+
+def _runs(
+    groups: Sequence[list[str]], messages: dict[str, bytes], bundling: Bundling
+) -> Iterator[list[str]]:
+    """What goes into one datagram each, by name."""
+    if bundling == "one":
+        yield [name for group in groups for name in group]
+        return
+    for group in groups:
+        run: list[str] = []
+        for name in group:
+            size = osc.bundle_size([messages[one] for one in (*run, name)])
+            if run and (bundling == "off" or size > osc.MAX_DATAGRAM_BYTES):
+                yield run
+                run = []
+            run.append(name)
+        if run:
+            yield run

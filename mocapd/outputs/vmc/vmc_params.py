@@ -1,0 +1,48 @@
+"""What may be set of the VMC output."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from mocapd.outputs.osc.osc_sink import parse_destination
+from mocapd.outputs.vmc.vmc_packets import Bundling
+from mocapd.outputs.vmc.vrm_file import read_vrm
+
+KEY = "vmc.destinations"
+
+# kept as text; one that is relative is meant from the file that it is configured in
+_PathText = Annotated[str, Meta(extra={"is_path": True})]
+
+
+@dataclass(frozen=True, slots=True)
+class Params:
+    """How the person is sent. Raises ConfigError for a destination, InputError for a `.vrm` file that does not do.
+
+    destinations: list of `address:port`, numeric addresses only
+    port_step: VMC knows no persons, so person n is sent to the port that is so many times n higher
+    root: which carries the way over the floor: `hips`, as every receiver reads them, or `root`
+    turn: 180 for a receiver that shows the avatar from behind [degrees]
+    yaw_deg: turn it besides, counter-clockwise seen from above [degrees]
+    mirror: as in a mirror: the person's left is the avatar's right
+    bundle: two, of at most 1472 bytes each; one, which VSeeFace wants; or off, for receivers that read no bundles
+    rate_hz: at most so many frames per second [Hz]
+    vrm: a `.vrm` file whose bones' lengths are sent in place of the wearer's
+    """
+
+    destinations: tuple[str, ...] = ("127.0.0.1:39539",)
+    port_step: Annotated[int, Meta(ge=1, le=10_000)] = 10
+    root: Literal["hips", "root"] = "hips"
+    turn: Literal[0, 180] = 0
+    yaw_deg: Annotated[float, Meta(ge=-360, le=360)] = 0.0
+    mirror: bool = False
+    bundle: Bundling = "two"
+    rate_hz: Annotated[float, Meta(ge=1, le=200)] = 60.0
+    vrm: _PathText = ""
+
+    def __post_init__(self) -> None:
+        for destination in self.destinations:
+            parse_destination(destination, KEY)
+        if self.vrm:
+            read_vrm(Path(self.vrm))

@@ -1,0 +1,155 @@
+"""From the nodes of a glTF model, and which of them are bones, to an avatar. Pure; everything is checked."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+
+from mocapd.errors import MalformedError
+from mocapd.geometry import rotations
+from mocapd.outputs.vmc.avatar import Avatar
+from mocapd.outputs.wire import Quaternion, Vector
+from mocapd.types import Floats
+
+# Without which there is no humanoid, in both versions
+REQUIRED = (
+    "hips", "spine", "head",
+    *(
+        side + bone
+        for side in ("left", "right")
+        for bone in ("UpperLeg", "LowerLeg", "Foot", "UpperArm", "LowerArm", "Hand")
+    ),
+)  # fmt: skip
+
+_MOST = 1e4  # of any number of a node; in metres, and scaled by 100 at the most
+_LEAST_HEIGHT_M = 0.05  # of hips above the floor; travel is scaled by it
+_STRAIGHT = 1.0 - 1e-12  # cosine of half an angle of a millionth [rad]
+_ABOUT_XYZ = np.array([-1.0, 1.0, -1.0])  # half a turn about +Y
+_ABOUT_XYZW = np.array([-1.0, 1.0, -1.0, 1.0])
+_ABOUT = np.diag([-1.0, 1.0, -1.0, 1.0])
+
+_Matrix = Annotated[tuple[float, ...], Meta(min_length=16, max_length=16)]
+
+
+class VrmNode(msgspec.Struct, frozen=True):
+    """A node of glTF: translation, rotation (xyzw) and scale, or all three as a matrix by columns."""
+
+    children: tuple[int, ...] = ()
+    translation: Vector = (0.0, 0.0, 0.0)
+    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    scale: Vector = (1.0, 1.0, 1.0)
+    matrix: _Matrix | None = None
+
+    def faced_about(self) -> "VrmNode":
+        """The same in a world that is turned by half a turn about +Y."""
+        matrix = None
+        if self.matrix is not None:
+            own = np.array(self.matrix).reshape(4, 4)
+            matrix = tuple((_ABOUT @ own @ _ABOUT).ravel().tolist())
+        x, y, z = (np.array(self.translation) * _ABOUT_XYZ).tolist()
+        rotation = (np.array(self.rotation) * _ABOUT_XYZW).tolist()
+        return VrmNode(self.children, (x, y, z), tuple(rotation), self.scale, matrix)
+
+
+def avatar_of_nodes(nodes: Sequence[VrmNode], bones: Mapping[str, int]) -> Avatar:
+    """The avatar whose bones, by VRM 1.0 name, are these nodes. Raises MalformedError saying what does not fit."""
+    missing = [name for name in REQUIRED if name not in bones]
+    if missing:
+        raise MalformedError(f"its humanoid has no {', '.join(missing)}")
+    for name, node in bones.items():
+        if not 0 <= node < len(nodes):
+            raise MalformedError(f"its bone {name[:40]!r} is node {node}, of {len(nodes)}")
+    if len(set(bones.values())) < len(bones):
+        raise MalformedError("two bones of its humanoid are the same node")
+    above = _parents(nodes)
+    bone_of = {node: name for name, node in bones.items()}
+    lines = {name: _line(above, node) for name, node in bones.items()}
+    # the longer the line to the top, the later: parents before their children
+    names = tuple(sorted(bones, key=lambda name: (name != "hips", len(lines[name]))))
+    place = {name: k for k, name in enumerate(names)}
+    parents = []
+    for name in names:
+        found = next((bone_of[node] for node in lines[name][1:] if node in bone_of), None)
+        if (found is None) != (name == "hips"):
+            raise MalformedError(f"its bone {name[:40]!r} is not below its hips")
+        parents.append(-1 if found is None else place[found])
+    poses = {node: _pose(nodes[node]) for line in lines.values() for node in line}
+    hips_above = _composed([poses[node] for node in lines["hips"][1:]])
+    hips_m = (hips_above @ poses[bones["hips"]][0])[:3, 3]
+    if hips_m[1] < _LEAST_HEIGHT_M:
+        raise MalformedError(f"its hips are {hips_m[1]:.2f} m above the floor")
+    if abs(np.linalg.det(hips_above)) < 1e-12:
+        raise MalformedError("a node above its hips is scaled to nothing")
+    rest_xyzw = np.array([_turned([poses[node] for node in lines[name]]) for name in names])
+    above_xyzw = np.array([_turned([poses[node] for node in lines[name][1:]]) for name in names])
+    return Avatar(
+        names,
+        np.array(parents, dtype=np.int64),
+        np.array([poses[bones[name]][0][:3, 3] for name in names]),
+        rest_xyzw,
+        rotations.inverse(above_xyzw),
+        np.asarray(np.linalg.inv(hips_above), dtype=np.float64),
+        float(hips_m[1]),
+        is_straight=bool(min(rest_xyzw[:, 3].min(), above_xyzw[:, 3].min()) > _STRAIGHT),
+    )
+
+
+def _parents(nodes: Sequence[VrmNode]) -> dict[int, int]:
+    above: dict[int, int] = {}
+    for number, node in enumerate(nodes):
+        for child in node.children:
+            if not 0 <= child < len(nodes):
+                raise MalformedError(f"its node {number} has the child {child}, of {len(nodes)}")
+            if above.setdefault(child, number) != number:
+                raise MalformedError(f"its node {child} has two parents")
+    return above
+
+
+def _line(above: Mapping[int, int], node: int) -> list[int]:
+    """The node, the one above it, and so on to the top."""
+    line = [node]
+    seen = {node}
+    while line[-1] in above:
+        line.append(above[line[-1]])
+        if line[-1] in seen:
+            raise MalformedError(f"its node {node} is below itself")
+        seen.add(line[-1])
+    return line
+
+
+def _pose(node: VrmNode) -> tuple[Floats, Floats]:
+    """Relative to the node above: the matrix (4,4) and its rotation (4,)."""
+    numbers = np.array([*node.translation, *node.rotation, *node.scale, *(node.matrix or ())])
+    if not (np.abs(numbers) <= _MOST).all():  # NaN neither
+        raise MalformedError("a number of its nodes is too large or none")
+    matrix = np.eye(4)
+    if node.matrix is None:
+        if np.linalg.norm(node.rotation) < 0.5:
+            raise MalformedError("a rotation of its nodes is none")
+        turned = rotations.canonical(np.array(node.rotation))
+        matrix[:3, :3] = rotations.to_matrix(turned) * np.array(node.scale)
+        matrix[:3, 3] = node.translation
+        return matrix, turned
+    matrix[:3] = np.array(node.matrix).reshape(4, 4).T[:3]
+    scale = np.linalg.norm(matrix[:3, :3], axis=0)
+    if scale.min() < 1e-9 or np.linalg.det(matrix[:3, :3]) <= 0.0:
+        raise MalformedError("a matrix of its nodes is no rotation")
+    return matrix, rotations.from_matrix(matrix[:3, :3] / scale)
+
+
+def _composed(line: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """Of a line from below to the top: the matrix (4,4) into the world."""
+    out = np.eye(4)
+    for matrix, _ in line:
+        out = matrix @ out
+    return out
+
+
+def _turned(line: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """The same for rotations (4,)."""
+    out = rotations.IDENTITY_XYZW
+    for _, turned in line:
+        out = rotations.multiply(turned, out)
+    return rotations.canonical(out)
