@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
 from mocapd.outputs.threaded import ThreadedSink
+from mocapd.outputs.vrchat import vrchat_sink
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
 
@@ -40,6 +41,16 @@ class OscSection(osc_sink.Params):
     enabled: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class VRChatSection(vrchat_sink.Params):
+    """See vrchat_sink.Params.
+
+    enabled: send trackers of the body to VRChat
+    """
+
+    enabled: bool = False
+
+
 def _safe(_section: Any) -> tuple[str, ...]:
     """It has no unsafe settings."""
     return ()
@@ -69,6 +80,10 @@ def _osc(section: OscSection, _instance: str) -> Sink:
     return osc_sink.OscSink(section)
 
 
+def _vrchat(section: VRChatSection, _instance: str) -> Sink:
+    return vrchat_sink.VRChatSink(section)
+
+
 OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
     {
         # Drops what a subscriber does not take. Measured, 3.1 kB frames: median 0.08 ms to one that reads,
@@ -77,6 +92,8 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
         # 0.07 ms, also when nobody ever reads.
         "osc": OutputEntry(OscSection, _osc, blocks=False),
+        # The same, and less of it.
+        "vrchat": OutputEntry(VRChatSection, _vrchat, blocks=False),
     }
 )
 

@@ -10,7 +10,7 @@ from pythonosc.osc_message_builder import OscMessageBuilder
 from tests.outputs.receivers.vrchat import RefusedError, VRChatReceiver, unity_rotation
 
 
-def sent(*elements: tuple[str, tuple[object, ...]], kinds: str = "fff") -> bytes:
+def sent(*elements: tuple[str, tuple[float, ...]], kinds: str = "fff") -> bytes:
     """A bundle by python-osc."""
     bundle = OscBundleBuilder(IMMEDIATELY)
     for address, values in elements:
