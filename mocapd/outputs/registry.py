@@ -92,8 +92,8 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
         # 0.07 ms, also when nobody ever reads.
         "osc": OutputEntry(OscSection, _osc, blocks=False),
-        # The same, and less of it.
-        "vrchat": OutputEntry(VRChatSection, _vrchat, blocks=False),
+        # The same, and less of it; what looks for VRChat has a thread of its own.
+        "vrchat": OutputEntry(VRChatSection, _vrchat, blocks=False, unsafe=vrchat_sink.warnings),
     }
 )
 
