@@ -2,7 +2,7 @@
 
 VRChat turns the space of the trackers so that the head that it is sent looks where the headset does: at once
 after more than 300 ms without such a message, slowly while they come steadily. A head that is seen by cameras is
-noisy, so it is told only when the wearer asks for it, as SlimeVR does (`yawAlign`). The same wish makes forward
+noisy, so it is told only when the wearer asks for it, as SlimeVR does. The same wish makes forward
 what the person looks along, in the frame in which VRChat hears of it.
 """
 

@@ -1,8 +1,8 @@
 """Which number each tracker has, and of which bones its place and its rotation are.
 
-The numbers are SlimeVR's ("don't change, as third party applications may rely on this", `VRCOSCHandler.kt`);
+The numbers are SlimeVR's ("don't change, as third party applications may rely on this", its VRCOSCHandler);
 VRChat itself finds out at calibration what each tracker is on. As SlimeVR's, a tracker is at the end of the bone
-whose rotation it has: the knee's turns with the thigh, the elbow's with the upper arm (`HumanSkeleton.kt`).
+whose rotation it has: the knee's turns with the thigh, the elbow's with the upper arm (its HumanSkeleton).
 """
 
 from dataclasses import dataclass
