@@ -29,12 +29,19 @@ class VRChatLink:
         except UnavailableError as error:
             raise UnavailableError(error.what, KEY, error.fix) from None
 
+    @property
+    def is_aimed(self) -> bool:
+        """Whether it is known where VRChat is."""
+        return self._destination is not None
+
     def send(self, datagram: bytearray) -> None:
-        """One frame; counted as refused while it is aimed nowhere."""
-        if self._destination is None:
-            self._refused += 1
-        else:
+        """One frame, while it is aimed."""
+        if self._destination is not None:
             self._destination.send([datagram])
+
+    def refuse(self) -> None:
+        """Count a frame for which it is aimed nowhere."""
+        self._refused += 1
 
     def status(self) -> SinkStatus:
         """Of all frames; `listeners` is -1 on other machines, which cannot be asked."""

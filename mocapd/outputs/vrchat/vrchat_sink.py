@@ -95,6 +95,9 @@ class VRChatSink:
             return
         if self._finder is not None:
             self._follow(self._finder.address)
+        if not self._link.is_aimed:
+            self._link.refuse()  # and a wish to be turned waits
+            return
         is_aligned = self._alignment.take(now_ns, facing_yaw_rad(frame))
         vectors = self._vectors(frame.joints, trackers, is_aligned)
         addresses = tuple(vectors)

@@ -10,6 +10,7 @@ import pytest
 
 from mocapd.clock import NS_PER_S
 from mocapd.errors import ConfigError
+from mocapd.outputs.messages import Facing
 from mocapd.outputs.registry import VRChatSection, unsafe_outputs
 from mocapd.outputs.vrchat import vrchat_finder
 from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder, is_of_local_network
@@ -54,17 +55,18 @@ def test_frames_go_to_where_vrchat_is_and_follow_it(
 ) -> None:
     frames = iter(range(1, 1000))
 
-    def heard_by(one: FakeVRChat) -> None:
+    def heard_by(one: FakeVRChat) -> list[str]:
         assert eventually(lambda: finder.address == one.osc), finder.detail
         number = next(frames)
         sink.send(stepping_left(now_ns=number * NS_PER_S))
-        VRChatReceiver().take(one.listening.recv(2000), float(number))
+        return VRChatReceiver().take(one.listening.recv(2000), float(number))
 
+    sink.tell(Facing("pc", 0, 0.0, 0))  # waits until there is somebody to be told
     sink.send(stepping_left())
     assert (sink.status().refused, sink.status().listeners) == (1, 0)
     assert eventually(lambda: "looking for VRChat" in sink.status().detail)
     with vrchat(network, "VRChat-Client-AAAAAA") as first:
-        heard_by(first)
+        assert "/tracking/trackers/head/rotation" in heard_by(first)
     assert eventually(lambda: finder.address is None)
     with vrchat(network, "VRChat-Client-BBBBBB", says_goodbye=False) as second:
         heard_by(second)
