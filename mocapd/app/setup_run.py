@@ -42,13 +42,14 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
+    from mocapd.app.chosen_page import pages_meant
     from mocapd.web.runtime_file import SETUP, Place, begin_setup, running, runtime_folder
 
     step = _step(options.step)
     folder = runtime_folder(config.state_dir)
     pages = () if options.demo else running(folder)
     if pages:
-        there = _the_one(pages, config)
+        there = _the_one(pages_meant(pages, config))
         begin_setup(there.url, None if step is None else step.value)
         print(f"the running mocapd has the cameras; its page: {there.url}{SETUP}", flush=True)
         _browse(there.redirect, options.browser)
@@ -66,18 +67,10 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     return code
 
 
-def _the_one(pages: "Sequence[Running]", config: "Config") -> "Running":
-    """The page to attach to: the only one, else the one of this configuration. Raises ConfigError."""
-    from mocapd.outputs.instance import chunk
+def _the_one(pages: "Sequence[Running]") -> "Running":
+    """The page to attach to. Raises ConfigError when there are several."""
     from mocapd.web.runtime_file import SETUP
 
-    if len(pages) > 1 and config.instance:
-        named = [page for page in pages if page.instance == chunk(config.instance)]
-        pages = named or pages
-    if len(pages) > 1:
-        own = str(config.state_dir.resolve())
-        beside = [page for page in pages if page.state_dir == own]
-        pages = beside or pages
     if len(pages) == 1:
         return pages[0]
     names = [f"{page.instance or 'a setup'} (pid {page.pid})" for page in pages]

@@ -9,7 +9,9 @@ from mocapd.cli import (
     cameras,
     check_config,
     demo,
+    recenter,
     run,
+    send_test,
     shirt,
     track,
     version,
@@ -26,7 +28,19 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, demo, track, evaluation, bench, watch, cameras, check_config, version):
+for command in (
+    run,
+    demo,
+    track,
+    evaluation,
+    bench,
+    watch,
+    recenter,
+    send_test,
+    cameras,
+    check_config,
+    version,
+):
     command.add_to(app)
 calibrate.add_to(app)
 for printable in (board, shirt):

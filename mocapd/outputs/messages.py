@@ -1,4 +1,4 @@
-"""State, of which the newest holds: health, cameras, calibration and rest skeleton, as sent on the wire."""
+"""State, of which the newest holds: health, cameras, calibration, rest skeleton, what is forward; as on the wire."""
 
 from typing import Annotated
 
@@ -12,6 +12,7 @@ HEALTH = "mocapd.Health.v1"
 CAMERA_STATUS = "mocapd.CameraStatus.v1"
 CALIBRATION = "mocapd.Calibration.v1"
 REST_SKELETON = "mocapd.Skeleton.Rest.v1"
+FACING = "mocapd.Facing.v1"
 
 
 class OutputHealth(msgspec.Struct, frozen=True):
@@ -115,7 +116,25 @@ class RestSkeleton(msgspec.Struct, frozen=True):
     schema: Annotated[str, Meta(description=f"always `{REST_SKELETON}`")] = REST_SKELETON
 
 
-StateMessage = Health | CameraStatus | CalibrationInfo | RestSkeleton
+class Facing(msgspec.Struct, frozen=True):
+    """Which way one person faced when somebody said that this is forward (`mocapd recenter`).
+
+    The frames go on in the world's axes: who wants the person to face forward turns what it shows.
+    """
+
+    instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
+    person: Annotated[int, Meta(description="number of the person, as in the key")]
+    yaw_deg: Annotated[
+        float,
+        Meta(
+            description="turn about +Y that takes +Z to where the person looked, positive to its left, -180..180 [deg]"
+        ),
+    ]
+    at_unix_ns: Annotated[int, Meta(description="when it was said, Unix time [ns]")]
+    schema: Annotated[str, Meta(description=f"always `{FACING}`")] = FACING
+
+
+StateMessage = Health | CameraStatus | CalibrationInfo | RestSkeleton | Facing
 
 
 def subject(message: StateMessage) -> tuple[str, str]:
@@ -123,7 +142,7 @@ def subject(message: StateMessage) -> tuple[str, str]:
     match message:
         case CameraStatus(camera=camera):
             return message.schema, camera
-        case RestSkeleton(person=person):
+        case RestSkeleton(person=person) | Facing(person=person):
             return message.schema, str(person)
         case _:
             return message.schema, ""

@@ -1,14 +1,16 @@
 """The outputs that exist: one line each in OUTPUTS, whose section of the configuration has the same name."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Protocol
 
+from mocapd.outputs.aim import address_text, aimed_by_destination
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
 from mocapd.outputs.threaded import ThreadedSink
 from mocapd.outputs.vmc import vmc_params
+from mocapd.outputs.vrchat import vrchat_sink
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
 
@@ -51,6 +53,16 @@ class VmcSection(vmc_params.Params):
     enabled: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class VRChatSection(vrchat_sink.Params):
+    """See vrchat_sink.Params.
+
+    enabled: send trackers of the body to VRChat
+    """
+
+    enabled: bool = False
+
+
 def _safe(_section: Any) -> tuple[str, ...]:
     """It has no unsafe settings."""
     return ()
@@ -61,19 +73,29 @@ class OutputEntry:
     """`section`: its keys; `build`: the sink from its section and the daemon's name, imported only then.
 
     `blocks`: whether `send` or `tell` may take longer than a millisecond or two: then it gets a thread of
-    its own; `unsafe`: a line for each setting that is permitted and yet unsafe.
+    its own; `unsafe`: a line for each setting that is permitted and yet unsafe; `aimed`: its section, but to
+    one host (a numeric address) and port, None where the section says it.
     """
 
     section: Callable[[], OutputSection]
     build: Callable[[Any, str], Sink]
     blocks: bool
     unsafe: Callable[[Any], tuple[str, ...]] = _safe
+    aimed: Callable[[Any, str | None, int | None], Any] = aimed_by_destination
 
 
 def _zenoh(section: ZenohSection, instance: str) -> Sink:
     from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 
     return ZenohSink(section, instance)
+
+
+def _zenoh_aimed(section: ZenohSection, host: str | None, port: int | None) -> ZenohSection:
+    """At a host there is a router to join; without one, games come to this machine."""
+    number = section.port if port is None else port
+    if host is None:
+        return replace(section, port=number, listen=(), connect=())
+    return replace(section, connect=(f"tcp/{address_text(host, number)}",))
 
 
 def _osc(section: OscSection, _instance: str) -> Sink:
@@ -86,16 +108,24 @@ def _vmc(section: VmcSection, _instance: str) -> Sink:
     return VmcSink(section)
 
 
+def _vrchat(section: VRChatSection, _instance: str) -> Sink:
+    return vrchat_sink.VRChatSink(section)
+
+
 OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
     {
         # Drops what a subscriber does not take. Measured, 3.1 kB frames: median 0.08 ms to one that reads,
         # 0.05 ms over 10,000 frames to one that is stopped and never does.
-        "zenoh": OutputEntry(ZenohSection, _zenoh, blocks=False, unsafe=warnings),
+        "zenoh": OutputEntry(
+            ZenohSection, _zenoh, blocks=False, unsafe=warnings, aimed=_zenoh_aimed
+        ),
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
         # 0.07 ms, also when nobody ever reads.
         "osc": OutputEntry(OscSection, _osc, blocks=False),
         # The same sockets.
         "vmc": OutputEntry(VmcSection, _vmc, blocks=False),
+        # The same, and less of it; what looks for VRChat has a thread of its own.
+        "vrchat": OutputEntry(VRChatSection, _vrchat, blocks=False, unsafe=vrchat_sink.warnings),
     }
 )
 

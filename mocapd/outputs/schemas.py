@@ -10,6 +10,7 @@ STRUCTS: dict[str, type[msgspec.Struct]] = {
     messages.CAMERA_STATUS: messages.CameraStatus,
     messages.CALIBRATION: messages.CalibrationInfo,
     messages.REST_SKELETON: messages.RestSkeleton,
+    messages.FACING: messages.Facing,
 }
 ENCODING = "application/schema+json"
 

@@ -17,7 +17,7 @@ from mocapd.errors import MocapdError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.instance import instance_name
-from mocapd.outputs.messages import CalibrationInfo
+from mocapd.outputs.messages import CalibrationInfo, Facing
 from mocapd.outputs.registry import build_sinks
 from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.frame_hub import FrameHub
@@ -46,8 +46,8 @@ class Snapshot:
 class Service:
     """Runs from `__enter__` to `__exit__`; meanwhile its owner waits in `wait`, and may `replace` the session.
 
-    `died`, `end` and what tells of the session that runs may be called from any thread, everything
-    else by the owner.
+    `died`, `end`, `recenter` and what tells of the session that runs may be called from any thread,
+    everything else by the owner.
     """
 
     def __init__(self, config: Config, session: Session) -> None:
@@ -193,6 +193,11 @@ class Service:
                     snapshot.mountings[name],
                 )
             )
+
+    def recenter(self) -> Facing:
+        """The way the person faces is forward from now on: for the outputs that turn it so. Raises
+        UnavailableError when nobody is seen."""
+        return self._publisher.recenter()
 
     def _tell_calibration(self) -> None:
         """Also that there is none any more."""

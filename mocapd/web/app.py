@@ -20,7 +20,7 @@ from mocapd.web.live_link import LiveLink
 from mocapd.web.picture_link import picture_link
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
-from mocapd.web.status import SetupAnswer, SetupRequest, Status
+from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
 from mocapd.web.wizard_link import WizardLink
 
 PAGE_DIR = Path(__file__).with_name("page")
@@ -61,6 +61,7 @@ class _Routes:
             Route("/picture/{key:path}", self._picture),
             Route("/status", self._status),
             Route("/setup", self._setup, methods=["POST"]),
+            Route("/recenter", self._recenter, methods=["POST"]),
             WebSocketRoute("/ws", self._wizard_link),
             WebSocketRoute("/pictures", self._pictures),
             WebSocketRoute("/live", self._live),
@@ -111,10 +112,21 @@ class _Routes:
         try:
             wizard = await run_in_threadpool(self._host.setup)
         except MocapdError as error:
-            return _json(SetupAnswer(error.what, error.where, error.fix), 503)
+            return _refused(error)
         if asked.step is not None:
             wizard.send("go", {"step": asked.step})
         return _json(SetupAnswer())
+
+    async def _recenter(self, _request: Request) -> Response:
+        """The way the person faces becomes forward for the outputs."""
+        try:
+            return _json(await run_in_threadpool(self._recentered))
+        except MocapdError as error:
+            return _refused(error)
+
+    def _recentered(self) -> RecenterAnswer:
+        facing, snapshot = self._host.recenter(), self._host.snapshot()
+        return RecenterAnswer(facing.yaw_deg, tuple(snapshot.outputs) if snapshot else ())
 
     async def _wizard_link(self, socket: WebSocket) -> None:
         await self._if_room(socket, WizardLink(socket, self._host, self._seat).run)
@@ -148,6 +160,10 @@ async def _body(request: Request) -> bytes:
         if len(body) > LONGEST_BODY:
             raise _TooLongError
     return bytes(body)
+
+
+def _refused(error: MocapdError) -> Response:
+    return _json(SetupAnswer(error.what, error.where, error.fix), 503)
 
 
 def _json(answer: object, status: int = 200) -> Response:

@@ -24,7 +24,7 @@ from mocapd.boundary.messages import decode_json
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
-from mocapd.web.status import SetupAnswer, SetupRequest, Status
+from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
 from mocapd.whole_file import whole_file
 
 ADDRESS = "127.0.0.1"
@@ -132,8 +132,25 @@ def running(folder: Path) -> tuple[Running, ...]:
 
 def begin_setup(url: str, step: str | None) -> None:
     """Have that page begin a setup, or show `step` of the one it has. Raises UnavailableError."""
+    _asked(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
+
+
+def recenter(url: str) -> RecenterAnswer:
+    """Have that page's daemon make forward what the person faces. Raises UnavailableError."""
     try:
-        _answer(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
+        return decode_json(_asked(url, "/recenter", ANSWER_S, b""), RecenterAnswer)
+    except MalformedError as error:
+        raise UnavailableError(
+            f"its answer is not understood: {error}",
+            "the running daemon",
+            "bring it and this command to the same version of mocapd",
+        ) from None
+
+
+def _asked(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
+    """What it answers to a POST. Raises UnavailableError, with its own words when it refuses."""
+    try:
+        return _answer(url, path, timeout_s, body)
     except urllib.error.HTTPError as refused:
         try:
             why = decode_json(refused.read(_LONGEST_ANSWER), SetupAnswer)

@@ -1,4 +1,4 @@
-"""page-PID.json, by which a running page is found, and what answers at its address."""
+"""page-PID.json, by which a running page is found, what answers at its address, and where a VRChat was announced."""
 
 import json
 import os
@@ -6,12 +6,14 @@ import socket
 import threading
 from random import Random
 
+from mocapd.outputs.vrchat.host_info import ask_host_info
 from mocapd.web.runtime_file import Place as PagePlace
 from mocapd.web.runtime_file import announce, begin_setup, running, withdraw
 from mocapd.web.status import SetupAnswer, Status
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.network import own_ports
-from tests.fuzz.row import Attempt, Place, named
+from tests.fuzz.row import Attempt, Place, WrongError, named
+from tests.outputs.vrchat.fake_oscquery import host_info
 
 _TOKENS = (
     "",
@@ -93,6 +95,26 @@ def answers(place: Place) -> Attempt:
             server.data = damaged(random, _answer(_HEADS[number % 3], body))
         begun = named(lambda: begin_setup(url, "lens"))
         return bool(running(place.folder)) or begun
+
+    return attempt
+
+
+def host_infos(place: Place) -> Attempt:
+    """What may answer where a VRChat was announced: HTTP, and its JSON."""
+    server = _Answers()
+    good = host_info("VRChat-Client-5F3A21", 9000)
+    server.data = _answer(_HEADS[0], good)
+    ask_host_info("127.0.0.1", server.port)
+
+    def attempt(random: Random, number: int) -> bool:
+        body = mistyped(random, good, JSON_VALUES)
+        server.data = _answer(random.choice(_HEADS), body)
+        if random.random() < 0.5:
+            server.data = damaged(random, _answer(_HEADS[number % 3], body))
+        info = ask_host_info("127.0.0.1", server.port, timeout_s=0.3)
+        if not 0 < info.osc_port < 65536:
+            raise WrongError(f"a port {info.osc_port} is taken")
+        return True
 
     return attempt
 

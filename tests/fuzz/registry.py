@@ -47,6 +47,7 @@ ROWS = (
     Row("page-strangers", 4000, pages.strangers),
     Row("page-json", 3012, announcements.files),
     Row("page-answer", 1000, announcements.answers),
+    Row("vrchat-host-info", 1000, announcements.host_infos),
     Row("film-cache", 5002, caches.films),
     Row("pose-database", 5001, caches.databases),
     Row("prepared", 500, caches.markers),

@@ -27,6 +27,7 @@ def test_every_key_is_on_the_page() -> None:
         keys.health("<instance>"),
         "mocapd/v1/<instance>/camera/<id>/status",
         keys.calibration("<instance>"),
+        keys.facing("<instance>", "<person>"),
         keys.schema("<instance>", "<name>"),
         keys.alive("<instance>"),
     ):

@@ -13,7 +13,7 @@ import zenoh
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
-from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Health, RestSkeleton
+from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Facing, Health, RestSkeleton
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
@@ -151,7 +151,7 @@ def test_status_can_be_asked_while_programs_come_and_go() -> None:
 
 def state_of(running: Running) -> CalibrationInfo:
     calibration = CalibrationInfo("pc", "rig.json", ())
-    for message in (HEALTH, CAMERA, calibration, REST):
+    for message in (HEALTH, CAMERA, calibration, REST, Facing("pc", 0, -30.0, 1)):
         running.sink.tell(message)
     return calibration
 
@@ -170,6 +170,9 @@ def test_a_late_joiner_asks_for_the_state() -> None:
             ((encoding, rest),) = ask(session, "mocapd/v1/*/rest_skeleton/0").values()
             assert encoding == "application/msgpack;mocapd.Skeleton.Rest.v1"
             assert rest["offsets_m"] == [[0.0, 1.0, 0.0], [0.0, 0.125, 0.0]]  # type: ignore[index]
+            ((encoding, facing),) = ask(session, "mocapd/v1/*/facing/*").values()
+            assert encoding == "application/msgpack;mocapd.Facing.v1"
+            assert facing["yaw_deg"] == -30.0  # type: ignore[index]
 
 
 def test_every_answer_comes_once_and_on_its_own_key() -> None:
@@ -180,10 +183,12 @@ def test_every_answer_comes_once_and_on_its_own_key() -> None:
     assert sorted(keys) == [
         "mocapd/v1/pc/calibration",
         "mocapd/v1/pc/camera/left_eye_usb/status",
+        "mocapd/v1/pc/facing/0",
         "mocapd/v1/pc/health",
         "mocapd/v1/pc/rest_skeleton/0",
         "mocapd/v1/pc/schema/mocapd.Calibration.v1",
         "mocapd/v1/pc/schema/mocapd.CameraStatus.v1",
+        "mocapd/v1/pc/schema/mocapd.Facing.v1",
         "mocapd/v1/pc/schema/mocapd.Health.v1",
         "mocapd/v1/pc/schema/mocapd.Skeleton.Rest.v1",
         "mocapd/v1/pc/schema/mocapd.Skeleton.v1",

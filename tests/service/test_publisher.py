@@ -2,15 +2,19 @@
 
 from dataclasses import replace
 
+import numpy as np
+import pytest
+
 from mocapd.body.shape import mean_shape
 from mocapd.clock import NS_PER_S
+from mocapd.errors import UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import RestSkeleton, StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.service.publisher import REST_EVERY_NS, Publisher
 from mocapd.trackers.base import Track
-from mocapd.types import FrameSet, Skeleton
+from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 from tests.outputs.frames import left_hand_up
 
 BODY, SKELETON = left_hand_up()
@@ -95,3 +99,29 @@ def test_another_session_goes_on_counting_and_tells_its_wearer() -> None:
     run.publish(SKELETON, NS_PER_S)
     assert run.sink.statures_m() == [1.75, 1.9]
     assert [frame.seq for frame in run.sink.frames] == list(range(len(run.sink.frames)))
+
+
+def test_a_recentre_tells_which_way_the_newest_person_faces() -> None:
+    run = Run()
+    seen = replace(BODY, confidence=np.ones(len(SKELETON.names)))
+
+    def put(body: BodyState) -> None:
+        frames = FrameSet(body.t_ns, {})
+        run.publisher.put(BodySample(Track(body, mean_shape(1.75)), SKELETON, frames))
+
+    with pytest.raises(UnavailableError, match=r"nobody is seen.*stand where the cameras see you"):
+        run.publisher.recenter()
+    put(seen)
+    facing = run.publisher.recenter()
+    assert run.sink.states[-1] is facing
+    assert facing.yaw_deg == pytest.approx(0.0)
+    assert (facing.instance, facing.person) == ("pc", run.sink.frames[-1].person)
+    assert facing.at_unix_ns == run.sink.frames[-1].capture_unix_ns
+    lost = replace(seen, tracking=Tracking.LOST, pose=None, joints_m=None)
+    hidden = replace(seen, confidence=np.full(len(SKELETON.names), 0.5))
+    for body in (lost, replace(seen, tracking=Tracking.COASTING), hidden):
+        put(body)
+        with pytest.raises(UnavailableError):
+            run.publisher.recenter()
+    put(seen)
+    assert run.publisher.recenter().yaw_deg == pytest.approx(0.0)

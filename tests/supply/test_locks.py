@@ -41,6 +41,12 @@ def _asked(lock: Path) -> list[Requirement]:
     return [Requirement(text) for text in asked]
 
 
+def _extras() -> list[Requirement]:
+    """What a user may have installed besides; who imports it says by name when it is not there."""
+    extras = _project()["project"]["optional-dependencies"]
+    return [Requirement(text) for name in extras.keys() - {"dev"} for text in extras[name]]
+
+
 @each_lock
 def test_every_entry_is_one_version_with_hashes(lock: Path) -> None:
     entries = pins(lock)
@@ -110,8 +116,8 @@ def test_what_the_product_imports_is_asked_for() -> None:
             elif isinstance(node, ast.ImportFrom) and node.module:
                 imported[node.module.split(".")[0]] = path
     packages = metadata.packages_distributions()
-    asked = {canonicalize_name(requirement.name) for requirement in _asked(RUN)}
+    asked = {canonicalize_name(requirement.name) for requirement in (*_asked(RUN), *_extras())}
     for module, path in imported.items():
         if module not in sys.stdlib_module_names and module != "mocapd":
-            givers = {canonicalize_name(name) for name in packages[module]}
+            givers = {canonicalize_name(name) for name in packages.get(module, [module])}
             assert givers & asked, f"{path.name} imports {module}"

@@ -11,6 +11,7 @@ from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
@@ -151,6 +152,11 @@ class TinyHost:
         return Snapshot(
             metrics, status, {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")}
         )
+
+    def recenter(self) -> Facing:
+        if not self.tracks:
+            raise UnavailableError("nobody is seen", "cam0", "stand there")
+        return Facing("pc", 0, 12.5, 0)
 
     def stop(self) -> None:
         """End the setup, if one was begun."""

@@ -31,6 +31,11 @@ def rest_skeleton(instance: str, person: int | str) -> str:
     return f"{ROOT}/{instance}/rest_skeleton/{person}"
 
 
+def facing(instance: str, person: int | str) -> str:
+    """State: `messages.Facing`."""
+    return f"{ROOT}/{instance}/facing/{person}"
+
+
 def schema(instance: str, name: str) -> str:
     """The JSON schema of one message."""
     return f"{ROOT}/{instance}/schema/{name}"

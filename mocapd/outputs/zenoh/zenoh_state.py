@@ -11,6 +11,7 @@ from mocapd.outputs import schemas, wire
 from mocapd.outputs.messages import (
     CalibrationInfo,
     CameraStatus,
+    Facing,
     Health,
     RestSkeleton,
     StateMessage,
@@ -41,6 +42,7 @@ class ZenohState:
             keys.camera_status(self._instance, keys.ANY),
             keys.calibration(self._instance),
             keys.rest_skeleton(self._instance, keys.ANY),
+            keys.facing(self._instance, keys.ANY),
             keys.schema(self._instance, keys.ANY),
         ):
             # on Zenoh's own thread: the Python thread it would else start keeps a process whose
@@ -73,6 +75,8 @@ class ZenohState:
                 return keys.calibration(self._instance)
             case RestSkeleton(person=person):
                 return keys.rest_skeleton(self._instance, person)
+            case Facing(person=person):
+                return keys.facing(self._instance, person)
 
     def _answer_for(self, family: str) -> Callable[[zenoh.Query], None]:
         declared = zenoh.KeyExpr(family)

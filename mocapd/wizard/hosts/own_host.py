@@ -6,7 +6,8 @@ from pathlib import Path
 
 from mocapd.capture.base import Source
 from mocapd.capture.webcam.listing import CameraInfo
-from mocapd.errors import MocapdError
+from mocapd.errors import MocapdError, UnavailableError
+from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Snapshot, ThreadDiedError
@@ -126,3 +127,9 @@ class OwnHost:
         if loop is None:
             return None
         return Snapshot(loop.metrics(), dict(self._cameras.statuses()), {})
+
+    def recenter(self) -> Facing:
+        """See Host."""
+        raise UnavailableError(
+            "a setup sends nothing to games", "this setup", "say it to a running `mocapd run`"
+        )

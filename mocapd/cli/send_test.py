@@ -1,0 +1,58 @@
+"""`mocapd send-test`"""
+
+from typing import Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.errors import ConfigError
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("send-test")(send_test_command)
+
+
+def send_test_command(
+    output: Annotated[
+        str, typer.Option("--output", help="Which output: zenoh, osc, vmc or vrchat.")
+    ],
+    host: Annotated[
+        str | None,
+        typer.Option(help="Send there: an address or a name [default: that of the config]"),
+    ] = None,
+    port: Annotated[
+        int | None, typer.Option(min=1, max=65535, help="And to this port, UDP or Zenoh's TCP.")
+    ] = None,
+    seconds: Annotated[float, typer.Option(min=0.1, max=86_400.0, help="How long [s].")] = 10.0,
+    config: ConfigOption = None,
+    settings: SetOption = None,
+) -> None:
+    """Send a person who waves and steps to an output, without cameras: to try firewall and avatar.
+
+    Ends with 0 when it was sent and nothing refused, with 1 when nobody listens. Other machines may not tell.
+    With Zenoh, --port listens there for games, and --host joins the router there.
+
+    Example: mocapd send-test --output vrchat --host 192.168.1.20
+    """
+    from mocapd.app.libraries import prepare_libraries
+    from mocapd.app.logs import set_up_logs
+    from mocapd.outputs.aim import resolved
+    from mocapd.outputs.instance import instance_name
+    from mocapd.outputs.registry import OUTPUTS
+
+    if output not in OUTPUTS:
+        raise ConfigError(
+            f"there is no output {output[:100]!r}", "--output", f"one of: {', '.join(OUTPUTS)}"
+        )
+    effective = effective_config(config, settings).config
+    set_up_logs(effective.log_level)
+    prepare_libraries(effective.cache_dir)
+    entry, section = OUTPUTS[output], effective.outputs[output]
+    if host is not None or port is not None:
+        section = entry.aimed(section, None if host is None else resolved(host), port)
+
+    from mocapd.app.send_test_run import send_test
+
+    instance = instance_name(effective.instance)
+    raise typer.Exit(send_test(entry.build(section, instance), instance, seconds))

@@ -1,0 +1,1 @@
+"""Body trackers for VRChat, as OSC over UDP."""

@@ -1,0 +1,80 @@
+"""What an OSCQuery service says of itself: `GET /?HOST_INFO`, asked of whoever announced itself, so trusted in nothing.
+
+VRChat answers `{"NAME": "VRChat-Client-5F3A21", "OSC_IP": "127.0.0.1", "OSC_PORT": 9000, "OSC_TRANSPORT": "UDP",
+"EXTENSIONS": {...}}`. Its OSC_IP is not read: programs announce 127.0.0.1 to a whole network
+(vrchat-community/osc#169), and where the answer came from, VRChat is. Sources: Vidvox/OSCQueryProposal, and
+github.com/vrchat-community/osc/wiki/OSCQuery.
+"""
+
+import socket
+import threading
+from contextlib import closing, suppress
+from http.client import HTTPConnection, HTTPException
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from mocapd.boundary.messages import decode_json
+from mocapd.errors import MalformedError, UnavailableError
+
+PREFIX = "VRChat-Client-"  # of VRChat's name in the network
+ANSWER_S = 2.0  # how long all of an answer may take [s]
+_LONGEST_ANSWER = 64 << 10  # [bytes]
+
+
+class HostInfo(msgspec.Struct, frozen=True, rename="upper"):
+    """osc_port: where OSC is listened to, at the address of the service."""
+
+    name: Annotated[str, Meta(max_length=200)]
+    osc_port: Annotated[int, Meta(ge=1, le=65535)]
+    osc_transport: Annotated[str, Meta(max_length=200)] = "UDP"
+
+
+def parse_host_info(data: bytes) -> HostInfo:
+    """The answer of a VRChat. Raises MalformedError, also when it is another program's."""
+    info = decode_json(data, HostInfo)
+    if not info.name.startswith(PREFIX):
+        raise MalformedError(f"{info.name[:40]!r} is no VRChat")
+    if info.osc_transport != "UDP":
+        raise MalformedError(f"it wants OSC by {info.osc_transport[:40]!r}, not by UDP")
+    return info
+
+
+def ask_host_info(address: str, port: int, timeout_s: float = ANSWER_S) -> HostInfo:
+    """Ask the service at a numeric address. Raises UnavailableError for anything but a good answer in time."""
+    try:
+        return parse_host_info(_get(address, port, timeout_s))
+    except (OSError, HTTPException, MalformedError) as error:
+        raise UnavailableError(
+            f"no answer that would do: {str(error) or type(error).__name__}",
+            f"http://{address}:{port}/?HOST_INFO",
+            "give VRChat's address as vrchat.destination",
+        ) from None
+
+
+def _get(address: str, port: int, timeout_s: float) -> bytes:
+    """Raises OSError, HTTPException or MalformedError. A redirection is no answer."""
+    with closing(HTTPConnection(address, port, timeout=timeout_s)) as connection:
+        connection.connect()
+        line: socket.socket = connection.sock
+        # a time for each read would let an answer drip for hours
+        end = threading.Timer(timeout_s, _hang_up, (line,))
+        end.daemon = True
+        end.start()
+        try:
+            connection.request("GET", "/?HOST_INFO")
+            answer = connection.getresponse()
+            if answer.status != 200:
+                raise MalformedError(f"HTTP status {answer.status}")
+            data = answer.read(_LONGEST_ANSWER + 1)
+        finally:
+            end.cancel()
+    if len(data) > _LONGEST_ANSWER:
+        raise MalformedError(f"more than {_LONGEST_ANSWER} bytes")
+    return data
+
+
+def _hang_up(line: socket.socket) -> None:
+    with suppress(OSError):
+        line.shutdown(socket.SHUT_RDWR)

@@ -1,0 +1,45 @@
+"""A frame as VRChat is sent it: one bundle of `/tracking/trackers/<tracker>/{position,rotation}`, three floats each."""
+
+import struct
+from collections.abc import Sequence
+
+from mocapd.outputs.osc import osc_encoding as osc
+from mocapd.outputs.wire import Vector
+
+ROOT = "/tracking/trackers/"
+TYPES = "fff"
+HEAD_POSITION = f"{ROOT}head/position"
+HEAD_ROTATION = f"{ROOT}head/rotation"
+
+_three_floats = struct.Struct(">3f")
+
+
+def position_address(number: int) -> str:
+    """Where a tracker is."""
+    return f"{ROOT}{number}/position"
+
+
+def rotation_address(number: int) -> str:
+    """How it is turned."""
+    return f"{ROOT}{number}/rotation"
+
+
+class TrackerBundle:
+    """The bundle of all frames that have these addresses: laid out once, the floats overwritten per frame.
+
+    Eight trackers and the head take 1032 bytes, so that one datagram is enough for any frame.
+    """
+
+    def __init__(self, addresses: Sequence[str]) -> None:
+        elements = [osc.message(address, TYPES, 0.0, 0.0, 0.0) for address in addresses]
+        self._data, starts = osc.bundle(elements)
+        self._floats_at = tuple(
+            start + osc.arguments_offset(address, TYPES)
+            for start, address in zip(starts, addresses, strict=True)
+        )
+
+    def filled(self, vectors: Sequence[Vector]) -> bytearray:
+        """The datagram with one vector for each address; it is overwritten by the next call."""
+        for at, vector in zip(self._floats_at, vectors, strict=True):
+            _three_floats.pack_into(self._data, at, *vector)
+        return self._data

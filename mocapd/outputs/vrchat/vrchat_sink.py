@@ -1,0 +1,167 @@
+"""Skeleton frames as VRChat's OSC trackers over UDP; see `tracker_table` for which and `unity_space` for where."""
+
+import logging
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+from msgspec import Meta
+
+from mocapd.errors import ConfigError, UnavailableError
+from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.facing import SEEN_ABOVE, facing_yaw_rad
+from mocapd.outputs.messages import Facing, StateMessage
+from mocapd.outputs.osc.osc_sink import parse_destination
+from mocapd.outputs.rate_cap import RateCap
+from mocapd.outputs.vrchat import tracker_bundle
+from mocapd.outputs.vrchat.confident_trackers import ConfidentTrackers
+from mocapd.outputs.vrchat.head_alignment import HeadAlignment
+from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
+from mocapd.outputs.vrchat.tracker_table import BodyPart, BodyTracker, trackers_of
+from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
+from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
+from mocapd.outputs.vrchat.vrchat_link import KEY, VRChatLink
+from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
+
+AUTO = "auto"
+HEAD_ON = "neck"  # the bone whose confidence tells how well the place of the head is known
+UPRIGHT_XYZW = (0.0, 0.0, 0.0, 1.0)
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Params:
+    """What goes to VRChat. Raises ConfigError for a destination that does not do.
+
+    destination: where VRChat listens, `address:port`, numeric addresses only; `auto`: found in the local network, needs the
+      extra `mocapd[vrchat]`
+    trackers: what is sent: hip, feet, chest, knees, elbows; fewer good ones do better than all
+    head: send where the head is, by which VRChat moves the others to the headset
+    rate_hz: frames a second at most [Hz]
+    yaw_deg: turns everything about the vertical, to the person's left [deg]
+    """
+
+    destination: str = "127.0.0.1:9000"
+    trackers: tuple[BodyPart, ...] = ("hip", "feet")
+    head: bool = True
+    rate_hz: Annotated[float, Meta(ge=1, le=200)] = 60.0
+    yaw_deg: Annotated[float, Meta(ge=-360, le=360)] = 0.0
+
+    def __post_init__(self) -> None:
+        if self.destination == AUTO:
+            return
+        try:
+            parse_destination(self.destination)
+        except ConfigError as error:
+            raise ConfigError(
+                error.what, KEY, 'write for example 127.0.0.1:9000 (not localhost), or "auto"'
+            ) from None
+
+
+class VRChatSink:
+    """Sends each frame's trackers, as far as they are seen. Nobody listening is counted, not an error.
+
+    `tell` and `status` from any thread.
+    """
+
+    name = "vrchat"
+
+    def __init__(self, params: Params, finder: VRChatFinder | None = None) -> None:
+        """finder: used where the destination is `auto`."""
+        self._params = params
+        self._finder = (finder or VRChatFinder()) if params.destination == AUTO else None
+        self._link = VRChatLink()
+        self._trackers = ConfidentTrackers(trackers_of(params.trackers))
+        self._alignment = HeadAlignment(math.radians(params.yaw_deg))
+        self._cap = RateCap(params.rate_hz)
+        self._bundles: dict[tuple[str, ...], TrackerBundle] = {}  # by addresses, 1024 at most
+
+    def open(self) -> None:
+        """Open the socket, or begin to look for VRChat. Raises UnavailableError for an address without a route,
+        ConfigError where the library that looks is not installed."""
+        self.close()
+        if self._finder is None:
+            self._link.aim(self._params.destination)
+        else:
+            self._finder.start()
+
+    def send(self, frame: SkeletonFrame) -> None:
+        """Send what is seen of one frame, as one bundle; nothing when nothing is, or one was sent just now."""
+        now_ns = frame.publish_monotonic_ns
+        trackers = self._trackers.update(frame)
+        if not trackers or not self._cap.lets_through(now_ns):
+            return
+        if self._finder is not None:
+            self._follow(self._finder.address)
+        if not self._link.is_aimed:
+            self._link.refuse()  # and a wish to be turned waits
+            return
+        is_aligned = self._alignment.take(now_ns, facing_yaw_rad(frame))
+        vectors = self._vectors(frame.joints, trackers, is_aligned)
+        addresses = tuple(vectors)
+        bundle = self._bundles.get(addresses)
+        if bundle is None:
+            bundle = self._bundles[addresses] = TrackerBundle(addresses)
+        self._link.send(bundle.filled(tuple(vectors.values())))
+
+    def _follow(self, address: str | None) -> None:
+        """To where VRChat was found."""
+        try:
+            self._link.aim(address)
+        except UnavailableError as error:
+            _log.warning("VRChat cannot be sent to: %s", error)
+
+    def _vectors(
+        self, joints: Mapping[str, Joint], trackers: tuple[BodyTracker, ...], is_aligned: bool
+    ) -> dict[str, Vector]:
+        """What is sent, by address: the head first, as the others are read by it."""
+        turn_rad = self._alignment.turn_rad
+        turn, half_turn = cos_sin(turn_rad), cos_sin(0.5 * turn_rad)
+        vectors: dict[str, Vector] = {}
+        head, below = joints.get("head"), joints.get(HEAD_ON)
+        if self._params.head and head is not None and below is not None and below.c > SEEN_ABOVE:
+            vectors[tracker_bundle.HEAD_POSITION] = unity_position(head.p, turn)
+        if is_aligned:
+            # level: VRChat takes its yaw
+            half_forward = cos_sin(0.5 * self._alignment.forward_rad)
+            vectors[tracker_bundle.HEAD_ROTATION] = unity_euler_deg(UPRIGHT_XYZW, half_forward)
+        for one in trackers:
+            place, rotation = joints[one.place].p, joints[one.turn].r
+            vectors[tracker_bundle.position_address(one.number)] = unity_position(place, turn)
+            vectors[tracker_bundle.rotation_address(one.number)] = unity_euler_deg(
+                rotation, half_turn
+            )
+        return vectors
+
+    def tell(self, message: StateMessage) -> None:
+        """The way a person faces becomes forward, in the next frame in which it is seen; else nothing."""
+        if isinstance(message, Facing):
+            self._alignment.ask()
+
+    def status(self) -> SinkStatus:
+        """Those that were sent; also which of the trackers are not seen."""
+        status = self._link.status()
+        if self._finder is not None and self._finder.address is None:
+            status = replace(status, detail=self._finder.detail)
+        missing = ", ".join(one.label for one in self._trackers.missing)
+        return (
+            replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
+        )
+
+    def close(self) -> None:
+        """Close the socket, look no more; may be called twice."""
+        if self._finder is not None:
+            self._finder.stop()
+        self._link.close()
+
+
+def warnings(params: Params) -> tuple[str, ...]:
+    """A line for each setting that is permitted and yet unsafe."""
+    if params.destination != AUTO:
+        return ()
+    return (
+        'vrchat.destination = "auto": whoever announces a VRChat in the local network is sent where the'
+        " person is, unencrypted; give VRChat's address where you do not trust the network",
+    )

@@ -1,0 +1,92 @@
+"""`mocapd recenter` to a running service: VRChat is turned once, and the command says what was done."""
+
+import socket
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mocapd.cli.recenter import recenter
+from mocapd.config.sections import Config
+from mocapd.config.web_params import Params
+from mocapd.errors import UnavailableError
+from mocapd.outputs.registry import VRChatSection
+from mocapd.service.service import Service
+from mocapd.web.runtime_file import Place, runtime_folder
+from mocapd.web.server import WebServer
+from mocapd.wizard.hosts.daemon_host import DaemonHost
+from tests.outputs.frames import eventually
+from tests.outputs.receivers.vrchat import VRChatReceiver
+from tests.service.test_service import session_of
+
+
+class Listening:
+    """A VRChat on a socket, read when it is asked."""
+
+    def __init__(self) -> None:
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.settimeout(30.0)
+        self.vrchat = VRChatReceiver(hmd_yaw_deg=40.0)
+        self.addresses: list[str] = []
+        self.frames = 0
+
+    @property
+    def destination(self) -> str:
+        host, port = self.socket.getsockname()
+        return f"{host}:{port}"
+
+    def hear(self) -> bool:
+        self.frames += 1
+        self.addresses += self.vrchat.take(self.socket.recv(2000), self.frames / 30.0)
+        return "/tracking/trackers/head/rotation" in self.addresses
+
+
+@pytest.fixture
+def listening(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Listening]:
+    (tmp_path / "run").mkdir(mode=0o700)
+    monkeypatch.delenv("RUNTIME_DIRECTORY", raising=False)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    one = Listening()
+    yield one
+    one.socket.close()
+
+
+def test_it_turns_vrchat_once(
+    listening: Listening, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    section = VRChatSection(listening.destination, enabled=True)
+    config = Config(outputs={"vrchat": section}, state_dir=tmp_path, instance="game")
+    with Service(config, session_of("a")) as service:
+        host = DaemonHost(service)
+        place = Place(runtime_folder(tmp_path), tmp_path, "game")
+        with WebServer(host, Params(), service.died, place):
+            for _ in range(5):
+                assert not listening.hear()
+            recenter()
+            assert eventually(listening.hear)
+            out = capsys.readouterr()
+            assert "told to: vrchat" in out.out
+            assert out.err == ""
+            for _ in range(10):
+                listening.hear()
+            assert listening.addresses.count("/tracking/trackers/head/rotation") == 1
+            assert (listening.vrchat.snaps, listening.vrchat.slerps) == (1, 0)
+            assert listening.vrchat.yaw_deg == pytest.approx(40.0)
+
+            # a second daemon beside it, which sends to nobody
+            with (
+                Service(replace(config, outputs={}, instance="cave"), session_of("b")) as other,
+                WebServer(DaemonHost(other), Params(), other.died, replace(place, instance="cave")),
+            ):
+                assert eventually(lambda: other.snapshot().metrics.published > 0)
+                recenter(settings=["instance=cave"])
+    assert "vrchat.enabled = true" in capsys.readouterr().err
+
+
+def test_without_a_daemon_it_says_so(listening: Listening) -> None:
+    with pytest.raises(UnavailableError, match=r"no mocapd of yours is running.*mocapd run"):
+        recenter()
