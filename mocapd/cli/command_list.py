@@ -9,6 +9,7 @@ from mocapd.cli import (
     cameras,
     check_config,
     demo,
+    record,
     run,
     shirt,
     track,
@@ -26,7 +27,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, demo, track, evaluation, bench, watch, cameras, check_config, version):
+for command in (run, demo, record, track, evaluation, bench, watch, cameras, check_config, version):
     command.add_to(app)
 calibrate.add_to(app)
 for printable in (board, shirt):

@@ -5,7 +5,7 @@ from random import Random
 
 from mocapd.calibration.from_origin import from_origin
 from mocapd.capture.recording.mcap_origin import open_recording
-from mocapd.outputs.mcap.recording_reader import Recording
+from mocapd.outputs.mcap.recording_reader import RecordingReader
 from tests.capture.recorded_pictures import recorded_capture
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, named, taken
@@ -21,7 +21,9 @@ def files(place: Place) -> Attempt:
     target = place.folder / "damaged.mcap"
 
     def read(path: Path) -> bool:
-        return named(lambda: list(Recording(path).everything())) | named(lambda: _pictures(path))
+        return named(lambda: list(RecordingReader(path).everything())) | named(
+            lambda: _pictures(path)
+        )
 
     for path in (packed, exact, pictures):
         assert read(path)

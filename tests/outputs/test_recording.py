@@ -1,6 +1,9 @@
 """A recording gives back what was recorded, whatever happened to the file."""
 
 import logging
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import msgspec
@@ -12,12 +15,13 @@ from mcap.writer import Writer
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.geometry import rotations
 from mocapd.outputs import wire
-from mocapd.outputs.mcap.recording_reader import Recorded, Recording
+from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
+from tests.conftest import ROOT
 from tests.outputs.frames import whole_frame
-from tests.outputs.recorded import cameras, farthest_m, frames, record, rest
+from tests.outputs.recorded import HZ, cameras, farthest_m, frames, record, rest
 
 TENTH_OF_A_MM = 1e-4
 
@@ -28,7 +32,7 @@ def frames_of(items: list[Recorded]) -> list[SkeletonFrame]:
 
 def test_frames_come_back_within_a_tenth_of_a_millimetre(tmp_path: Path) -> None:
     recorded = frames(1.0)
-    read = frames_of(list(Recording(record(tmp_path / "a.mcap", recorded)).everything()))
+    read = frames_of(list(RecordingReader(record(tmp_path / "a.mcap", recorded)).everything()))
     assert len(read) == len(recorded)
     for before, after in zip(recorded, read, strict=True):
         assert farthest_m(before, after) < TENTH_OF_A_MM
@@ -48,7 +52,7 @@ def test_frames_come_back_within_a_tenth_of_a_millimetre(tmp_path: Path) -> None
 def test_exactly_the_published_bytes_on_demand(tmp_path: Path) -> None:
     recorded = frames(0.2)
     read = frames_of(
-        list(Recording(record(tmp_path / "a.mcap", recorded, exact=True)).everything())
+        list(RecordingReader(record(tmp_path / "a.mcap", recorded, exact=True)).everything())
     )
     assert read == recorded
 
@@ -62,13 +66,13 @@ def test_joints_that_are_not_of_the_rest_skeleton_are_kept_as_published(tmp_path
             for name, joint in whole_frame().joints.items()
         },
     )
-    read = frames_of(list(Recording(record(tmp_path / "a.mcap", [small, far])).everything()))
+    read = frames_of(list(RecordingReader(record(tmp_path / "a.mcap", [small, far])).everything()))
     assert read == [small, far]
 
 
 def test_lost_frames_and_states_are_recorded(tmp_path: Path) -> None:
     lost = msgspec.structs.replace(whole_frame(), tracking="lost", joints={})
-    items = list(Recording(record(tmp_path / "a.mcap", [lost, whole_frame(1)])).everything())
+    items = list(RecordingReader(record(tmp_path / "a.mcap", [lost, whole_frame(1)])).everything())
     assert [item for item in items if isinstance(item, RestSkeleton)] == [rest()]
     assert [item for item in items if isinstance(item, CalibrationInfo)] == [cameras()]
     assert frames_of(items)[0] == lost
@@ -111,7 +115,7 @@ def test_a_truncated_file_gives_what_came_before(
     data = path.read_bytes()
     path.write_bytes(data[: int(kept * len(data))])
     with caplog.at_level(logging.WARNING):
-        read = frames_of(list(Recording(path).everything()))
+        read = frames_of(list(RecordingReader(path).everything()))
     assert len(read) >= 600 * kept - 60  # chunks of half a second, and the index at the end
     assert [frame.seq for frame in read] == list(range(len(read)))
     assert "cut short" in caplog.text or "not closed" in caplog.text
@@ -126,7 +130,7 @@ def test_a_damaged_chunk_is_left_out_and_said(
     data[at : at + 40] = bytes(40)
     path.write_bytes(data)
     with caplog.at_level(logging.WARNING):
-        read = frames_of(list(Recording(path).everything()))
+        read = frames_of(list(RecordingReader(path).everything()))
     assert 240 <= len(read) < 300
     assert "1 chunks" in caplog.text
 
@@ -138,12 +142,12 @@ def test_garbage_is_named(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "a.mcap"
     path.write_bytes(data)
     with pytest.raises(InputError, match=r"a\.mcap"):
-        list(Recording(path).everything())
+        list(RecordingReader(path).everything())
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such recording"):
-        list(Recording(tmp_path / "none.mcap").everything())
+        list(RecordingReader(tmp_path / "none.mcap").everything())
 
 
 def write_foreign(path: Path, schema: str, data: bytes) -> None:
@@ -162,30 +166,48 @@ def write_foreign(path: Path, schema: str, data: bytes) -> None:
 def test_a_foreign_file_is_named(tmp_path: Path) -> None:
     write_foreign(tmp_path / "a.mcap", "sensor_msgs/Imu", b"abc")
     with pytest.raises(InputError, match="no frame of mocapd"):
-        list(Recording(tmp_path / "a.mcap").everything())
+        list(RecordingReader(tmp_path / "a.mcap").everything())
 
 
 def test_a_newer_schema_is_named(tmp_path: Path) -> None:
     write_foreign(tmp_path / "a.mcap", "mocapd.PackedSkeleton.v2", b"abc")
     with pytest.raises(InputError, match=r"another version.*PackedSkeleton\.v2"):
-        list(Recording(tmp_path / "a.mcap").everything())
+        list(RecordingReader(tmp_path / "a.mcap").everything())
 
 
 def test_damaged_messages_are_left_out(tmp_path: Path) -> None:
     write_foreign(tmp_path / "a.mcap", wire.SCHEMA, b"\xc1\xc1")
     with pytest.raises(InputError, match="no frame of mocapd"):
-        list(Recording(tmp_path / "a.mcap").everything())
+        list(RecordingReader(tmp_path / "a.mcap").everything())
 
 
 def test_a_disk_that_is_full_is_named(tmp_path: Path) -> None:
     full = Path("/dev/full")
     writer = RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0)
     with full.open("wb") as device:
-        import os
-
         os.dup2(device.fileno(), writer._descriptor)
     writer.tell(rest(), 0)
     for frame in frames(0.1):
         writer.frame(frame)
     with pytest.raises(CannotCreateError, match="any further"):
         writer.beat(10**12)
+
+
+@pytest.mark.parametrize("frames_before", [100, 107, 131])
+def test_a_kill_costs_less_than_a_second(tmp_path: Path, frames_before: int) -> None:
+    path = tmp_path / "killed.mcap"
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.outputs.killed_recorder", str(path)],
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+    ) as recorder:
+        assert recorder.stdout is not None
+        for line in recorder.stdout:
+            if int(line) >= frames_before:
+                break
+        recorder.kill()
+        handed_over = int((recorder.stdout.read().split() or [line])[-1])
+    read = frames_of(list(RecordingReader(path).everything()))
+    assert [frame.seq for frame in read] == list(range(len(read)))
+    assert (handed_over + 1 - len(read)) / HZ < 1.0

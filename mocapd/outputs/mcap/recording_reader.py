@@ -35,7 +35,7 @@ class _Counts:
     other: str = ""
 
 
-class Recording:
+class RecordingReader:
     """One file, read from its start as often as it is asked for."""
 
     def __init__(self, path: Path) -> None:
