@@ -10,6 +10,7 @@ from mocapd.cli import (
     check_config,
     demo,
     record,
+    replay,
     run,
     shirt,
     track,
@@ -27,7 +28,19 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, demo, record, track, evaluation, bench, watch, cameras, check_config, version):
+for command in (
+    run,
+    demo,
+    record,
+    replay,
+    track,
+    evaluation,
+    bench,
+    watch,
+    cameras,
+    check_config,
+    version,
+):
     command.add_to(app)
 calibrate.add_to(app)
 for printable in (board, shirt):
