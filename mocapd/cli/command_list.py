@@ -9,6 +9,7 @@ from mocapd.cli import (
     cameras,
     check_config,
     demo,
+    export,
     record,
     replay,
     run,
@@ -31,6 +32,7 @@ app = typer.Typer(
 for command in (
     run,
     demo,
+    export,
     record,
     replay,
     track,
