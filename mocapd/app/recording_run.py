@@ -4,10 +4,10 @@ import threading
 import time
 from functools import partial
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
+from mocapd.app.daemon_pictures import DaemonPictures
 from mocapd.app.published import Published, PublishedStream
 from mocapd.app.status_line import StatusLine
 from mocapd.capture.recording.recorded_known import RecordedKnown
@@ -20,14 +20,6 @@ _LOOK_S = 0.1  # how often the end and the file's beat are looked after without 
 _SILENT_S = 2.0  # without frames, before the line says so [s]
 
 
-class RecordsPictures(Protocol):
-    """What brings a daemon's pictures and what it knows of its cameras."""
-
-    def drain(self, writer: RecordingWriter) -> None:
-        """Write what has come; never waits."""
-        ...
-
-
 class Recorder:
     """One recording; `end` from any thread or a signal handler."""
 
@@ -35,7 +27,7 @@ class Recorder:
         self,
         stream: PublishedStream,
         writer: RecordingWriter,
-        pictures: RecordsPictures | None,
+        pictures: DaemonPictures | None,
         seconds: float | None,
     ) -> None:
         """pictures: None for frames alone; seconds: how long, None: until `end`."""
@@ -65,7 +57,7 @@ class Recorder:
                 heard_s = now_s
                 self._write(found)
             if self._pictures is not None:
-                self._pictures.drain(self._writer)
+                self._pictures.drain(self._writer, time.time_ns())
             self._writer.beat(monotonic_ns())
             line.say(partial(self._text, now_s - began_s, now_s - heard_s))
 
@@ -112,7 +104,9 @@ class Recorder:
         writer, stream = self._writer, self._stream
         parts = [f"recording {writer.path}", duration(took_s), f"{writer.frames} frames"]
         if self._pictures is not None:
-            parts.append(f"{writer.pictures} pictures")
+            lost = f" ({self._pictures.dropped} lost)" if self._pictures.dropped else ""
+            parts.append(f"{writer.pictures} pictures{lost}")
+            parts += [f"no more pictures: {self._pictures.over}"] if self._pictures.over else []
         parts.append(f"{writer.bytes / 1e6:.1f} MB")
         if self.missed:
             parts.append(f"{self.missed} missed")

@@ -21,6 +21,12 @@ def record(
     seconds: Annotated[
         float | None, typer.Option(help="How long [s]; else until Ctrl-C.", min=0.1)
     ] = None,
+    pictures: Annotated[
+        bool,
+        typer.Option(
+            "--pictures", help="The cameras' pictures too, as delivered; `mocapd track` reads it."
+        ),
+    ] = False,
     exact: Annotated[
         bool,
         typer.Option("--exact", help="Frames bit by bit as published: seven times the size."),
@@ -41,11 +47,15 @@ def record(
 ) -> None:
     """Record what a running daemon publishes into one MCAP file.
 
-    Frames with rest skeleton and calibration. The daemon goes on as it is. What was recorded more than a second
+    Frames with rest skeleton and calibration; with --pictures also the cameras' pictures, from the daemon's page,
+    into a file that only you can read. The daemon goes on as it is. What was recorded more than a second
     before a crash or a kill can be read. Ctrl-C ends it.
 
     Example: mocapd record training.mcap --seconds 60
     """
+    from contextlib import ExitStack
+
+    from mocapd.app.daemon_pictures import DaemonPictures
     from mocapd.app.logs import set_up_logs
     from mocapd.app.published import PublishedStream
     from mocapd.app.recording_run import Recorder, default_path, duration
@@ -57,6 +67,7 @@ def record(
     from mocapd.clock import seconds as in_seconds
     from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
     from mocapd.outputs.registry import zenoh_section
+    from mocapd.web.runtime_file import runtime_folder
 
     effective = effective_config(config, settings).config
     set_up_logs(effective.log_level)
@@ -67,16 +78,23 @@ def record(
     )
     signals = Signals()
     path = file if file is not None else default_path()
-    with PublishedStream(link) as stream:
+    params = RecordingParams(exact, foxglove_hz, private=pictures)
+    with ExitStack() as opened:
+        stream = opened.enter_context(PublishedStream(link))
+        page = None
+        if pictures:
+            folder = runtime_folder(effective.state_dir)
+            page = opened.enter_context(DaemonPictures(folder, stream.instance))
         began_ns = monotonic_ns()
-        with RecordingWriter(path, RecordingParams(exact, foxglove_hz), began_ns) as writer:
-            recorder = Recorder(stream, writer, None, seconds)
-            signals.ends(recorder)
-            with StatusLine() as line:
-                recorder.run(line)
+        writer = opened.enter_context(RecordingWriter(path, params, began_ns))
+        recorder = Recorder(stream, writer, page, seconds)
+        signals.ends(recorder)
+        with StatusLine() as line:
+            recorder.run(line)
     took_s = in_seconds(monotonic_ns() - began_ns)
     typer.echo(
         f"{path}: {duration(took_s)}, {writer.frames} frames ({recorder.missed} missed), "
+        f"{f'{writer.pictures} pictures, ' if pictures else ''}"
         f"{writer.bytes / 1e6:.1f} MB",
         err=True,
     )

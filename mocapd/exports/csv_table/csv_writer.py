@@ -1,7 +1,8 @@
 """Motion as a table: one line a frame, one column a number, in metres and in our own axes.
 
-Columns: `time_s`; `gap`, 1 where nobody was tracked; of each bone `<bone>_x`, `_y`, `_z` its joint in the world [m],
-`_qx`, `_qy`, `_qz`, `_qw` its rotation relative to the T-pose, `_confidence` 0..1. +Y up, a person at rest faces +Z.
+The columns are a time [s] since the first frame; whether it is a gap, 1 where nobody was tracked; and of each bone,
+after its name and an underscore, PARTS: its joint in the world [m], its rotation relative to the T-pose, its confidence
+0..1. +Y up, a person at rest faces +Z.
 """
 
 import csv
