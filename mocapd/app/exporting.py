@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.errors import InputError
-from mocapd.exports.motion import Motion, Samples, resampled, usual_rate_hz
+from mocapd.exports.sampled_motion import SampledMotion, Samples, resampled, usual_rate_hz
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
@@ -16,7 +16,7 @@ from mocapd.types import Skeleton
 class Exported:
     """tracked, lost: frames of the recording with this person's pose, and without."""
 
-    motion: Motion
+    motion: SampledMotion
     tracked: int
     lost: int
 

@@ -9,32 +9,32 @@ from mocapd.exports.bvh.bvh_writer import bvh_text
 from mocapd.exports.c3d.c3d_writer import write_c3d
 from mocapd.exports.csv_table.csv_writer import csv_text
 from mocapd.exports.glb.glb_writer import glb_bytes
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.exports.trc.trc_writer import trc_text
 from mocapd.whole_file import whole_file
 
 Write = Callable[
-    [Motion, Path, str], None
+    [SampledMotion, Path, str], None
 ]  # the motion, where to, the name that the file will have
 
 
-def _bvh(motion: Motion, path: Path, _name: str) -> None:
+def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
     path.write_text(bvh_text(motion), encoding="utf-8")
 
 
-def _glb(motion: Motion, path: Path, _name: str) -> None:
+def _glb(motion: SampledMotion, path: Path, _name: str) -> None:
     path.write_bytes(glb_bytes(motion))
 
 
-def _csv(motion: Motion, path: Path, _name: str) -> None:
+def _csv(motion: SampledMotion, path: Path, _name: str) -> None:
     path.write_text(csv_text(motion), encoding="utf-8")
 
 
-def _trc(motion: Motion, path: Path, name: str) -> None:
+def _trc(motion: SampledMotion, path: Path, name: str) -> None:
     path.write_text(trc_text(motion, name), encoding="utf-8")
 
 
-def _c3d(motion: Motion, path: Path, _name: str) -> None:
+def _c3d(motion: SampledMotion, path: Path, _name: str) -> None:
     write_c3d(motion, path)
 
 
@@ -43,7 +43,7 @@ FORMATS: Mapping[str, Write] = MappingProxyType(
 )
 
 
-def write_export(motion: Motion, name: str, path: Path) -> None:
+def write_export(motion: SampledMotion, name: str, path: Path) -> None:
     """Write the format of this name, whole or not at all. Raises CannotCreateError."""
     try:
         with whole_file(path) as partial:

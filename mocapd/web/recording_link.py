@@ -22,7 +22,7 @@ from mocapd.web.host import Host
 from mocapd.web.links import BadMessageError, received, send_bytes, serve
 from mocapd.web.picture_link import message
 
-MOST_WAITING = 32  # pictures of all cameras: half a second of two
+MOST_WAITING = 24  # pictures of all cameras: a third of a second of two
 RECORDED_QUALITY = 95  # of a picture that no camera has encoded
 _LOOK_EVERY_S = 0.008
 
@@ -32,19 +32,22 @@ class _Taken:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()  # guards what follows
-        self._frames: deque[Frame] = deque()
+        self._waiting: deque[Picture | Frame] = deque()
         self.dropped = 0
 
     def put(self, frame: Frame) -> None:
+        # a JPEG without its pixels is a tenth of them
+        one = delivered(frame, _width(frame)) or frame
         with self._lock:
-            if len(self._frames) >= MOST_WAITING:
-                self._frames.popleft()
+            if len(self._waiting) >= MOST_WAITING:
+                self._waiting.popleft()
                 self.dropped += 1
-            self._frames.append(frame)
+            self._waiting.append(one)
 
-    def next(self) -> Frame | None:
+    def next(self) -> Picture | Frame | None:
+        """A frame where its camera delivered no JPEG that can be shown."""
         with self._lock:
-            return self._frames.popleft() if self._frames else None
+            return self._waiting.popleft() if self._waiting else None
 
 
 class RecordingLink:
@@ -71,14 +74,13 @@ class RecordingLink:
         try:
             while True:
                 hub = _joined(taken, hub, self._host.hub)  # another session has cameras of its own
-                frame = taken.next()
-                if frame is None:
+                picture = taken.next()
+                if picture is None:
                     await asyncio.sleep(_LOOK_EVERY_S)
                     continue
-                picture = delivered(frame, _width(frame))
-                if picture is None:
+                if isinstance(picture, Frame):
                     picture = await loop.run_in_executor(
-                        self._executor, encode, frame, _width(frame), RECORDED_QUALITY
+                        self._executor, encode, picture, _width(picture), RECORDED_QUALITY
                     )
                 await send_bytes(self._socket, _message(picture, taken.dropped))
         finally:

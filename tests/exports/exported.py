@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.app.exporting import motion_of
 from mocapd.exports.formats import write_export
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.types import Floats
 from tests.outputs.recorded import frames, record
@@ -15,12 +15,12 @@ SECONDS = 1.5
 MM = 1e-3
 
 
-def recorded_motion(folder: Path) -> Motion:
+def recorded_motion(folder: Path) -> SampledMotion:
     """By way of a recording."""
     return motion_of(RecordingReader(record(folder / "a.mcap", frames(SECONDS))), 0, None).motion
 
 
-def exported(folder: Path, name: str) -> tuple[Motion, Path]:
+def exported(folder: Path, name: str) -> tuple[SampledMotion, Path]:
     """The motion and its file in this format."""
     motion = recorded_motion(folder)
     path = folder / f"a.{name}"
@@ -28,7 +28,7 @@ def exported(folder: Path, name: str) -> tuple[Motion, Path]:
     return motion, path
 
 
-def check_places(found_m: Floats, motion: Motion) -> None:
+def check_places(found_m: Floats, motion: SampledMotion) -> None:
     """That joints (F,J,3) [m] are where they were recorded, to a millimetre, and that the pose is a moving and
     asymmetric one, so that a mirrored or turned file cannot pass."""
     assert found_m.shape == motion.joints_m.shape

@@ -10,7 +10,7 @@ import numpy as np
 import pygltflib
 import pytest
 
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 from tests.exports.exported import SECONDS, check_places, exported
@@ -130,7 +130,7 @@ def test_gaps_are_empty_where_the_format_can(tmp_path: Path) -> None:
     assert (tmp_path / "gap.csv").read_text().split("\n")[1 + 40].split(",")[1] == "1"
 
 
-def _with_gap(motion: Motion) -> Motion:
+def _with_gap(motion: SampledMotion) -> SampledMotion:
     from dataclasses import replace
 
     gap = motion.gap.copy()

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -19,7 +19,7 @@ END_CM = 8.0  # the tip of a bone without children, which the format wants
 _CHANNELS = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 
 
-def bvh_text(motion: Motion) -> str:
+def bvh_text(motion: SampledMotion) -> str:
     """The whole file."""
     skeleton = motion.skeleton
     order, lines = _hierarchy(motion)
@@ -53,7 +53,7 @@ def zxy_degrees(R: Floats) -> Floats:
     return degrees
 
 
-def _hierarchy(motion: Motion) -> tuple[list[int], list[str]]:
+def _hierarchy(motion: SampledMotion) -> tuple[list[int], list[str]]:
     """Joints in the order of the file, depth first, and its lines."""
     order: list[int] = []
     skeleton, offsets_cm = motion.skeleton, motion.offsets_m * CM

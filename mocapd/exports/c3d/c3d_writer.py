@@ -9,12 +9,12 @@ from pathlib import Path
 import ezc3d
 import numpy as np
 
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 
 MM = 1000.0
 
 
-def write_c3d(motion: Motion, path: Path) -> None:
+def write_c3d(motion: SampledMotion, path: Path) -> None:
     """Write the file. Raises OSError."""
     file = ezc3d.c3d()
     names = list(motion.skeleton.names)

@@ -10,12 +10,12 @@ import io
 
 import numpy as np
 
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 
 PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "confidence")
 
 
-def csv_text(motion: Motion) -> str:
+def csv_text(motion: SampledMotion) -> str:
     """The whole file."""
     names = motion.skeleton.names
     numbers = np.concatenate(

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import mocapd
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.types import Floats
 
 _MAGIC, _VERSION = b"glTF", 2
@@ -48,7 +48,7 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def glb_bytes(motion: Motion) -> bytes:
+def glb_bytes(motion: SampledMotion) -> bytes:
     """The whole file."""
     skeleton, offsets_m, buffer = motion.skeleton, motion.offsets_m, _Buffer()
     children = [np.flatnonzero(skeleton.parents == j).tolist() for j in range(len(skeleton.names))]
@@ -80,7 +80,7 @@ def glb_bytes(motion: Motion) -> bytes:
     return _packed(json.dumps(document, separators=(",", ":")).encode(), bytes(buffer.data))
 
 
-def _animation(motion: Motion, buffer: _Buffer) -> dict[str, Any]:
+def _animation(motion: SampledMotion, buffer: _Buffer) -> dict[str, Any]:
     times = buffer.add(motion.times_s[:, None])
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []

@@ -4,12 +4,12 @@ Millimetres; axes as ours, +Y up, which OpenSim's are too. A joint of a gap is l
 a marker that was not seen.
 """
 
-from mocapd.exports.motion import Motion
+from mocapd.exports.sampled_motion import SampledMotion
 
 MM = 1000.0
 
 
-def trc_text(motion: Motion, name: str) -> str:
+def trc_text(motion: SampledMotion, name: str) -> str:
     """The whole file; `name`: of the file, which it repeats."""
     names = motion.skeleton.names
     count, rate_hz = len(motion.joints_m), motion.rate_hz

@@ -1,6 +1,6 @@
 """A frame in an eighth of its bytes, for recordings: `mocapd.PackedSkeleton.v1`. Pure.
 
-Published frames take 460 MB an hour at 60 Hz however they are compressed, as their numbers are noise from the
+Published frames take up to 460 MB an hour at 60 Hz however they are compressed, as their numbers are noise from the
 ninth digit on. Here positions are on a grid of 15 micrometres and rotations of 0.003 degrees, far below what any
 tracker knows; the rotations relative to the parents follow from the others. Bytes of equal weight lie side by
 side, as the upper ones repeat and compress.

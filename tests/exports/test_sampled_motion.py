@@ -10,7 +10,7 @@ from mocapd.app.exporting import motion_of
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.exports.bvh.bvh_writer import zxy_degrees
 from mocapd.exports.formats import write_export
-from mocapd.exports.motion import usual_rate_hz
+from mocapd.exports.sampled_motion import usual_rate_hz
 from mocapd.geometry import rotations
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from tests.cli.mocapd_process import mocapd

@@ -17,7 +17,7 @@ LONGEST_HELD_S = 0.25  # between two poses, before what lies between is a gap
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class SampledMotion:
     """F frames of J joints in the world of mocapd, rate_hz apart from time 0.
 
     skeleton: names, parents and T-pose of the recording; joints_m (F,J,3) [m]; global_xyzw (F,J,4): relative to the
@@ -65,7 +65,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Poses at their own times, in order: times_ns (N,), the rest as in Motion."""
+    """Poses at their own times, in order: times_ns (N,), the rest as in SampledMotion."""
 
     times_ns: Ints
     joints_m: Floats
@@ -73,7 +73,7 @@ class Samples:
     confidence: Floats
 
 
-def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> Motion:
+def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMotion:
     """The motion at a constant rate from the first sample on: places linearly, rotations on the shortest arc.
 
     There is one sample at least. Raises InputError where there would be too many frames.
@@ -102,7 +102,7 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> Motion:
     )
     confidence = mixed(samples.confidence)
     confidence[is_apart] = 0.0
-    return Motion(
+    return SampledMotion(
         rate_hz,
         skeleton,
         mixed(samples.joints_m),
