@@ -139,7 +139,7 @@ class Client:
         """Connect. Raises UnavailableError when no mocapd is found in time."""
         link = link or Link()
         self._opened = ExitStack()
-        self._session = self._opened.enter_context(_connect(link))
+        self._session = self._opened.enter_context(connect(link))
         with zenoh_call():
             self._subscriber = self._opened.enter_context(
                 self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
@@ -243,8 +243,11 @@ def _body(sample: zenoh.Sample) -> Body:
     return Body(wire.decode(sample.payload.to_bytes(), str(sample.encoding)))
 
 
-def _connect(link: Link) -> zenoh.Session:
-    """A session on which a mocapd is alive, tried until the link's time is over."""
+def connect(link: Link) -> zenoh.Session:
+    """A session on which a mocapd is alive, tried until the link's time is over, for who listens by itself.
+
+    Raises UnavailableError.
+    """
     started_s = time.monotonic()
     while True:
         try:
@@ -257,7 +260,7 @@ def _connect(link: Link) -> zenoh.Session:
 
 
 async def _aconnect(link: Link) -> zenoh.Session:
-    """As `_connect`; between two attempts it can be cancelled."""
+    """As `connect`; between two attempts it can be cancelled."""
     started_s = time.monotonic()
     while True:
         try:

@@ -3,6 +3,7 @@
 import math
 import sys
 import time
+from collections.abc import Callable
 from types import TracebackType
 
 from rich.console import Console
@@ -69,11 +70,15 @@ class StatusLine:
 
     def show(self, snapshot: Snapshot) -> None:
         """Call it as often as the line shall change."""
+        self.say(lambda: status_text(snapshot))
+
+    def say(self, text: Callable[[], str]) -> None:
+        """Any other line, which is asked for when it is shown."""
         if self._live is not None:
-            line = Text(status_text(snapshot), no_wrap=True, overflow="ellipsis")
+            line = Text(text(), no_wrap=True, overflow="ellipsis")
             self._live.update(line, refresh=True)
         elif time.monotonic() - self._printed_s >= PLAIN_EVERY_S:
             self._printed_s = time.monotonic()
             # in the journal it is of the lowest priority, <7>
             prefix = "<7>" if stderr_is_journal() else ""
-            print(prefix + status_text(snapshot), file=sys.stderr, flush=True)
+            print(prefix + text(), file=sys.stderr, flush=True)

@@ -19,7 +19,7 @@ from mocapd.types import Frame, FrameSet, Rig
 
 _LOG = logging.getLogger(__name__)
 _MOST_OFFSET_S = 86_400.0  # of a camera's clock from the others'
-_STATURES_M = (0.5, 2.6)
+STATURES_M = (0.5, 2.6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ def _stature_m(path: Path) -> float | None:
     if not isinstance(subject, dict) or "stature_m" not in subject:
         raise ConfigError("the field 'stature_m' is missing", str(path), fix)
     try:
-        return finite_number(subject["stature_m"], *_STATURES_M)
+        return finite_number(subject["stature_m"], *STATURES_M)
     except MalformedError as error:
         raise ConfigError(f"'stature_m': {error.what}", str(path), fix) from None
 

@@ -47,10 +47,17 @@ def bench_command(
         float | None,
         typer.Option(help="Run round and round for so long, as fast as it goes.", metavar="MIN"),
     ] = None,
+    recording: Annotated[
+        Path | None,
+        typer.Option(
+            help="What an hour of the motion in this recording takes, and what a kill costs.",
+            metavar="FILE",
+        ),
+    ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Time trackers on decoded frames, stage by stage; or the whole daemon.
+    """Time trackers on decoded frames, stage by stage; or the whole daemon; or recording.
 
     Example: mocapd bench --tracker colour --json
     """
@@ -59,6 +66,9 @@ def bench_command(
     from mocapd.outputs.registry import zenoh_section
 
     refuse_variant(variant)
+    if recording is not None:
+        _recording(recording)
+        return
     effective = effective_config(config, settings, tracker__name=tracker).config
     if live and not is_simulated(capture):
         raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
@@ -75,8 +85,8 @@ def bench_command(
 
     own = effective.tracker
     with ProgressBars() as progress:
-        recording = open_input(capture, effective.cache_dir, own.stature_m, progress)
-        bench = Bench(recording, tracker, effective.cache_dir, own, own.sections, progress)
+        played = open_input(capture, effective.cache_dir, own.stature_m, progress)
+        bench = Bench(played, tracker, effective.cache_dir, own, own.sections, progress)
         if live:
             command = _daemon_command(capture, config, settings)
             found = bench.live(command, seconds, _watching() if watched else None)
@@ -87,6 +97,13 @@ def bench_command(
     for name, why in found.skipped.items():
         typer.echo(f"mocapd: {name} is left out: {why}", err=True)
     print(json.dumps(bench_report.as_json(found)) if as_json else bench_report.as_text(found))
+
+
+def _recording(file: Path) -> None:
+    from mocapd.evaluate.bench.bench_recording import as_lines, recording_cost
+
+    for line in as_lines(recording_cost(file, hours=1.0)):
+        print(line)
 
 
 def _watching() -> "Watching":

@@ -20,7 +20,13 @@ def add_to(app: typer.Typer) -> None:
 
 
 def track(
-    capture: Annotated[Path, typer.Argument(help="A folder in the capture format.")],
+    capture: Annotated[
+        Path,
+        typer.Argument(
+            help="A folder in the capture format, or a recording with pictures (FILE.mcap).",
+            metavar="CAPTURE",
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", help="The track to write (.npz).")],
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: that of the config]")
@@ -52,21 +58,20 @@ def track(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.progress import ProgressBars
-    from mocapd.calibration.from_origin import from_capture
-    from mocapd.capture.capture_folder import frame_sets, load_folder
+    from mocapd.calibration.from_origin import from_origin
+    from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.session.offline import check_writable, track_all, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
 
     check_writable(out)
-    folder = load_folder(capture)
-    frames = max(camera.frames for camera in folder.cameras)
     own = effective.tracker
-    if calibration is None:
-        known = from_capture(folder)
-    else:
-        known = known_of_recording(load_saved(calibration), folder)
     with ProgressBars() as progress:
+        origin = open_origin(str(capture), effective.cache_dir, progress)
+        if calibration is None:
+            known = from_origin(origin)
+        else:
+            known = known_of_recording(load_saved(calibration), origin)
         ready = ready_tracker(
             own.name,
             known.assuming(own.stature_m),
@@ -76,8 +81,8 @@ def track(
         result = track_all(
             ready.tracker,
             ready.shape,
-            frame_sets(folder),
-            lambda done: progress(f"tracking {capture.name}", done, frames),
+            origin.frame_sets(),
+            lambda done: progress(f"tracking {capture.name}", done, origin.count),
         )
     write_track(out, result)
-    typer.echo(f"{out}: {len(result.times_s)} of {frames} frames with a person", err=True)
+    typer.echo(f"{out}: {len(result.times_s)} of {origin.count} frames with a person", err=True)

@@ -46,7 +46,7 @@ def watch(
 
     zenoh = zenoh_section(effective_config(config, settings).config.outputs)
     bodies = client.stream(
-        endpoint or _endpoint(zenoh), instance=instance, connect_timeout_s=timeout_s
+        endpoint or endpoint_of(zenoh), instance=instance, connect_timeout_s=timeout_s
     )
     for number, body in enumerate(bodies, start=1):
         print(_as_json(body) if as_json else _as_text(body), flush=True)
@@ -54,7 +54,7 @@ def watch(
             return
 
 
-def _endpoint(zenoh: "ZenohSection") -> str:
+def endpoint_of(zenoh: "ZenohSection") -> str:
     """Where a daemon of this configuration can be reached from this machine."""
     from mocapd.outputs.zenoh.zenoh_config import listen_endpoints
 

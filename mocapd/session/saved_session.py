@@ -12,9 +12,9 @@ from mocapd.calibration.from_saved import from_saved
 from mocapd.calibration.record import Calibration, Wearer
 from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
-from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.file import size_error
 from mocapd.capture.kinds.source_kinds import identity_of, origin_of
+from mocapd.capture.origin import Origin
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 
@@ -95,11 +95,11 @@ def cameras_of_calibration(saved: LoadedCalibration) -> tuple[CameraSection, ...
     )
 
 
-def known_of_recording(saved: LoadedCalibration, folder: CaptureFolder) -> Calibration:
+def known_of_recording(saved: LoadedCalibration, origin: Origin) -> Calibration:
     """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
     where it does not. Raises ConfigError when they did not."""
     sizes = {camera.id: camera.size_px for camera in saved.tables.camera}
-    for camera in folder.cameras:
+    for camera in origin.rig.cameras:
         if camera.name not in sizes:
             raise ConfigError(
                 f"the calibration has no camera {camera.name!r}",
@@ -107,5 +107,5 @@ def known_of_recording(saved: LoadedCalibration, folder: CaptureFolder) -> Calib
                 f"it has {', '.join(sizes)}: name the capture's cameras so, or calibrate them",
             )
         if sizes[camera.name] != camera.size_px:
-            raise size_error(str(camera.video), camera.name, camera.size_px, sizes[camera.name])
-    return Calibration(wearer=Wearer(folder.stature_m)).overlaid(saved.known)
+            raise size_error(origin.rig_source, camera.name, camera.size_px, sizes[camera.name])
+    return Calibration(wearer=Wearer(origin.stature_m)).overlaid(saved.known)

@@ -5,7 +5,7 @@ folder, or all of one simulated scenario. What the configuration gives itself wi
 """
 
 import logging
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from mocapd.body.shape import BodyShape
@@ -40,13 +40,14 @@ _log = logging.getLogger(__name__)
 @dataclass(frozen=True, slots=True, eq=False)
 class Session:
     """rig_source: the file or scenario that the rig is from, for people; shape: the wearer's, for the tracker's
-    first step."""
+    first step; known: what the tracker was built with."""
 
     cameras: tuple[CameraInput, ...]
     rig: Rig | None
     rig_source: str
     tracker: Tracker
     shape: BodyShape
+    known: Calibration = field(default_factory=Calibration)
 
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
@@ -80,7 +81,7 @@ def open_session(config: Config, progress: Progress) -> Session:
         rig, rig_source = (rig, rig_source) if rig else (opened.rig, opened.rig_source)
     inputs = camera_inputs(cameras, rig, opened)
     ready = _ready_tracker(config, known, progress)
-    return Session(inputs, rig, rig_source, ready.tracker, ready.shape)
+    return Session(inputs, rig, rig_source, ready.tracker, ready.shape, known)
 
 
 def _given_rig(config: Config, saved: LoadedCalibration | None) -> tuple[Rig | None, str]:

@@ -18,6 +18,7 @@ from mocapd.web.encoder import PictureEncoder
 from mocapd.web.host import Host
 from mocapd.web.live_link import LiveLink
 from mocapd.web.picture_link import picture_link
+from mocapd.web.recording_link import RecordingLink
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
 from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
@@ -65,6 +66,7 @@ class _Routes:
             WebSocketRoute("/ws", self._wizard_link),
             WebSocketRoute("/pictures", self._pictures),
             WebSocketRoute("/live", self._live),
+            WebSocketRoute("/recording", self._recording),
         ]
 
     async def _index(self, _request: Request) -> Response:
@@ -136,6 +138,9 @@ class _Routes:
 
     async def _live(self, socket: WebSocket) -> None:
         await self._if_room(socket, LiveLink(socket, self._host).run)
+
+    async def _recording(self, socket: WebSocket) -> None:
+        await self._if_room(socket, RecordingLink(socket, self._host, self._encoder.executor).run)
 
     async def _if_room(self, socket: WebSocket, run: Callable[[], Awaitable[None]]) -> None:
         if self._sockets >= MOST_SOCKETS:

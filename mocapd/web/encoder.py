@@ -46,7 +46,7 @@ class PictureEncoder:
 
     def __init__(self, hub: Callable[[], FrameHub | None], executor: Executor) -> None:
         self.encoded = 0
-        self._hub, self._executor = hub, executor
+        self._hub, self.executor = hub, executor
         self._newest: dict[tuple[str, int], _Newest] = {}
 
     async def picture(self, camera: str, width_px: int, after_seq: int | None) -> Picture | None:
@@ -70,7 +70,7 @@ class PictureEncoder:
                 newest.made_s = loop.time()
                 before = delivered(frame, width_px)
                 if before is None:
-                    before = await loop.run_in_executor(self._executor, encode, frame, width_px)
+                    before = await loop.run_in_executor(self.executor, encode, frame, width_px)
                     self.encoded += 1
                 newest.picture = before
             return before
@@ -110,13 +110,13 @@ def delivered(frame: Frame, width_px: int) -> Picture | None:
     return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), frame.encoded)
 
 
-def encode(frame: Frame, width_px: int) -> Picture:
+def encode(frame: Frame, width_px: int, quality: int = JPEG_QUALITY) -> Picture:
     """A frame as JPEG, at most so wide."""
     height, width = frame.pixels.shape[:2]
     pixels = frame.pixels
     if width_px < width:
         pixels = _scaled(pixels, width_px, max(1, round(height * width_px / width)))
-    _, jpeg = cv2.imencode(".jpg", pixels, (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY))
+    _, jpeg = cv2.imencode(".jpg", pixels, (cv2.IMWRITE_JPEG_QUALITY, quality))
     return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), jpeg.tobytes())
 
 

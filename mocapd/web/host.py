@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
@@ -21,6 +22,10 @@ class Host(Protocol):
     @property
     def rig(self) -> Rig | None:
         """The calibration that is tracked with; None without one."""
+        ...
+
+    def known(self) -> RecordedKnown:
+        """What is known of cameras and wearer, for a recording."""
         ...
 
     @property

@@ -52,8 +52,8 @@ def watching(runtime_dir: Path) -> Iterator[Watcher]:
     page = _page(runtime_dir / "mocapd")
     watcher = Watcher()
     with ExitStack() as opened:
-        live = opened.enter_context(connect(_address(page.url, "/live"), proxy=None))
-        pictures = opened.enter_context(connect(_address(page.url, "/pictures"), proxy=None))
+        live = opened.enter_context(connect(socket_address(page.url, "/live"), proxy=None))
+        pictures = opened.enter_context(connect(socket_address(page.url, "/pictures"), proxy=None))
         threads = (
             threading.Thread(target=watcher.take_messages, args=(live,)),
             threading.Thread(target=watcher.pull_pictures, args=(pictures, page.status.cameras)),
@@ -77,7 +77,8 @@ def _page(folder: Path) -> Running:
     raise UnavailableError("the daemon serves no page", str(folder), "set web.enabled = true")
 
 
-def _address(url: str, path: str) -> str:
+def socket_address(url: str, path: str) -> str:
+    """Of a WebSocket of the page at this URL, with its token."""
     return urlsplit(url)._replace(scheme="ws", path=path).geturl()
 
 

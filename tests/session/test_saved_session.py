@@ -10,6 +10,7 @@ import pytest
 from mocapd.calibration.calibration_file import read_calibration, write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
+from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError
 from mocapd.session.saved_session import (
@@ -138,7 +139,7 @@ def test_without_anything_the_setup_is_named(tmp_path: Path) -> None:
 def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
     config: Config, tmp_path: Path
 ) -> None:
-    folder = load_folder(write_capture(tmp_path / "capture"))
+    folder = FolderOrigin(load_folder(write_capture(tmp_path / "capture")))
     saved = load_saved(config.state_dir)
     known = known_of_recording(saved, folder)
     assert known.wearer.stature_m == 1.72

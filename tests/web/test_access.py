@@ -13,7 +13,7 @@ from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, connect, get, origin_of, token_of
 from tests.web.tiny_host import TinyHost
 
-SOCKETS = ("/ws", "/pictures", "/live")
+SOCKETS = ("/ws", "/pictures", "/live", "/recording")
 
 
 def cookie_of(answer: httpx.Response) -> str:

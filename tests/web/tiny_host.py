@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import joint_positions, standard_skeleton
+from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, UnavailableError
@@ -104,6 +105,9 @@ class TinyHost:
         assert self.hub is not None
         self.hub.put(frame)
         return frame
+
+    def known(self) -> RecordedKnown:
+        return RecordedKnown(self.rig, 1.75)
 
     def setup(self) -> Wizard:
         if self.why_not:

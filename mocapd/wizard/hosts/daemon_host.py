@@ -7,7 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.calibration.record import ShirtColours
 from mocapd.capture.kinds.source_kinds import is_simulated
+from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
@@ -83,6 +85,12 @@ class DaemonHost:
         if wizard is not None and self._checked.loop is not None:
             return wizard.draft.rig
         return self._service.session.rig
+
+    def known(self) -> RecordedKnown:
+        """See Host."""
+        session = self._service.session
+        shirt = session.known.shirt or ShirtColours()
+        return RecordedKnown(session.rig, session.shape.stature_m, shirt.model, shirt.white_balance)
 
     @property
     def wizard(self) -> Wizard | None:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from mocapd.capture.base import Source
+from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import MocapdError, UnavailableError
 from mocapd.outputs.messages import Facing
@@ -112,6 +113,10 @@ class OwnHost:
     def rig(self) -> Rig | None:
         """See Host."""
         return self.wizard.draft.rig
+
+    def known(self) -> RecordedKnown:
+        """See web.host.Host: nothing is saved yet."""
+        return RecordedKnown()
 
     def setup(self) -> Wizard:
         """See Host."""

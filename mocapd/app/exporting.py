@@ -1,0 +1,68 @@
+"""From a recording to motion at a constant rate, for `mocapd export`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.errors import InputError
+from mocapd.exports.sampled_motion import SampledMotion, Samples, resampled, usual_rate_hz
+from mocapd.outputs.mcap.recording_reader import RecordingReader
+from mocapd.outputs.messages import RestSkeleton
+from mocapd.outputs.wire import SkeletonFrame
+from mocapd.types import Skeleton
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Exported:
+    """tracked, lost: frames of the recording with this person's pose, and without."""
+
+    motion: SampledMotion
+    tracked: int
+    lost: int
+
+
+def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Exported:
+    """One person's motion; `rate_hz` None takes that of the recording. Raises InputError."""
+    rest: RestSkeleton | None = None
+    frames: list[SkeletonFrame] = []
+    lost = 0
+    for item in reader.everything():
+        if isinstance(item, RestSkeleton) and item.person == person:
+            rest = item  # the last one knows the body best
+        elif isinstance(item, SkeletonFrame) and item.person == person:
+            if not item.joints:
+                lost += 1
+            elif not frames or item.capture_unix_ns > frames[-1].capture_unix_ns:
+                frames.append(item)
+    place = str(reader.path)
+    if rest is None:
+        raise InputError(f"knows no rest skeleton of person {person}", place, "record it again")
+    frames = [one for one in frames if tuple(one.joints) == rest.names]
+    if not frames:
+        raise InputError(f"person {person} is tracked nowhere in it", place, "record it again")
+    samples = _samples(frames)
+    try:
+        rate_hz = rate_hz if rate_hz is not None else usual_rate_hz(samples.times_ns)
+        motion = resampled(samples, _skeleton(rest), rate_hz)
+    except InputError as error:
+        raise InputError(error.what, place, error.fix) from None
+    return Exported(motion, len(samples.times_ns), lost)
+
+
+def _samples(frames: list[SkeletonFrame]) -> Samples:
+    shape = len(frames), -1
+    joints = [list(frame.joints.values()) for frame in frames]
+    return Samples(
+        np.array([frame.capture_unix_ns for frame in frames], dtype=np.int64),
+        np.array([[one.p for one in each] for each in joints]).reshape(*shape, 3),
+        np.array([[one.r for one in each] for each in joints]).reshape(*shape, 4),
+        np.array([[one.c for one in each] for each in joints]).reshape(shape),
+    )
+
+
+def _skeleton(rest: RestSkeleton) -> Skeleton:
+    rest_m = np.array(rest.offsets_m)
+    for joint, parent in enumerate(rest.parents):
+        if parent >= 0:
+            rest_m[joint] += rest_m[parent]
+    return Skeleton(rest.names, np.array(rest.parents, dtype=np.int64), rest_m)

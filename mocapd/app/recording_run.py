@@ -1,0 +1,130 @@
+"""What `mocapd record` runs: from the daemon's stream into a file, until told to end."""
+
+import threading
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from mocapd.app.daemon_pictures import DaemonPictures
+from mocapd.app.published import Published, PublishedStream
+from mocapd.app.status_line import StatusLine
+from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.clock import monotonic_ns
+from mocapd.outputs.mcap.recording_writer import RecordingWriter
+from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
+from mocapd.types import Camera, Rig
+
+_LOOK_S = 0.1  # how often the end and the file's beat are looked after without frames [s]
+_SILENT_S = 2.0  # without frames, before the line says so [s]
+
+
+class Recorder:
+    """One recording; `end` from any thread or a signal handler."""
+
+    def __init__(
+        self,
+        stream: PublishedStream,
+        writer: RecordingWriter,
+        pictures: DaemonPictures | None,
+        seconds: float | None,
+    ) -> None:
+        """pictures: None for frames alone; seconds: how long, None: until `end`."""
+        self._stream, self._writer, self._pictures = stream, writer, pictures
+        self._seconds = seconds
+        self._ended = threading.Event()
+        self._calibration: CalibrationInfo | None = None
+        self._rest: RestSkeleton | None = None
+        self._attached = False
+        self._unix_ns = 0  # of the newest frame
+        self._seqs: dict[int, int] = {}
+        self.missed = 0  # frames that the bus did not bring
+
+    def end(self) -> None:
+        """Make `run` return."""
+        self._ended.set()
+
+    def run(self, line: StatusLine) -> None:
+        """Until it ends. Raises CannotCreateError when the file cannot be written any further."""
+        began_s = heard_s = time.monotonic()
+        while not self._ended.is_set():
+            now_s = time.monotonic()
+            if self._seconds is not None and now_s - began_s >= self._seconds:
+                return
+            found = self._stream.next(_LOOK_S)
+            if found is not None:
+                heard_s = now_s
+                self._write(found)
+            if self._pictures is not None:
+                self._pictures.drain(self._writer, time.time_ns())
+            self._writer.beat(monotonic_ns())
+            line.say(partial(self._text, now_s - began_s, now_s - heard_s))
+
+    def _write(self, found: Published) -> None:
+        message = found.message
+        if isinstance(message, RestSkeleton | CalibrationInfo):
+            if isinstance(message, RestSkeleton):
+                self._rest = message
+            else:
+                self._calibration = message
+            self._writer.tell(message, self._unix_ns or time.time_ns())
+            return
+        self._unix_ns = message.capture_unix_ns
+        if not self._attached:
+            self._attached = True
+            if self._pictures is None:  # else the daemon says more, and by itself
+                self._writer.attach(self._known(), message.capture_unix_ns)
+        self._writer.frame(message, found.payload, found.mime)
+        before = self._seqs.get(message.person, message.seq - 1)
+        self.missed += max(0, message.seq - before - 1)  # a daemon that starts anew counts from 0
+        self._seqs[message.person] = message.seq
+
+    def _known(self) -> RecordedKnown:
+        cameras = self._calibration.cameras if self._calibration is not None else ()
+        rig = Rig(
+            tuple(
+                Camera(
+                    one.name,
+                    one.size_px,
+                    np.array(one.K).reshape(3, 3),
+                    np.array(one.dist),
+                    np.array(one.R).reshape(3, 3),
+                    np.array(one.t_m),
+                )
+                for one in cameras
+            )
+        )
+        return RecordedKnown(
+            rig if cameras else None, self._rest.stature_m if self._rest is not None else None
+        )
+
+    def _text(self, took_s: float, silent_s: float) -> str:
+        """The line for people."""
+        writer, stream = self._writer, self._stream
+        parts = [f"recording {writer.path}", duration(took_s), f"{writer.frames} frames"]
+        if self._pictures is not None:
+            lost = f" ({self._pictures.dropped} lost)" if self._pictures.dropped else ""
+            parts.append(f"{writer.pictures} pictures{lost}")
+            parts += [f"no more pictures: {self._pictures.over}"] if self._pictures.over else []
+        parts.append(f"{writer.bytes / 1e6:.1f} MB")
+        if self.missed:
+            parts.append(f"{self.missed} missed")
+        if stream.dropped:
+            parts.append(f"{stream.dropped} lost: the disk is too slow")
+        if stream.refused:
+            parts.append(f"{stream.refused} not understood")
+        if silent_s > _SILENT_S:
+            parts.append(f"no frames for {silent_s:.0f} s")
+        return " | ".join(parts)
+
+
+def duration(seconds: float) -> str:
+    """As 0:12:34."""
+    whole = int(seconds)
+    return f"{whole // 3600}:{whole // 60 % 60:02}:{whole % 60:02}"
+
+
+def default_path() -> Path:
+    """By the time of day, here."""
+    return Path(time.strftime("mocapd-%Y%m%d-%H%M%S.mcap"))

@@ -1,0 +1,154 @@
+"""What `mocapd replay` runs: a recording through the outputs, in real time, as if it were now.
+
+Each frame is sent as long after the first as it was published after it, and says that it was captured just as
+long before as it was then: what a game does with capture times, to predict or to show its latency, works. Frames
+are numbered on from loop to loop, the names of the daemon and its keys are this daemon's.
+"""
+
+import itertools
+import logging
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from mocapd.clock import NS_PER_S, monotonic_ns, unix_from_monotonic_ns
+from mocapd.errors import InputError, MocapdError
+from mocapd.outputs.base import Sink
+from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
+from mocapd.outputs.wire import SkeletonFrame
+
+_log = logging.getLogger(__name__)
+LONGEST_PAUSE_NS = 60 * NS_PER_S  # between two frames; a longer one is left out, as is a step back
+_STOP_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayParams:
+    """speed: 1 is as it was; loop: over and over; from_s: into the recording [s]."""
+
+    speed: float = 1.0
+    loop: bool = False
+    from_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayPlace:
+    """Where a replay is: since the start of the recording [s], rounds done, frames sent."""
+
+    at_s: float = 0.0
+    rounds: int = 0
+    frames: int = 0
+
+
+class Replay:
+    """Runs in a thread of its own from `start` until the recording is over or `end`; `place` from any thread."""
+
+    def __init__(
+        self,
+        reader: RecordingReader,
+        sinks: Sequence[Sink],
+        instance: str,
+        params: ReplayParams,
+        clock: Callable[[], int] = monotonic_ns,
+    ) -> None:
+        self._reader, self._sinks, self._instance = reader, tuple(sinks), instance
+        self._params, self._clock = params, clock
+        self._ended = threading.Event()
+        self._error: MocapdError | None = None
+        self._over = False
+        self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
+        self._seqs: dict[int, Iterator[int]] = {}
+        self.place = ReplayPlace()
+
+    def start(self) -> None:
+        """Begin; returns at once."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Make it end; from any thread or a signal handler."""
+        self._ended.set()
+
+    def wait(self, timeout_s: float) -> bool:
+        """Whether it is over. Raises what ended it: InputError for a file that cannot be played."""
+        self._thread.join(_STOP_S if self._ended.is_set() else timeout_s)
+        if self._error is not None:
+            raise self._error
+        if not (self._thread.is_alive() or self._over):
+            raise RuntimeError("the thread of the replay died, see above")
+        return self._ended.is_set() or self._over
+
+    def _run(self) -> None:
+        try:
+            for rounds in itertools.count():
+                self._play(rounds)
+                if self._ended.is_set() or not self._params.loop:
+                    break
+            self._over = True
+        except MocapdError as error:  # raised again by `wait`, in the thread that watches
+            self._error = error
+
+    def _play(self, rounds: int) -> None:
+        """The recording once. Raises InputError."""
+        params, played = self._params, False
+        due_ns = self._clock()
+        at_ns = 0
+        before: SkeletonFrame | None = None
+        for item in self._reader.everything():
+            if self._ended.is_set():
+                return
+            if not isinstance(item, SkeletonFrame):
+                self._tell(item)
+                continue
+            step_ns = _step_ns(before, item)
+            before = item
+            at_ns += step_ns
+            if at_ns < params.from_s * NS_PER_S:
+                continue
+            if played:
+                due_ns += round(step_ns / params.speed)
+            played = True
+            if self._ended.wait(max(0, due_ns - self._clock()) / NS_PER_S):
+                return
+            self._send(item)
+            self.place = ReplayPlace(at_ns / NS_PER_S, rounds, self.place.frames + 1)
+        if not played:
+            raise InputError(
+                f"ends after {at_ns / NS_PER_S:.1f} s",
+                str(self._reader.path),
+                "begin earlier with --from",
+            )
+
+    def _send(self, frame: SkeletonFrame) -> None:
+        """As if it were made now."""
+        now_ns = self._clock()
+        capture_ns = now_ns - (frame.publish_monotonic_ns - frame.capture_monotonic_ns)
+        seq = self._seqs.setdefault(frame.person, itertools.count())
+        sent = msgspec.structs.replace(
+            frame,
+            instance=self._instance,
+            seq=next(seq),
+            capture_monotonic_ns=capture_ns,
+            capture_unix_ns=capture_ns + unix_from_monotonic_ns(),
+            publish_monotonic_ns=now_ns,
+        )
+        for sink in self._sinks:
+            sink.send(sent)
+
+    def _tell(self, state: Recorded) -> None:
+        assert not isinstance(state, SkeletonFrame)
+        told = msgspec.structs.replace(state, instance=self._instance)
+        for sink in self._sinks:
+            sink.tell(told)
+
+
+def _step_ns(before: SkeletonFrame | None, frame: SkeletonFrame) -> int:
+    """From one frame's publication to the next one's."""
+    if before is None:
+        return 0
+    step_ns = frame.publish_monotonic_ns - before.publish_monotonic_ns
+    if 0 <= step_ns <= LONGEST_PAUSE_NS:
+        return step_ns
+    _log.warning("a pause of %.0f s in the recording is left out", step_ns / NS_PER_S)
+    return 0

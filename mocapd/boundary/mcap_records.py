@@ -1,0 +1,215 @@
+"""MCAP files from outside: whole, cut short by a killed writer, or damaged; read from the front.
+
+The reader of the `mcap` library wants the index at the file's end, and takes what a length says for granted: a
+file of 60 bytes may ask it for 4 GB. Here every length is compared with the file first, and what a chunk says
+it holds with a limit, before anything is unpacked. Records: https://mcap.dev/spec
+"""
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import BinaryIO, TypeVar
+
+import lz4.frame
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, Message, Schema
+from mcap.writer import MCAP0_MAGIC
+
+from mocapd.boundary.files import is_file
+from mocapd.errors import InputError, MalformedError
+
+MOST_RECORD_BYTES = 256 << 20  # ours are some MB at most
+MOST_CHANNELS = 4096
+
+_HEAD = struct.Struct("<BQ")  # opcode, length of what follows
+_LATEST_NS = 2**63 - 1
+# What the library's parsers of single records raise, which trust their bytes.
+_BAD_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError, MemoryError)
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class McapMessage:
+    """One message: its channel's topic and encoding, its schema's name, its time [ns, Unix time in files of ours]."""
+
+    topic: str
+    schema: str
+    encoding: str
+    log_ns: int
+    sequence: int
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class McapAttachment:
+    """A file inside of the file."""
+
+    name: str
+    media_type: str
+    data: bytes
+
+
+Item = McapMessage | McapAttachment
+Wanted = Callable[[str, str], bool]  # topic and schema of a channel
+
+
+class McapFile:
+    """Reads one file once, from the front. `ending` and `damaged` are known when `items` has come to its end.
+
+    ending: empty for a file that was closed in order, else why reading ended earlier; damaged: chunks that were
+    left out because they do not hold what they say.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.ending = ""
+        self.damaged = 0
+        self._schemas: dict[int, str] = {}
+        self._channels: dict[int, Channel] = {}
+
+    def items(self, wanted: Wanted) -> Iterator[Item]:
+        """Attachments, and messages of the channels that are `wanted`, in the order of the file.
+
+        Raises InputError for what is no MCAP file at all.
+        """
+        self.ending, self.damaged = "", 0
+        with _opened(self.path) as file:
+            size = self.path.stat().st_size
+            if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+                raise InputError(
+                    "is no MCAP file", str(self.path), "give a file of `mocapd record`"
+                )
+            for opcode, body in self._records(file, size):
+                try:
+                    yield from self._read(opcode, body, wanted)
+                except MalformedError:
+                    self.damaged += 1
+
+    def _records(self, file: BinaryIO, size: int) -> Iterator[tuple[int, bytes]]:
+        """Opcode and content of each record of the data section; says in `ending` why there are no more."""
+        while True:
+            head = file.read(_HEAD.size)
+            if len(head) < _HEAD.size:
+                self.ending = "it was not closed: what was written last is missing"
+                return
+            opcode, length = _HEAD.unpack(head)
+            if length > size - file.tell():
+                self.ending = "it is cut short within a record, which is left out"
+                return
+            if length > MOST_RECORD_BYTES:
+                self.ending = f"a record of {length / 1e6:.0f} MB is left out, and what follows it"
+                return
+            if opcode in (Opcode.DATA_END, Opcode.FOOTER):
+                return
+            if opcode in _READ:
+                yield opcode, file.read(length)
+            else:
+                file.seek(length, 1)
+
+    def _read(self, opcode: int, body: bytes, wanted: Wanted) -> Iterator[Item]:
+        """Raises MalformedError for a record that does not hold what it says."""
+        if opcode == Opcode.ATTACHMENT:
+            found = _parsed(Attachment.read, body)
+            yield McapAttachment(found.name, found.media_type, found.data)
+        elif opcode == Opcode.CHUNK:
+            for inner, content in _split(_unpacked(_parsed(Chunk.read, body))):
+                yield from self._read_inner(inner, content, wanted)
+        else:
+            yield from self._read_inner(opcode, body, wanted)
+
+    def _read_inner(self, opcode: int, body: bytes, wanted: Wanted) -> Iterator[McapMessage]:
+        if opcode == Opcode.SCHEMA:
+            schema = _parsed(Schema.read, body)
+            _bounded(self._schemas)[schema.id] = schema.name
+        elif opcode == Opcode.CHANNEL:
+            channel = _parsed(Channel.read, body)
+            _bounded(self._channels)[channel.id] = channel
+        elif opcode == Opcode.MESSAGE:
+            message = _parsed(lambda stream: Message.read(stream, len(body)), body)
+            channel = self._channels.get(message.channel_id)
+            if channel is None:
+                raise MalformedError("holds a message of no channel")
+            if message.log_time > _LATEST_NS:
+                raise MalformedError("holds a message of no possible time")
+            name = self._schemas.get(channel.schema_id, "")
+            if wanted(channel.topic, name):
+                yield McapMessage(
+                    channel.topic,
+                    name,
+                    channel.message_encoding,
+                    message.log_time,
+                    message.sequence,
+                    message.data,
+                )
+
+
+_READ = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT})
+
+
+def _opened(path: Path) -> BinaryIO:
+    if not is_file(path):
+        raise InputError("no such recording", str(path), "check the path")
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise InputError(
+            f"cannot be read ({error.strerror})", str(path), "check the path and its rights"
+        ) from None
+
+
+def _parsed(read: Callable[[ReadDataStream], R], body: bytes) -> R:
+    try:
+        return read(ReadDataStream(BytesIO(body)))
+    except _BAD_RECORD as error:
+        raise MalformedError(f"a record is damaged ({type(error).__name__})") from None
+
+
+def _bounded(table: dict[int, R]) -> dict[int, R]:
+    if len(table) >= MOST_CHANNELS:
+        raise MalformedError("has too many channels")
+    return table
+
+
+def _unpacked(chunk: Chunk) -> bytes:
+    """The records of a chunk, at most MOST_RECORD_BYTES, and checked by their sum."""
+    size = chunk.uncompressed_size
+    if size > MOST_RECORD_BYTES:
+        raise MalformedError("a chunk says that it is too large")
+    try:
+        if chunk.compression == "zstd":
+            # the frame's own word counts more to the library than the limit it is given
+            if zstandard.get_frame_parameters(chunk.data).content_size != size:
+                raise MalformedError("a chunk is of another size than it says")
+            data = zstandard.ZstdDecompressor().decompress(chunk.data)
+        elif chunk.compression == "lz4":
+            data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=size)
+        elif not chunk.compression:
+            data = chunk.data
+        else:
+            raise MalformedError(f"a chunk is packed by {chunk.compression[:20]!r}")
+    except (zstandard.ZstdError, RuntimeError, EOFError) as error:
+        raise MalformedError(f"a chunk cannot be unpacked ({error})") from None
+    if len(data) != size or (chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc):
+        raise MalformedError("a chunk is damaged")
+    return bytes(data)
+
+
+def _split(data: bytes) -> Iterator[tuple[int, bytes]]:
+    """Opcode and content of the records in a chunk."""
+    at = 0
+    while at < len(data):
+        if at + _HEAD.size > len(data):
+            raise MalformedError("a chunk ends within a record")
+        opcode, length = _HEAD.unpack_from(data, at)
+        at += _HEAD.size
+        if length > len(data) - at:
+            raise MalformedError("a chunk ends within a record")
+        yield opcode, data[at : at + length]
+        at += length

@@ -1,0 +1,44 @@
+"""One camera of a recording with pictures as a kind of source, and the recording as the origin of its cameras."""
+
+from pathlib import Path
+
+from mocapd.boundary.files import is_file, user_path
+from mocapd.capture.base import Source
+from mocapd.capture.kinds.source_kind import SourceKind
+from mocapd.capture.origin import OriginKind, Progress, split_address
+from mocapd.capture.recording.mcap_origin import McapOrigin, open_recording
+from mocapd.capture.source_request import SourceRequest
+
+_SUFFIX = ".mcap"
+
+
+def _file(address: str) -> Path:
+    """The recording that an address means, whether it names a camera or not."""
+    path = user_path(address)
+    return path if path.suffix == _SUFFIX else Path(split_address(str(path))[0])
+
+
+def _matches(address: str) -> bool:
+    path = _file(address)
+    return path.suffix == _SUFFIX and is_file(path)
+
+
+def _open(address: str, request: SourceRequest) -> Source:
+    return open_recording(_file(address)).source(address, request)
+
+
+def _cameras(origin: str) -> tuple[str, ...]:
+    return tuple(open_recording(_file(origin)).counts)
+
+
+def _open_origin(origin: str, _cache_dir: Path, _progress: Progress) -> McapOrigin:
+    return open_recording(_file(origin))
+
+
+RECORDING = SourceKind(
+    form="FILE.mcap#camN of a recording with pictures",
+    matches=_matches,
+    open=_open,
+    is_path=True,
+    origin=OriginKind(_cameras, _open_origin),
+)

@@ -1,0 +1,117 @@
+"""A recording with pictures as the origin of its cameras: rig, wearer and colours are inside of it."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain, pairwise
+from pathlib import Path
+
+from mocapd.boundary.mcap_records import McapAttachment, McapFile
+from mocapd.capture.base import Source
+from mocapd.capture.capture_folder import as_set
+from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, check_size
+from mocapd.capture.origin import split_address
+from mocapd.capture.recording.mcap_source import McapSource, is_picture, pictures
+from mocapd.capture.recording.recorded_known import RecordedKnown, known_of
+from mocapd.capture.recording.recorded_picture import camera_of
+from mocapd.capture.source_request import SourceRequest
+from mocapd.clock import NS_PER_S
+from mocapd.errors import ConfigError, InputError
+from mocapd.types import Frame, FrameSet, LabelledPicture, Rig
+
+_RECORD = "record with `mocapd record --pictures`, from a daemon whose cameras are calibrated"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class McapOrigin:
+    """See Origin. `start_ns`: the time of the first picture, Unix time; counts: of each camera its pictures."""
+
+    path: Path
+    known: RecordedKnown
+    rig: Rig
+    start_ns: int
+    fps_hz: float
+    counts: Mapping[str, int]
+
+    @property
+    def rig_source(self) -> str:
+        """See Origin."""
+        return str(self.path)
+
+    @property
+    def stature_m(self) -> float | None:
+        """See Origin."""
+        return self.known.stature_m
+
+    @property
+    def count(self) -> int:
+        """See Origin."""
+        return max(self.counts.values())
+
+    def model(self) -> tuple[LabelledPicture, ...]:
+        """See Origin."""
+        return self.known.model
+
+    def white_balance(self) -> Mapping[str, LabelledPicture]:
+        """See Origin."""
+        return self.known.white_balance
+
+    def frame_sets(self) -> Iterator[FrameSet]:
+        """See Origin. A set ends before a picture of a camera that it has, or half a frame after its first."""
+        order = {camera.name: camera for camera in self.rig.cameras}
+        longest_ns = round(0.5 * NS_PER_S / self.fps_hz)
+        held: dict[str, Frame] = {}
+        for frame in pictures(self.path, self.rig, self.start_ns):
+            first_ns = min((one.t_ns for one in held.values()), default=frame.t_ns)
+            if held and (frame.camera in held or frame.t_ns - first_ns > longest_ns):
+                yield as_set({name: held[name] for name in order if name in held})
+                held = {}
+            held[frame.camera] = frame
+        if held:
+            yield as_set({name: held[name] for name in order if name in held})
+
+    def source(self, address: str, request: SourceRequest) -> Source:
+        """See Origin. The only camera is meant when an address names none."""
+        camera = split_address(address)[1]
+        cameras = {one.name: one for one in self.rig.cameras if one.name in self.counts}
+        if not camera and len(cameras) == 1:
+            camera = next(iter(cameras))
+        if camera not in cameras:
+            raise ConfigError(
+                f"there is no camera {camera!r}" if camera else "several cameras are in it",
+                str(self.path),
+                f"say which: {self.path}#NAME with one of {', '.join(cameras)}",
+            )
+        name = request.name or camera
+        check_size(str(self.path), name, cameras[camera].size_px, request.size_px)
+        return McapSource(name, self.path, cameras[camera], self.start_ns, request.pace)
+
+
+def open_recording(path: Path) -> McapOrigin:
+    """Read what the file knows, and once through its pictures' times. Raises InputError or ConfigError."""
+    file, place = McapFile(path), str(path)
+    attachments: list[McapAttachment] = []
+    times: dict[str, list[int]] = {}
+    for item in file.items(is_picture):
+        if isinstance(item, McapAttachment):
+            attachments.append(item)
+        else:
+            times.setdefault(camera_of(item.topic), []).append(item.log_ns)
+    known = known_of(attachments, place)
+    if not times:
+        raise InputError("holds no pictures of cameras", place, _RECORD)
+    if known.rig is None:
+        raise InputError("does not know where its cameras stood", place, _RECORD)
+    strangers = set(times) - set(known.rig.names)
+    if strangers:
+        raise InputError(f"its rig has no camera {min(strangers)!r}", place, _RECORD)
+    counts = {name: len(times[name]) for name in known.rig.names if name in times}
+    return McapOrigin(path, known, known.rig, min(chain(*times.values())), _rate_hz(times), counts)
+
+
+def _rate_hz(times: Mapping[str, list[int]]) -> float:
+    """The common rate of the cameras: by the median distance of one's pictures."""
+    longest = max(times.values(), key=lambda one: len(one))  # noqa: PLW0108
+    steps = sorted(after - before for before, after in pairwise(sorted(longest)))
+    if not steps:
+        return 30.0
+    return min(FASTEST_HZ, max(SLOWEST_HZ, NS_PER_S / max(1, steps[len(steps) // 2])))

@@ -1,0 +1,118 @@
+"""What a recording knows of cameras and wearer, as files inside of it: a rig file, the wearer, the shirt's pictures.
+
+`rig.json` and `wearer.json` are as in the capture format, as are the pictures with their strokes beside them:
+`white_balance/<camera>.png` and `model/<n>.png`. No address of a camera is among it, and so no password.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import cv2
+import msgspec
+
+from mocapd.boundary.mcap_records import McapAttachment
+from mocapd.boundary.messages import decode_json
+from mocapd.boundary.numbers import finite_number
+from mocapd.boundary.pictures import decode_picture
+from mocapd.capture.capture_folder import STATURES_M
+from mocapd.errors import ConfigError, InputError, MalformedError
+from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
+from mocapd.types import Bytes, LabelledPicture, Rig
+
+RIG, WEARER = "rig.json", "wearer.json"
+_WHITE, _MODEL = "white_balance/", "model/"
+_STROKES = "_strokes"
+_JSON, _PNG = "application/json", "image/png"
+_COLOURS = 10
+_MOST_PICTURES = 64
+
+
+class _RigFile(msgspec.Struct, frozen=True):
+    cameras: list[dict[str, Any]]
+
+
+class _WearerFile(msgspec.Struct, frozen=True):
+    stature_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecordedKnown:
+    """None and empty: nobody said. model: the shirt in neutral light; white_balance: by camera."""
+
+    rig: Rig | None = None
+    stature_m: float | None = None
+    model: tuple[LabelledPicture, ...] = ()
+    white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
+
+
+def attachments_of(known: RecordedKnown) -> list[McapAttachment]:
+    """The files that say it."""
+    found = []
+    if known.rig is not None:
+        rig = {"cameras": [camera_to_dict(camera) for camera in known.rig.cameras]}
+        found.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
+    if known.stature_m is not None:
+        wearer = msgspec.json.encode(_WearerFile(known.stature_m))
+        found.append(McapAttachment(WEARER, _JSON, wearer))
+    pictures = {f"{_WHITE}{name}": one for name, one in known.white_balance.items()}
+    pictures |= {f"{_MODEL}{number}": one for number, one in enumerate(known.model)}
+    for name, picture in pictures.items():
+        found.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
+        found.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
+    return found
+
+
+def known_of(attachments: Iterable[McapAttachment], where: str) -> RecordedKnown:
+    """Back; of files of one name the last counts, others are left alone. Raises InputError or ConfigError."""
+    files = {one.name: one.data for one in attachments}
+    pictures = {
+        name.removesuffix(".png"): _labelled(data, files, name, where)
+        for name, data in sorted(files.items())[: 2 * _MOST_PICTURES]
+        if name.startswith((_WHITE, _MODEL)) and name.endswith(".png") and _STROKES not in name
+    }
+    return RecordedKnown(
+        _rig(files[RIG], where) if RIG in files else None,
+        _stature_m(files[WEARER], where) if WEARER in files else None,
+        tuple(one for name, one in pictures.items() if name.startswith(_MODEL)),
+        {name.removeprefix(_WHITE): p for name, p in pictures.items() if name.startswith(_WHITE)},
+    )
+
+
+def _rig(data: bytes, where: str) -> Rig:
+    try:
+        entries = decode_json(data, _RigFile).cameras
+    except MalformedError as error:
+        raise _damaged(RIG, error, where) from None
+    rig = Rig(tuple(camera_from_dict(entry, f"{where}, {RIG}") for entry in entries))
+    if not rig.cameras or len(set(rig.names)) != len(rig.names):
+        raise ConfigError("has no cameras, or two of one name", f"{where}, {RIG}", "record again")
+    return rig
+
+
+def _stature_m(data: bytes, where: str) -> float:
+    try:
+        return finite_number(decode_json(data, _WearerFile).stature_m, *STATURES_M)
+    except MalformedError as error:
+        raise _damaged(WEARER, error, where) from None
+
+
+def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) -> LabelledPicture:
+    strokes = f"{name.removesuffix('.png')}{_STROKES}.png"
+    try:
+        pixels = decode_picture(data, cv2.IMREAD_COLOR)
+        size_px = pixels.shape[1], pixels.shape[0]
+        labels = decode_picture(files.get(strokes, b""), cv2.IMREAD_GRAYSCALE, size_px)
+        if labels.max() > _COLOURS:
+            raise MalformedError(f"contains the id {labels.max()}")
+    except MalformedError as error:
+        raise _damaged(name, error, where) from None
+    return LabelledPicture(pixels, labels)
+
+
+def _damaged(name: str, error: MalformedError, where: str) -> InputError:
+    return InputError(f"{name} in it: {error.what}", where, "record again")
+
+
+def _png(pixels: Bytes) -> bytes:
+    return bytes(cv2.imencode(".png", pixels)[1])

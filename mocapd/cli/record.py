@@ -1,0 +1,100 @@
+"""`mocapd record`"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("record")(record)
+
+
+def record(
+    file: Annotated[
+        Path | None,
+        typer.Argument(help="The recording to make [default: mocapd-DATE-TIME.mcap here]"),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(help="How long [s]; else until Ctrl-C.", min=0.1)
+    ] = None,
+    pictures: Annotated[
+        bool,
+        typer.Option(
+            "--pictures", help="The cameras' pictures too, as delivered; `mocapd track` reads it."
+        ),
+    ] = False,
+    exact: Annotated[
+        bool,
+        typer.Option("--exact", help="Frames bit by bit as published: seven times the size."),
+    ] = False,
+    foxglove_hz: Annotated[
+        float, typer.Option(help="How often bones are told to Foxglove [Hz]; 0: never.", min=0.0)
+    ] = 10.0,
+    endpoint: Annotated[
+        str | None,
+        typer.Option(help="Zenoh endpoint of the daemon [default: that of the config]"),
+    ] = None,
+    instance: Annotated[str, typer.Option(help="Name of the daemon; *: the only one.")] = "*",
+    timeout_s: Annotated[
+        float, typer.Option("--timeout", min=0.0, help="How long to look for a daemon [s].")
+    ] = 5.0,
+    config: ConfigOption = None,
+    settings: SetOption = None,
+) -> None:
+    """Record what a running daemon publishes into one MCAP file.
+
+    Frames with rest skeleton and calibration; with --pictures also the cameras' pictures, from the daemon's page,
+    into a file that only you can read. The daemon goes on as it is. What was recorded more than a second
+    before a crash or a kill can be read. Ctrl-C ends it.
+
+    Example: mocapd record training.mcap --seconds 60
+    """
+    from contextlib import ExitStack
+
+    from mocapd.app.daemon_pictures import DaemonPictures
+    from mocapd.app.logs import set_up_logs
+    from mocapd.app.published import PublishedStream
+    from mocapd.app.recording_run import Recorder, default_path, duration
+    from mocapd.app.running import Signals
+    from mocapd.app.status_line import StatusLine
+    from mocapd.cli.watch import endpoint_of
+    from mocapd.client import Link
+    from mocapd.clock import monotonic_ns
+    from mocapd.clock import seconds as in_seconds
+    from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
+    from mocapd.outputs.registry import zenoh_section
+    from mocapd.web.runtime_file import runtime_folder
+
+    effective = effective_config(config, settings).config
+    set_up_logs(effective.log_level)
+    link = Link(
+        endpoint or endpoint_of(zenoh_section(effective.outputs)),
+        instance,
+        connect_timeout_s=timeout_s,
+    )
+    signals = Signals()
+    path = file if file is not None else default_path()
+    params = RecordingParams(exact, foxglove_hz, private=pictures)
+    with ExitStack() as opened:
+        stream = opened.enter_context(PublishedStream(link))
+        page = None
+        if pictures:
+            folder = runtime_folder(effective.state_dir)
+            page = opened.enter_context(DaemonPictures(folder, stream.instance))
+        began_ns = monotonic_ns()
+        writer = opened.enter_context(RecordingWriter(path, params, began_ns))
+        recorder = Recorder(stream, writer, page, seconds)
+        signals.ends(recorder)
+        with StatusLine() as line:
+            recorder.run(line)
+    took_s = in_seconds(monotonic_ns() - began_ns)
+    typer.echo(
+        f"{path}: {duration(took_s)}, {writer.frames} frames ({recorder.missed} missed), "
+        f"{f'{writer.pictures} pictures, ' if pictures else ''}"
+        f"{writer.bytes / 1e6:.1f} MB",
+        err=True,
+    )

@@ -1,0 +1,135 @@
+"""What recording costs: megabytes an hour, time a frame, and what a kill takes along. By `mocapd bench --recording`."""
+
+import itertools
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from mocapd.clock import NS_PER_S, unix_from_monotonic_ns
+from mocapd.errors import InputError
+from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
+from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
+from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
+from mocapd.outputs.wire import SkeletonFrame
+
+HZ = 60.0
+HOUR_S = 3600.0
+KILLED_AFTER_S = (1.9, 2.35, 2.6)  # at different places between two flushes
+_PERIOD_NS = round(NS_PER_S / HZ)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingCost:
+    """mb_an_hour: frames alone, with bones for Foxglove at 10 Hz, and bit by bit as published; frame_ms: median and 99th
+    percentile of one frame, handing chunks to the file included; lost_s: of each kill."""
+
+    mb_an_hour: tuple[float, float, float]
+    frame_ms: tuple[float, float]
+    lost_s: tuple[float, ...]
+
+
+def recording_cost(path: Path, hours: float) -> RecordingCost:
+    """Of the motion in this recording, over and over at HZ. Raises InputError."""
+    items = list(RecordingReader(path).everything())
+    if not any(isinstance(item, SkeletonFrame) and item.joints for item in items):
+        raise InputError("nobody is tracked in it", str(path), "record a person")
+    sizes: list[float] = []
+    usual_ms = [0.0]
+    with tempfile.TemporaryDirectory() as folder:
+        for params in (
+            RecordingParams(foxglove_hz=0.0),
+            RecordingParams(),
+            RecordingParams(exact=True),
+        ):
+            target = Path(folder) / f"{len(sizes)}.mcap"
+            took_ms = _write(target, items, params, round(hours * HOUR_S * HZ))
+            sizes.append(target.stat().st_size / 1e6 / hours)
+            target.unlink()
+            if params == RecordingParams():
+                usual_ms = took_ms
+        lost_s = tuple(_killed(path, Path(folder), after_s) for after_s in KILLED_AFTER_S)
+    median, p99 = np.percentile(usual_ms, [50, 99])
+    return RecordingCost((sizes[0], sizes[1], sizes[2]), (float(median), float(p99)), lost_s)
+
+
+def as_lines(cost: RecordingCost) -> list[str]:
+    """For people."""
+    alone, usual, exact = cost.mb_an_hour
+    return [
+        f"{usual:.1f} MB an hour at {HZ:g} Hz ({alone:.1f} without bones for Foxglove, {exact:.1f} with --exact)",
+        f"{cost.frame_ms[0]:.3f} ms a frame, median (p99 {cost.frame_ms[1]:.3f} ms)",
+        "killed with -9: " + ", ".join(f"{lost_s:.2f} s lost" for lost_s in cost.lost_s),
+    ]
+
+
+def _write(path: Path, items: list[Recorded], params: RecordingParams, count: int) -> list[float]:
+    """So many frames as fast as it goes, as if in their own time; what each took [ms]."""
+    took_ms = []
+    with RecordingWriter(path, params, 0) as writer:
+        for item in itertools.islice(_endless(writer, items), count):
+            began_s = time.perf_counter()
+            writer.frame(item)
+            writer.beat(item.capture_monotonic_ns)
+            took_ms.append(1e3 * (time.perf_counter() - began_s))
+    return took_ms
+
+
+def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[SkeletonFrame]:
+    """Its frames at HZ, over and over; states are told at once."""
+    unix_ns = unix_from_monotonic_ns()
+    for item in items:
+        if isinstance(item, RestSkeleton | CalibrationInfo):
+            writer.tell(item, unix_ns)
+    frames = itertools.cycle(item for item in items if isinstance(item, SkeletonFrame))
+    for number, frame in enumerate(frames):
+        t_ns = number * _PERIOD_NS
+        yield msgspec.structs.replace(
+            frame,
+            seq=number,
+            capture_monotonic_ns=t_ns,
+            capture_unix_ns=t_ns + unix_ns,
+            publish_monotonic_ns=t_ns + frame.publish_monotonic_ns - frame.capture_monotonic_ns,
+        )
+
+
+def _killed(source: Path, folder: Path, after_s: float) -> float:
+    """How much of what a process had written in real time was lost when it was killed [s]."""
+    target = folder / "killed.mcap"
+    with subprocess.Popen(
+        [sys.executable, "-m", __name__, str(source), str(target)],
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        written = process.stdout.readline()  # it has begun
+        time.sleep(after_s)
+        process.kill()
+        written = (process.stdout.read().split() or [written])[-1]
+    read = [one for one in RecordingReader(target).everything() if isinstance(one, SkeletonFrame)]
+    target.unlink()
+    return (int(written) - read[-1].seq) / HZ
+
+
+def write_in_real_time(source: Path, target: Path) -> None:
+    """Until it is killed; the number of each frame goes to stdout once it is handed over."""
+    items = list(RecordingReader(source).everything())
+    with RecordingWriter(target, RecordingParams(), time.monotonic_ns()) as writer:
+        began_ns = time.monotonic_ns()
+        for frame in _endless(writer, items):
+            due_ns = began_ns + frame.capture_monotonic_ns
+            time.sleep(max(0, due_ns - time.monotonic_ns()) / NS_PER_S)
+            writer.frame(frame)
+            sys.stdout.write(f"{frame.seq}\n")
+            sys.stdout.flush()
+            writer.beat(time.monotonic_ns())
+
+
+if __name__ == "__main__":
+    write_in_real_time(Path(sys.argv[1]), Path(sys.argv[2]))

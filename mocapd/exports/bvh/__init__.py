@@ -1,0 +1,1 @@
+"""BVH: Blender, Unity, Unreal, MotionBuilder."""

@@ -1,0 +1,1 @@
+"""CSV: spreadsheets and scripts."""

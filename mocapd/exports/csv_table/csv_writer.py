@@ -1,0 +1,31 @@
+"""Motion as a table: one line a frame, one column a number, in metres and in our own axes.
+
+The columns are a time [s] since the first frame; whether it is a gap, 1 where nobody was tracked; and of each bone,
+after its name and an underscore, PARTS: its joint in the world [m], its rotation relative to the T-pose, its confidence
+0..1. +Y up, a person at rest faces +Z.
+"""
+
+import csv
+import io
+
+import numpy as np
+
+from mocapd.exports.sampled_motion import SampledMotion
+
+PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "confidence")
+
+
+def csv_text(motion: SampledMotion) -> str:
+    """The whole file."""
+    names = motion.skeleton.names
+    numbers = np.concatenate(
+        [motion.joints_m, motion.global_xyzw, motion.confidence[..., None]], axis=2
+    ).reshape(len(motion.joints_m), -1)
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["time_s", "gap", *(f"{name}_{part}" for name in names for part in PARTS)])
+    for time_s, gap, row in zip(
+        motion.times_s.tolist(), motion.gap.tolist(), numbers.tolist(), strict=True
+    ):
+        table.writerow([f"{time_s:.6f}", gap, *(f"{number:.6f}" for number in row)])
+    return text.getvalue()

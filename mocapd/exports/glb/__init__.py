@@ -1,0 +1,1 @@
+"""GLB: Blender, Godot, three.js and whatever reads glTF 2.0."""

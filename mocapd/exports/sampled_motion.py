@@ -1,0 +1,120 @@
+"""A person's motion at a constant rate: what every format writes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.skeleton import local_from_global
+from mocapd.errors import InputError
+from mocapd.geometry import rotations
+from mocapd.types import Bytes, Floats, Ints, Skeleton
+
+NS = 1e-9
+MOST_FRAMES = 10_000_000  # more than a day at 100 Hz
+RATES_HZ = (1.0, 1000.0)
+LONGEST_HELD_S = 0.25  # between two poses, before what lies between is a gap
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SampledMotion:
+    """F frames of J joints in the world of mocapd, rate_hz apart from time 0.
+
+    skeleton: names, parents and T-pose of the recording; joints_m (F,J,3) [m]; global_xyzw (F,J,4): relative to the
+    T-pose; confidence (F,J) 0..1; gap (F,): nobody was tracked: the pose is carried over from before to after.
+    """
+
+    rate_hz: float
+    skeleton: Skeleton
+    joints_m: Floats
+    global_xyzw: Floats
+    confidence: Floats
+    gap: Bytes
+
+    @property
+    def times_s(self) -> Floats:
+        """Of each frame (F,) [s]."""
+        times: Floats = np.arange(len(self.joints_m)) / self.rate_hz
+        return times
+
+    @property
+    def offsets_m(self) -> Floats:
+        """Of each joint from its parent's in the T-pose (J,3) [m]; of the root from the floor below."""
+        parents, rest_m = self.skeleton.parents, self.skeleton.rest_m
+        offsets: Floats = rest_m - np.where(parents[:, None] >= 0, rest_m[parents], 0.0)
+        return offsets
+
+    @property
+    def local_xyzw(self) -> Floats:
+        """Rotations (F,J,4) relative to the parent's."""
+        return np.stack([local_from_global(self.skeleton, one) for one in self.global_xyzw])
+
+    @property
+    def local_positions_m(self) -> Floats:
+        """Of each joint in its parent's turned frame (F,J,3) [m]; of the root in the world.
+
+        Near the rest offsets, but not them: a tracker that learns the body changes its bones meanwhile.
+        """
+        parents = self.skeleton.parents
+        above = np.maximum(parents, 0)
+        apart_m = self.joints_m - self.joints_m[:, above]
+        turned = rotations.rotate(rotations.inverse(self.global_xyzw[:, above]), apart_m)
+        turned[:, parents < 0] = self.joints_m[:, parents < 0]
+        return turned
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Samples:
+    """Poses at their own times, in order: times_ns (N,), the rest as in SampledMotion."""
+
+    times_ns: Ints
+    joints_m: Floats
+    global_xyzw: Floats
+    confidence: Floats
+
+
+def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMotion:
+    """The motion at a constant rate from the first sample on: places linearly, rotations on the shortest arc.
+
+    There is one sample at least. Raises InputError where there would be too many frames.
+    """
+    times_ns = samples.times_ns
+    at_s = (times_ns - times_ns[0]) * NS
+    count = int(np.floor(at_s[-1] * rate_hz + 1e-6)) + 1
+    if count > MOST_FRAMES:
+        raise InputError(f"{count} frames are too many", fix="choose a lower rate by --rate")
+    wanted_s = np.arange(count) / rate_hz
+    after = np.clip(np.searchsorted(at_s, wanted_s, side="left"), 1, max(1, len(at_s) - 1))
+    before = np.minimum(after - 1, len(at_s) - 1)
+    after = np.minimum(after, len(at_s) - 1)
+    between_s = at_s[after] - at_s[before]
+    share = np.clip((wanted_s - at_s[before]) / np.where(between_s > 0, between_s, 1.0), 0.0, 1.0)
+    nearest_s = np.minimum(share, 1.0 - share) * between_s
+    is_apart = (between_s > LONGEST_HELD_S) & (nearest_s > 0.5 / rate_hz)
+
+    def mixed(values: Floats) -> Floats:
+        weights = share.reshape(-1, *[1] * (values.ndim - 1))
+        found: Floats = (1.0 - weights) * values[before] + weights * values[after]
+        return found
+
+    turned = rotations.slerp(
+        samples.global_xyzw[before], samples.global_xyzw[after], share[:, None]
+    )
+    confidence = mixed(samples.confidence)
+    confidence[is_apart] = 0.0
+    return SampledMotion(
+        rate_hz,
+        skeleton,
+        mixed(samples.joints_m),
+        turned,
+        confidence,
+        is_apart.astype(np.uint8),
+    )
+
+
+def usual_rate_hz(times_ns: Ints, rates_hz: Sequence[float] = RATES_HZ) -> float:
+    """The rate of samples by the median of their distances, rounded to a hundredth [Hz]; 30 for too few."""
+    if len(times_ns) < 2:
+        return 30.0
+    step_s = float(np.median(np.diff(times_ns))) * NS
+    return round(min(rates_hz[1], max(rates_hz[0], 1.0 / max(step_s, 1e-6))), 2)

@@ -1,0 +1,1 @@
+"""TRC: OpenSim, Pose2Sim."""

@@ -1,0 +1,31 @@
+"""Motion as TRC: joints as markers, tab-separated text, as OpenSim reads it.
+
+Millimetres; axes as ours, +Y up, which OpenSim's are too. A joint of a gap is left empty, which readers take for
+a marker that was not seen.
+"""
+
+from mocapd.exports.sampled_motion import SampledMotion
+
+MM = 1000.0
+
+
+def trc_text(motion: SampledMotion, name: str) -> str:
+    """The whole file; `name`: of the file, which it repeats."""
+    names = motion.skeleton.names
+    count, rate_hz = len(motion.joints_m), motion.rate_hz
+    empty = "\t" * (3 * len(names) - 1)
+    lines = [
+        f"PathFileType\t4\t(X/Y/Z)\t{name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"{rate_hz:g}\t{rate_hz:g}\t{count}\t{len(names)}\tmm\t{rate_hz:g}\t1\t{count}",
+        "Frame#\tTime\t" + "\t\t\t".join(names) + "\t\t",
+        "\t\t" + "\t".join(f"X{i}\tY{i}\tZ{i}" for i in range(1, len(names) + 1)),
+        "",
+    ]
+    rows_mm = (motion.joints_m * MM).reshape(count, -1).tolist()
+    for number, (time_s, gap, row) in enumerate(
+        zip(motion.times_s.tolist(), motion.gap.tolist(), rows_mm, strict=True), start=1
+    ):
+        places = empty if gap else "\t".join(f"{number_mm:.4f}" for number_mm in row)
+        lines.append(f"{number}\t{time_s:.6f}\t{places}")
+    return "\n".join([*lines, ""])

@@ -1,0 +1,1 @@
+"""Recordings: one MCAP file with frames as published, state, calibration and pictures."""

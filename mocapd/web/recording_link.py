@@ -1,0 +1,112 @@
+"""The WebSocket `/recording`: every picture of every camera, for `mocapd record --pictures`.
+
+Messages as those of `/pictures`: length of the header, the header as JSON, bytes. First the files that say what is
+known of cameras and wearer, {file, media_type}; then each picture, {camera, seq, unix_ns, dropped} and its JPEG as
+the camera delivered it; where it delivered none that can be shown, one is made. dropped: pictures that the other
+side was too slow for, since the beginning.
+"""
+
+import asyncio
+import threading
+from collections import deque
+from concurrent.futures import Executor
+
+from starlette.websockets import WebSocket
+
+from mocapd.capture.recording.recorded_known import attachments_of
+from mocapd.clock import unix_from_monotonic_ns
+from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.types import Frame
+from mocapd.web.encoder import Picture, delivered, encode
+from mocapd.web.host import Host
+from mocapd.web.links import BadMessageError, received, send_bytes, serve
+from mocapd.web.picture_link import message
+
+MOST_WAITING = 24  # pictures of all cameras: a third of a second of two
+RECORDED_QUALITY = 95  # of a picture that no camera has encoded
+_LOOK_EVERY_S = 0.008
+
+
+class _Taken:
+    """Keeps pictures for the link's event loop. `put` in the capture threads."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()  # guards what follows
+        self._waiting: deque[Picture | Frame] = deque()
+        self.dropped = 0
+
+    def put(self, frame: Frame) -> None:
+        # a JPEG without its pixels is a tenth of them
+        one = delivered(frame, _width(frame)) or frame
+        with self._lock:
+            if len(self._waiting) >= MOST_WAITING:
+                self._waiting.popleft()
+                self.dropped += 1
+            self._waiting.append(one)
+
+    def next(self) -> Picture | Frame | None:
+        """A frame where its camera delivered no JPEG that can be shown."""
+        with self._lock:
+            return self._waiting.popleft() if self._waiting else None
+
+
+class RecordingLink:
+    """One recorder; pictures are made in `executor` where none were delivered."""
+
+    def __init__(self, socket: WebSocket, host: Host, executor: Executor) -> None:
+        self._socket, self._host, self._executor = socket, host, executor
+
+    async def run(self) -> None:
+        """Until the recorder leaves."""
+        await serve(self._socket, self._send(), self._listen())
+
+    async def _listen(self) -> None:
+        await received(self._socket)
+        raise BadMessageError("nothing is to be said here")
+
+    async def _send(self) -> None:
+        loop = asyncio.get_running_loop()
+        files = await loop.run_in_executor(self._executor, attachments_of, self._host.known())
+        for file in files:
+            header = {"file": file.name, "media_type": file.media_type}
+            await send_bytes(self._socket, message(header, file.data))
+        taken, hub = _Taken(), None
+        try:
+            while True:
+                hub = _joined(taken, hub, self._host.hub)  # another session has cameras of its own
+                picture = taken.next()
+                if picture is None:
+                    await asyncio.sleep(_LOOK_EVERY_S)
+                    continue
+                if isinstance(picture, Frame):
+                    picture = await loop.run_in_executor(
+                        self._executor, encode, picture, _width(picture), RECORDED_QUALITY
+                    )
+                await send_bytes(self._socket, _message(picture, taken.dropped))
+        finally:
+            _joined(taken, hub, None)
+
+
+def _width(frame: Frame) -> int:
+    return int(frame.pixels.shape[1])
+
+
+def _message(picture: Picture, dropped: int) -> bytes:
+    unix_ns = picture.t_ns + unix_from_monotonic_ns()
+    header = {
+        "camera": picture.camera,
+        "seq": picture.seq,
+        "unix_ns": unix_ns,
+        "dropped": dropped,
+    }
+    return message(header, picture.jpeg)
+
+
+def _joined(taken: _Taken, old: FrameHub | None, new: FrameHub | None) -> FrameHub | None:
+    """The new hub, which has it from now on and not the old one."""
+    if new is not old:
+        if old is not None:
+            old.leave(taken)
+        if new is not None:
+            new.join(taken)
+    return new

@@ -1,0 +1,39 @@
+"""What the tests of every format export: the moving asymmetric person, bones that change a little among it."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mocapd.app.exporting import motion_of
+from mocapd.exports.formats import write_export
+from mocapd.exports.sampled_motion import SampledMotion
+from mocapd.outputs.mcap.recording_reader import RecordingReader
+from mocapd.types import Floats
+from tests.outputs.recorded import frames, record
+
+SECONDS = 1.5
+MM = 1e-3
+
+
+def recorded_motion(folder: Path) -> SampledMotion:
+    """By way of a recording."""
+    return motion_of(RecordingReader(record(folder / "a.mcap", frames(SECONDS))), 0, None).motion
+
+
+def exported(folder: Path, name: str) -> tuple[SampledMotion, Path]:
+    """The motion and its file in this format."""
+    motion = recorded_motion(folder)
+    path = folder / f"a.{name}"
+    write_export(motion, name, path)
+    return motion, path
+
+
+def check_places(found_m: Floats, motion: SampledMotion) -> None:
+    """That joints (F,J,3) [m] are where they were recorded, to a millimetre, and that the pose is a moving and
+    asymmetric one, so that a mirrored or turned file cannot pass."""
+    assert found_m.shape == motion.joints_m.shape
+    assert np.linalg.norm(found_m - motion.joints_m, axis=2).max() < MM
+    names = motion.skeleton.names
+    left, right = (motion.joints_m[:, names.index(name)] for name in ("leftHand", "rightHand"))
+    assert (left[:, 1] > right[:, 1] + 0.3).all()
+    assert motion.joints_m[-1, 0, 0] > motion.joints_m[0, 0, 0] + 0.3
