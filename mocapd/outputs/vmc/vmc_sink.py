@@ -10,8 +10,8 @@ from mocapd.errors import UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton, StateMessage
 from mocapd.outputs.osc.osc_sink import Destination, parse_destination, status_of
+from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vmc.placing import placing
-from mocapd.outputs.vmc.rate_cap import RateCap
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
 from mocapd.outputs.vmc.vmc_params import KEY, Params
 from mocapd.outputs.vmc.vrm_file import read_vrm

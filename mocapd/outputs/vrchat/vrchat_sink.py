@@ -91,7 +91,7 @@ class VRChatSink:
         """Send what is seen of one frame, as one bundle; nothing when nothing is, or one was sent just now."""
         now_ns = frame.publish_monotonic_ns
         trackers = self._trackers.update(frame)
-        if not trackers or not self._cap.lets_through(now_ns):
+        if not trackers or not self._cap.takes(now_ns):
             return
         if self._finder is not None:
             self._follow(self._finder.address)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mocapd.clock import NS_PER_S
-from mocapd.outputs.vmc.rate_cap import RateCap
+from mocapd.outputs.rate_cap import RateCap
 
 SECONDS = 20
 
