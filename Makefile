@@ -61,8 +61,9 @@ demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one liv
 
 # What is compiled is kept for the next process, whatever the caller's own wish: there are a hundred and more.
 test: export PYTHONDONTWRITEBYTECODE :=
+# Three processes on two cores, as many tests wait for something else.
 test: dev ## run all tests
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder
 
 check: dev ## lint, format, types, import contract, dead code
 	$(BIN)/ruff check .

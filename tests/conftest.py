@@ -75,6 +75,7 @@ def environment(folder: Path, cache_home: Path) -> dict[str, str]:
     """See `clean_env`; the home is made in `folder`."""
     dropped = (
         "MOCAPD_", "XDG_", "JOURNAL_STREAM", "STATE_DIRECTORY", "CACHE_DIRECTORY", "PYTHONDONTWRITEBYTECODE",
+        "NUMBA_",
     )  # fmt: skip
     env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
     home = folder / "home"

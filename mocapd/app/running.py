@@ -34,11 +34,15 @@ class Signals:
     SIGHUP is what a terminal sends that is closed; under nohup it is ignored. With `reloads` and without a
     terminal it asks for the configuration to be read again instead, see `take_reload`. A second signal has
     its default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
+
+    While things are set up the end is an exception, which may be swallowed where it is raised (in a finaliser,
+    in the midst of an import): then it comes as soon as there is something to end.
     """
 
     def __init__(self, reloads: bool = False) -> None:
         self.exit_code = 0
         self._daemon: Ends | None = None
+        self._is_told = False
         self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._caught)
@@ -51,8 +55,10 @@ class Signals:
             self._reload = asks and isinstance(before, ComesEarly) and before.came
 
     def ends(self, daemon: Ends) -> None:
-        """From now on a signal ends this in order."""
+        """From now on a signal ends this in order; also one that came before."""
         self._daemon = daemon
+        if self._is_told:
+            daemon.end()
 
     def take_reload(self) -> bool:
         """Whether the configuration is to be read again; told once."""
@@ -68,6 +74,7 @@ class Signals:
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         _silence(fd for fd in self._terminals if not os.isatty(fd))
         self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
+        self._is_told = True
         if self._daemon is None:
             sys.exit(self.exit_code)
         self._daemon.end()

@@ -13,7 +13,8 @@ from mocapd.errors import CannotCreateError, PermissionDeniedError
 @pytest.fixture(autouse=True)
 def read_only_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The package as it is installed for all users: numba keeps its code in the cache folder."""
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")  # so that it is put back: the code sets it
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
     monkeypatch.setattr(mocapd, "__file__", str(tmp_path / "no such package" / "__init__.py"))
 
 

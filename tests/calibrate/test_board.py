@@ -1,6 +1,8 @@
 """What may be printed on a board, and what is seen of it in a picture."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache, partial
 
 import cv2
 import numpy as np
@@ -20,8 +22,17 @@ CHESS = BoardSpec(BoardKind.CHESSBOARD, 5, 6, 0.07)
 POSE = held_poses(3)[1]
 
 
+@cache
+def film(board: PrintedBoard) -> BoardFilm:
+    return BoardFilm(CAMERA, board)
+
+
 def picture(board: PrintedBoard = PRINT, light: BoardLight | None = None) -> Bytes:
-    return BoardFilm(CAMERA, board).picture(*POSE, light)
+    return film(board).picture(*POSE, light)
+
+
+def mirrored() -> Bytes:
+    return picture()[:, ::-1].copy()
 
 
 @pytest.mark.parametrize(
@@ -140,26 +151,36 @@ def test_a_blurred_picture_is_less_sharp() -> None:
 
 
 @pytest.mark.parametrize(
-    ("spec", "pixels", "reason", "says"),
+    ("spec", "draw", "reason", "says"),
     [
-        (SPEC, picture(light=BoardLight(brightness=0.0005, noise=0.5)), Reason.TOO_DARK, ""),
-        (SPEC, picture(light=BoardLight(blur_px=12.0)), Reason.BLURRED, ""),
-        (SPEC, picture()[:, ::-1].copy(), Reason.MIRRORED, ""),
-        (SPEC, picture(replace(PRINT, dictionary="DICT_6X6_250")), Reason.OTHER_DICTIONARY, "6X6"),
-        (replace(SPEC, columns=6, rows=5), picture(), Reason.OTHER_SIZE, "rows of 5"),
-        (replace(SPEC, columns=3, rows=4), picture(), Reason.OTHER_SIZE, "marker 14"),
+        (
+            SPEC,
+            partial(picture, light=BoardLight(brightness=0.0005, noise=0.5)),
+            Reason.TOO_DARK,
+            "",
+        ),
+        (SPEC, partial(picture, light=BoardLight(blur_px=12.0)), Reason.BLURRED, ""),
+        (SPEC, mirrored, Reason.MIRRORED, ""),
+        (
+            SPEC,
+            partial(picture, replace(PRINT, dictionary="DICT_6X6_250")),
+            Reason.OTHER_DICTIONARY,
+            "6X6",
+        ),
+        (replace(SPEC, columns=6, rows=5), picture, Reason.OTHER_SIZE, "rows of 5"),
+        (replace(SPEC, columns=3, rows=4), picture, Reason.OTHER_SIZE, "marker 14"),
         (
             replace(CHESS, columns=4, rows=5),
-            picture(replace(PRINT, dictionary="", columns=5, rows=6)),
+            partial(picture, replace(PRINT, dictionary="", columns=5, rows=6)),
             Reason.OTHER_SIZE,
             "5x6",
         ),
     ],
 )
 def test_the_reason_why_there_is_no_board(
-    spec: BoardSpec, pixels: Bytes, reason: Reason, says: str
+    spec: BoardSpec, draw: Callable[[], Bytes], reason: Reason, says: str
 ) -> None:
-    detector = BoardDetector(spec)
+    detector, pixels = BoardDetector(spec), draw()
     assert detector.find(pixels) is None
     told = diagnose_detection(detector, pixels)
     assert told.reason is reason
