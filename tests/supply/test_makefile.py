@@ -17,6 +17,7 @@ _PYTHON = """#!/bin/sh
 case "$1 $2" in
 "-m venv") mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
 "-m pip") shift 2; echo "$*" >> pip-calls ;;
+"-m uv") shift 2; echo "uv $*" >> pip-calls; [ -e uv-works ] ;;
 "-c "*) exec "{python}" -c "import sys; sys.version_info = {version}; exec(sys.argv[1])" "$2" ;;
 -V*) echo "Python {version}" ;;
 esac
@@ -32,6 +33,7 @@ class Checkout:
         for name in ("Makefile", "pyproject.toml"):
             shutil.copy(ROOT / name, folder / name)
         self.python = folder / "a-python"
+        (folder / "uv-works").touch()
         self.set_version((3, 11, 9))
 
     def set_version(self, version: tuple[int, int, int]) -> None:
@@ -76,17 +78,40 @@ def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_download
 def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
     checkout: Checkout,
 ) -> None:
-    (packages, project), _ = checkout.make("dev")
+    (uv, packages, project), _ = checkout.make("dev")
+    assert "--require-hashes" in uv
+    assert packages.startswith("uv ")
     assert "--require-hashes" in packages
+    assert "--only-binary :all:" in packages
     assert _locks_of(packages) == {"locks/dev.txt"}
     assert "--no-deps" in project
     assert checkout.make("dev") == ([], "")
     assert checkout.make("env") == ([], "")
 
 
+def test_uv_is_installed_as_the_lock_has_it(checkout: Checkout) -> None:
+    (uv, *_), _ = checkout.make("dev")
+    (path,) = _locks_of(uv)
+    lines = (checkout.folder / path).read_text().splitlines()
+    assert lines[0].startswith("uv==")
+    assert all(line.startswith("    ") for line in lines[1:])
+    assert "\n".join(lines) in (ROOT / "locks" / "dev.txt").read_text()
+
+
+def test_where_uv_gets_nowhere_pip_installs_the_lock(checkout: Checkout) -> None:
+    (checkout.folder / "uv-works").unlink()
+    (_, tried, packages, project), _ = checkout.make("dev")
+    assert tried.startswith("uv ")
+    assert packages.startswith("install ")
+    assert "--require-hashes" in packages
+    assert "--only-binary :all:" in packages
+    assert _locks_of(packages) == {"locks/dev.txt"}
+    assert "--no-deps" in project
+
+
 def test_dev_adds_to_env(checkout: Checkout) -> None:
     checkout.make("env")
-    assert _locks_of(checkout.make("dev")[0][0]) == {"locks/dev.txt"}
+    assert _locks_of(checkout.make("dev")[0][1]) == {"locks/dev.txt"}
 
 
 @pytest.mark.parametrize("changed", ["pyproject.toml", "locks/run.txt", "locks/build.txt"])
