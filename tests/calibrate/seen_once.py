@@ -4,6 +4,7 @@ What a detector finds depends on the board and the picture alone; tests show the
 """
 
 import hashlib
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -19,6 +20,9 @@ _Key = tuple[BoardSpec, tuple[int, ...], bytes]
 
 _views: dict[_Key, BoardView | None] = {}
 _markers: dict[_Key, Ints] = {}
+_digests: dict[
+    int, tuple["weakref.ref[Any]", bytes]
+] = {}  # of pictures that cannot be written to, by id
 
 
 @contextmanager
@@ -46,5 +50,22 @@ def seen_once() -> Iterator[None]:
 
 
 def _key(detector: BoardDetector, pixels: Any) -> _Key:
-    content = hashlib.blake2b(pixels.tobytes(), digest_size=16).digest()
-    return detector.spec, pixels.shape, content
+    return detector.spec, pixels.shape, _digest(pixels)
+
+
+def _digest(pixels: Any) -> bytes:
+    """Of what is in the picture; it is read once only where it is sure to stay the same."""
+    known = _digests.get(id(pixels))
+    if known is not None and known[0]() is pixels:
+        return known[1]
+    digest = hashlib.blake2b(pixels.tobytes(), digest_size=16).digest()
+    if pixels.base is None and not pixels.flags.writeable:
+        _digests[id(pixels)] = weakref.ref(pixels), digest
+    return digest
+
+
+def never_written(pixels: Bytes) -> Bytes:
+    """The same picture, which can no longer be written to."""
+    assert pixels.base is None
+    pixels.flags.writeable = False
+    return pixels
