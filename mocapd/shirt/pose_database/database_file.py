@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from mocapd.boundary.messages import parse_json
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.file_lock import one_at_a_time
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import (
     VERSION,
     DatabaseParams,
@@ -32,7 +33,7 @@ from mocapd.shirt.pose_database.database import (
 from mocapd.shirt.pose_database.idmap_index import IdMapIndex, Projection
 from mocapd.whole_file import whole_file
 
-FILE_NAME = "pose_database.bin"
+FILE_NAME = CACHE_NAME
 LOCK_NAME = "pose_database.lock"
 _MAGIC = b"mocapd pose database 2\n"
 _ALIGNMENT = 64
