@@ -37,15 +37,19 @@ def films(place: Place) -> Attempt:
         table(cameras=[camera], fps_hz=10.0, loop_s=0.3, motion=motion, lights=[], room={})
     )
     good = load_film(scenario, place.cache)
+    key = film_key(scenario)  # of code and scenario, which stay
     # films of other code may lie there too
-    (kept,) = place.cache.glob(f"*{film_key(scenario)[:16]}.film")
+    (kept,) = place.cache.glob(f"*{key[:16]}.film")
     data, path = kept.read_bytes(), place.folder / kept.name
     wanted = _shown(good)
 
     def attempt(random: Random, number: int) -> bool:
         changed = damaged(random, data)
         path.write_bytes(changed)
-        with patch.object(film_module, "camera_renderers", _anew):
+        with (
+            patch.object(film_module, "film_key", lambda _: key),
+            patch.object(film_module, "camera_renderers", _anew),
+        ):
             try:
                 found = load_film(scenario, place.folder)
             except _MadeAnew:
