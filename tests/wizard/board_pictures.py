@@ -57,12 +57,15 @@ def film(camera: int) -> BoardFilm:
 
 
 @cache
-def close_pictures(camera: int, tilted: bool = True) -> tuple[Bytes, ...]:
-    """What this camera sees while the board is shown to it."""
-    return tuple(
-        never_written(film(camera).picture(*pose, seed=i))
-        for i, pose in enumerate(close_poses(RIG[camera], tilted))
-    )
+def close_pictures(camera: int, tilted: bool = True, first: int = len(_CLOSE)) -> tuple[Bytes, ...]:
+    """What this camera sees while the board is shown to it, at the first so many places."""
+    return tuple(_close_picture(camera, tilted, i) for i in range(first))
+
+
+@cache
+def _close_picture(camera: int, tilted: bool, i: int) -> Bytes:
+    pose = close_poses(RIG[camera], tilted)[i]
+    return never_written(film(camera).picture(*pose, seed=i))
 
 
 @cache
