@@ -67,7 +67,7 @@ def test_it_ends_in_order_from_its_first_import_on(
 ) -> None:
     with ThreadPoolExecutor(2) as two:
         ends = two.map(
-            lambda i: told_after(1.2 * i / moments, number, env, simulated), range(moments)
+            lambda i: told_after(0.7 * i / moments, number, env, simulated), range(moments)
         )
     for ended, err in ends:
         assert ended == code, err
