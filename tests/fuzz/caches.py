@@ -12,6 +12,7 @@ from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
 from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
 from mocapd.sim import film as film_module
+from mocapd.sim import renderer as renderer_module
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import scenario_from_dict
 from tests.fuzz.mutations import damaged
@@ -48,7 +49,7 @@ def films(place: Place) -> Attempt:
         path.write_bytes(changed)
         with (
             patch.object(film_module, "film_key", lambda _: key),
-            patch.object(film_module, "camera_renderers", _anew),
+            patch.object(renderer_module, "camera_renderers", _anew),
         ):
             try:
                 found = load_film(scenario, place.folder)
