@@ -82,9 +82,9 @@ def _canned(_calibration: Calibration, section: CannedSection, _resources: Resou
 
 
 def _database(resources: Resources) -> "PoseDatabase":
-    from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
+    from mocapd.shirt.pose_database.database_file import load_or_build
 
-    stale = (resources.cache_dir / FILE_NAME).exists()
+    stale = (resources.cache_dir / CACHE_NAME).exists()
     loaded = load_or_build(
         resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
     )

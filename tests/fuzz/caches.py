@@ -9,8 +9,9 @@ import numpy as np
 from mocapd.app.first_start import MARKER, prepare_apart
 from mocapd.config.sections import Config
 from mocapd.shirt.pose_database import database_file
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
-from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
+from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.sim import film as film_module
 from mocapd.sim import renderer as renderer_module
 from mocapd.sim.film import Film, film_key, load_film
@@ -75,7 +76,7 @@ def databases(place: Place) -> Attempt:
     """The same of the pose database."""
     kept = place.cache / "database"
     good = load_or_build(kept, _DATABASE).database
-    data, path = (kept / FILE_NAME).read_bytes(), place.folder / FILE_NAME
+    data, path = (kept / CACHE_NAME).read_bytes(), place.folder / CACHE_NAME
     wanted = _arrays(good)
     digest = content_hash(_DATABASE)  # of code and body, which stay
 

@@ -33,7 +33,6 @@ from mocapd.shirt.pose_database.database import (
 from mocapd.shirt.pose_database.idmap_index import IdMapIndex, Projection
 from mocapd.whole_file import whole_file
 
-FILE_NAME = CACHE_NAME
 LOCK_NAME = "pose_database.lock"
 _MAGIC = b"mocapd pose database 2\n"
 _ALIGNMENT = 64
@@ -72,7 +71,7 @@ def load_or_build(
     written and `must_cache`; otherwise the database stays in memory and `warning` says so.
     """
     params = params or DatabaseParams()
-    path = cache_dir / FILE_NAME
+    path = cache_dir / CACHE_NAME
     wanted = content_hash(params)
     try:
         return LoadedDatabase(_read(path, wanted), built=False)
