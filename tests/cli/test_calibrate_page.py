@@ -23,7 +23,7 @@ from tests.wizard.drafts import full_draft
 
 pytestmark = pytest.mark.long
 
-WAIT_S = 300.0  # a busy machine compiles for long
+WAIT_S = 600.0  # a busy machine compiles for long
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ import pytest
 from tests.capture.films import write_film
 from tests.cli.mocapd_process import COMMAND, start
 
-WAIT_S = 300.0  # a busy machine compiles for long
+WAIT_S = 600.0  # a busy machine compiles for long
 QUIET = ("--tracker", "canned", "--set", "zenoh.enabled=false", "--set", "osc.enabled=false")
 
 
