@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 MARKER = "prepared"  # in the cache folder: what was prepared for, one a line
 REMEMBERED = 8
 _MOST_BYTES = 1 << 16
+_DATABASE = " database"  # alone, without the tracker's code compiled
 _COMPILING = "preparing: compiling the tracker (once on this machine, some minutes on a slow one)"
 
 _log = logging.getLogger(__name__)
@@ -75,8 +76,16 @@ def database_beside(config: "Config") -> Iterator[None]:
     """Makes the pose database, if there is none, in a process beside this one; it ends with the block.
 
     A setup's first steps take longer than that, its later ones need it: they wait for what is under
-    way. Called while the process has one thread. A failure is told by whoever needs it.
+    way. What this code has made or found before is not looked at again while the file is there: should it be
+    damaged, who needs it makes it anew. Called while the process has one thread. A failure is told by whoever
+    needs it.
     """
+    from mocapd.trackers.registry import has_caches
+
+    made = _fingerprint(config, _DATABASE) in _prepared(config.cache_dir / MARKER)
+    if made and has_caches(config.tracker.name, config.cache_dir):
+        yield
+        return
     child = multiprocessing.get_context("fork").Process(
         target=_work, args=(_make_database_quietly, config)
     )
@@ -138,6 +147,10 @@ def _make_database_quietly(config: "Config") -> None:
 
     os.nice(5)  # the board is looked for meanwhile
     make_caches(config.tracker.name, config.cache_dir, lambda *_: None)
+    marker = config.cache_dir / MARKER
+    want, done = _fingerprint(config, _DATABASE), _prepared(marker)
+    if want not in done:
+        _remember(marker, [*done[1 - REMEMBERED :], want])
 
 
 def _open(config: "Config") -> None:
@@ -149,13 +162,13 @@ def _open(config: "Config") -> None:
         open_session(config, progress)
 
 
-def _fingerprint(config: "Config") -> str:
-    """Of everything that compiled code and caches depend on."""
+def _fingerprint(config: "Config", what: str = "") -> str:
+    """Of everything that compiled code and caches depend on; `what`: of them, all when empty."""
     package = Path(mocapd.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*.py")):
         stat = path.stat()
         digest.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
     tracker = config.tracker
-    digest.update(f"{platform.python_version()} {version('numba')} {tracker.name}".encode())
+    digest.update(f"{platform.python_version()} {version('numba')} {tracker.name}{what}".encode())
     return digest.hexdigest()

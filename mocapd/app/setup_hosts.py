@@ -7,7 +7,7 @@ from mocapd.boundary.files import is_file
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.saved_sources import require_password, sources_by_shown
 from mocapd.errors import ConfigError
-from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.hosts.own_host import OwnHost
 from mocapd.wizard.saving import load_draft

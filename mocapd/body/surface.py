@@ -61,23 +61,20 @@ def joined(tubes: list[Tube]) -> Surface:
         weights.append(np.concatenate([flat_weights, flat_weights[:1], flat_weights[-1:]]))
         columns = np.arange(C)
         after = (columns + 1) % C
-        faces, face_patch, face_material = [], [], []
-        for r in range(R - 1):
-            a, b = r * C + columns, r * C + after
-            c, d = (r + 1) * C + columns, (r + 1) * C + after
-            faces += [np.stack([a, c, b], -1), np.stack([b, c, d], -1)]
-            face_patch += [tube.patch[r], tube.patch[r]]
-            face_material += [np.full(2 * C, tube.material[r])]
-        faces.append(np.stack([np.full(C, R * C), columns, after], -1))
-        faces.append(
-            np.stack([np.full(C, R * C + 1), (R - 1) * C + after, (R - 1) * C + columns], -1)
-        )
-        face_patch += [tube.patch[0], tube.patch[-1]]
-        face_material += [np.full(C, tube.material[0]), np.full(C, tube.material[-1])]
-        triangle = np.concatenate(faces)
+        band = C * np.arange(R - 1)[:, None]
+        a, b, c, d = band + columns, band + after, band + C + columns, band + C + after
+        first, last = np.full(C, R * C), np.full(C, R * C + 1)
+        side = np.stack([a, c, b, b, c, d], -1).reshape(R - 1, C, 2, 3).swapaxes(1, 2)
+        triangle = np.concatenate([
+            side.reshape(-1, 3),
+            np.stack([first, columns, after], -1),
+            np.stack([last, (R - 1) * C + after, (R - 1) * C + columns], -1),
+        ])  # fmt: skip
         triangles.append(_outward(points, triangle) + offset)
-        patches.append(np.concatenate(face_patch))
-        materials.append(np.concatenate(face_material))
+        around = np.repeat(tube.patch, 2, axis=0)  # of a band's both triangles
+        patches.append(np.concatenate([around.ravel(), tube.patch[0], tube.patch[-1]]))
+        ends_material = np.repeat(tube.material[[0, -1]], C)
+        materials.append(np.concatenate([np.repeat(tube.material, 2 * C), ends_material]))
         parts.append(np.full(len(triangle), tube.part))
         offset += len(points)
     w = np.concatenate(weights)

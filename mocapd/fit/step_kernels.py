@@ -73,5 +73,7 @@ def gauss_newton_step(
         for j in range(P - n_pose):
             A[n_pose + i, n_pose + j] += shape_information[i, j]
             g[n_pose + i] += shape_information[i, j] * shape_offset[j]
-    g[:] = np.linalg.solve(A, g)
+    step = np.linalg.solve(A, g)
+    for p in range(P):
+        g[p] = step[p]
     return g

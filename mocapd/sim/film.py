@@ -1,4 +1,7 @@
-"""One loop of a scenario, rendered beforehand to JPEG, so that playing it costs next to nothing."""
+"""One loop of a scenario, rendered beforehand to JPEG, so that playing it costs next to nothing.
+
+The renderer is imported when a film is rendered: its kernels take longer to import than a film to read.
+"""
 
 import hashlib
 from collections.abc import Callable, Mapping
@@ -6,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import cv2
 import msgspec
@@ -16,11 +20,13 @@ import mocapd.sim
 from mocapd.assets import asset_path
 from mocapd.boundary.pictures import decode_picture
 from mocapd.sim.cache_file import read_or_make
-from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
-from mocapd.sim.setup import SimSetup, setup_of
+from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.world import World, rig_of
 from mocapd.types import Bytes, LabelledPicture
+
+if TYPE_CHECKING:
+    from mocapd.sim.renderer import CameraRenderer
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
@@ -91,6 +97,9 @@ def encode_jpeg(pixels: Bytes, quality: int) -> bytes:
 
 
 def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFile:
+    from mocapd.sim.renderer import camera_renderers
+    from mocapd.sim.setup import setup_of
+
     renderers = camera_renderers(World(scenario))
     n = round(scenario.loop_s * scenario.fps_hz)
     first = first_frame(scenario)
@@ -112,7 +121,7 @@ def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFil
     )
 
 
-def _shoot(frame: int, quality: int, renderer: CameraRenderer) -> bytes:
+def _shoot(frame: int, quality: int, renderer: "CameraRenderer") -> bytes:
     return encode_jpeg(renderer.frame(frame), quality)
 
 

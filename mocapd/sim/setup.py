@@ -1,7 +1,4 @@
-"""What a user's calibration of the simulated rig would give: cameras, stature, labelled pictures."""
-
-from collections.abc import Mapping
-from dataclasses import dataclass
+"""Makes what a user's calibration of the simulated rig would give."""
 
 import msgspec
 import numpy as np
@@ -12,24 +9,14 @@ from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario
 from mocapd.sim.scenery.furniture import backdrop
 from mocapd.sim.scenery.lamps import studio_lamps
 from mocapd.sim.scribbles import scribble
+from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.world import World, rig_of
-from mocapd.types import LabelledPicture, Rig
+from mocapd.types import LabelledPicture
 
 # How the user poses for the pictures of the shirt: pose, yaw [deg]
 MODEL_POSES = (
     ("t_pose", 0.0), ("relaxed", 0.0), ("t_pose", 180.0), ("goalpost", 35.0), ("relaxed", 150.0),
 )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SimSetup:
-    """The rig, the stature the user typed in, per camera one labelled picture in the scenario's own
-    light, and the labelled pictures of the shirt in neutral light."""
-
-    rig: Rig
-    stature_m: float
-    scribbles: Mapping[str, LabelledPicture]
-    model: tuple[LabelledPicture, ...]
 
 
 def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:

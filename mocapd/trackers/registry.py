@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mocapd.calibration.record import Calibration
 from mocapd.errors import ConfigError
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
@@ -47,8 +48,8 @@ class TrackerEntry:
     section: what a user may set, which becomes `[tracker.<name>]`; lacks: given what is known and the names
     of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
     that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
-    which a setup measures; make_caches: what it keeps in the cache folder, made if need be; compared_with:
-    what `mocapd eval --compare` sets beside it, by label a tracker and its section.
+    which a setup measures; make_caches: what it keeps in the cache folder, made if need be; caches: the names
+    of those files; compared_with: what `mocapd eval --compare` sets beside it, by label a tracker and its section.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -57,6 +58,7 @@ class TrackerEntry:
     sees: bool
     reads_shirt: bool = False
     make_caches: Callable[[Resources], object] = _quiet
+    caches: tuple[str, ...] = ()
     compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
 
@@ -80,9 +82,9 @@ def _canned(_calibration: Calibration, section: CannedSection, _resources: Resou
 
 
 def _database(resources: Resources) -> "PoseDatabase":
-    from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
+    from mocapd.shirt.pose_database.database_file import load_or_build
 
-    stale = (resources.cache_dir / FILE_NAME).exists()
+    stale = (resources.cache_dir / CACHE_NAME).exists()
     loaded = load_or_build(
         resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
     )
@@ -117,6 +119,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             sees=True,
             reads_shirt=True,
             make_caches=_database,
+            caches=(CACHE_NAME,),
             compared_with={
                 "paper": ("colour_paper", ColourPaperSection()),
                 "baseline": ("colour_paper", ColourPaperSection(baseline=True)),
@@ -129,6 +132,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             sees=True,
             reads_shirt=True,
             make_caches=_database,
+            caches=(CACHE_NAME,),
         ),
     }
 )
@@ -174,3 +178,9 @@ def build(
 def make_caches(name: str, resources: Resources) -> None:
     """What this tracker keeps in the cache folder, made if need be."""
     entry(name).make_caches(resources)
+
+
+def has_caches(name: str, cache_dir: Path) -> bool:
+    """Whether there are files of all that this tracker keeps in the cache folder; whether they fit, only
+    `make_caches` can tell."""
+    return all((cache_dir / one).is_file() for one in entry(name).caches)

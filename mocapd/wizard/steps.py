@@ -1,24 +1,25 @@
-"""The steps of the setup, each by its name."""
+"""The steps of the setup, each by its name.
+
+A step is imported when it is made: together they take a second to import, and a page may never need them.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.pipeline.loop import OnDeath
-from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.cameras.same_port import AsksForPorts, PortChange
-from mocapd.wizard.check.check_step import CheckStep
-from mocapd.wizard.check.check_tracking import CheckSettings
-from mocapd.wizard.colour.colour_step import ColourStep
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
-from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import MakeStep
+
+if TYPE_CHECKING:
+    from mocapd.wizard.context import Context, Step
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,17 +38,49 @@ def all_steps(
 ) -> Mapping[StepName, MakeStep]:
     """What a Wizard is made of. `shown` gets the body that Check tracks; `died` hears of its pipeline's
     unexpected end."""
-    choosing = partial(
-        CamerasStep, cameras=cameras.opened, nodes=cameras.nodes, locks=cameras.locks
-    )
+
+    def choosing(context: "Context") -> "Step":
+        from mocapd.wizard.cameras.cameras_step import CamerasStep
+
+        return CamerasStep(context, cameras.opened, cameras.nodes, cameras.locks)
+
+    def check(context: "Context") -> "Step":
+        from mocapd.wizard.check.check_step import CheckStep
+
+        return CheckStep(context, settings, shown, died)
+
     return {
         StepName.CAMERAS: partial(AsksForPorts, make=choosing, moved=list(cameras.moved)),
-        StepName.LENS: IntrinsicsStep,
-        StepName.ROOM: ExtrinsicsStep,
-        StepName.COLOUR: ColourStep,
-        StepName.BODY: BodyStep,
-        StepName.CHECK: partial(CheckStep, settings=settings, shown=shown, died=died),
+        StepName.LENS: _lens,
+        StepName.ROOM: _room,
+        StepName.COLOUR: _colour,
+        StepName.BODY: _body,
+        StepName.CHECK: check,
     }
+
+
+def _lens(context: "Context") -> "Step":
+    from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
+
+    return IntrinsicsStep(context)
+
+
+def _room(context: "Context") -> "Step":
+    from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
+
+    return ExtrinsicsStep(context)
+
+
+def _colour(context: "Context") -> "Step":
+    from mocapd.wizard.colour.colour_step import ColourStep
+
+    return ColourStep(context)
+
+
+def _body(context: "Context") -> "Step":
+    from mocapd.wizard.body.body_step import BodyStep
+
+    return BodyStep(context)
 
 
 def only(steps: Mapping[StepName, MakeStep], step: StepName) -> Mapping[StepName, MakeStep]:

@@ -7,7 +7,11 @@ from pathlib import Path
 import pytest
 
 from mocapd.app import progress
+from mocapd.app.first_start import MARKER, database_beside
 from mocapd.app.progress import ProgressBars
+from mocapd.config.sections import Config
+from mocapd.session import tracker_setup
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
 from tests.outputs.frames import free_port
@@ -54,6 +58,29 @@ def test_a_marker_that_cannot_be_written_is_no_hint(
     assert outcome.code == 0, outcome.err
     assert "Traceback" not in outcome.err
     assert outcome.err.count("the next start prepares") == 1
+
+
+def test_a_database_that_was_made_is_not_looked_at_by_the_next_setup(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Unless its file has gone, or the code has changed."""
+    config, calls = Config(cache_dir=tmp_path), tmp_path / "calls"
+    database, marker = tmp_path / CACHE_NAME, tmp_path / MARKER
+
+    def make(_name: str, cache_dir: Path, _progress: object) -> None:
+        with calls.open("a") as out:
+            out.write("x")
+        (cache_dir / CACHE_NAME).touch()
+
+    monkeypatch.setattr(tracker_setup, "make_caches", make)
+    for undo, made in ((None, 1), (None, 1), (database, 2), (None, 2), (marker, 3)):
+        if undo is not None:
+            undo.unlink()
+        with database_beside(config):
+            until_s = time.monotonic() + 60.0
+            while not (database.exists() and marker.exists()) and time.monotonic() < until_s:
+                time.sleep(0.01)
+        assert len(calls.read_text()) == made
 
 
 @pytest.fixture

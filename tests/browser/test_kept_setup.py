@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Page, expect
 from mocapd.wizard.kept_setup import FILE_NAME
 from tests.browser.conftest import Served, problems_of
 
-STEP_MS = 60_000
+STEP_MS = 600_000
 
 
 def body_step(page: Page) -> None:

@@ -18,7 +18,7 @@ from tests.browser.conftest import FOR_THE_DOCS, PAGE_URL, problems_of
 from tests.cli.mocapd_process import mocapd, start
 from tests.outputs.frames import free_port
 
-WAIT_MS = 240_000
+WAIT_MS = 600_000
 
 
 @pytest.fixture(scope="module")

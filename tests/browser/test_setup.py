@@ -36,7 +36,7 @@ pytestmark = pytest.mark.long
 
 SCENARIO = ROOT / "calib" / "scenarios" / "first_setup.toml"
 STATURE_CM = 172
-STEP_MS = 120_000  # a step on a busy machine; the figure of the whole is printed, not asserted
+STEP_MS = 600_000  # a busy machine compiles; the time of the whole is printed
 """How long a step may take before the test gives up [ms]."""
 
 

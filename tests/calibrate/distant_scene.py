@@ -1,13 +1,14 @@
 """A room so far away that only turns of the camera move it, and somebody before it."""
 
 from dataclasses import dataclass, field
+from functools import cache
 
 import cv2
 import numpy as np
 
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
-from mocapd.types import Bytes, Camera, Floats
+from mocapd.types import Bytes, Camera, Floats, Singles
 
 SIZE_PX = (320, 240)
 FOCAL_PX = 275.0
@@ -25,6 +26,23 @@ def turn(axis: str, degrees: float) -> Floats:
     out = np.zeros(3)
     out[AXES[axis]] = np.deg2rad(degrees)
     return out
+
+
+@cache
+def _rays(k1: float) -> Floats:
+    """(height,width,3): where each pixel of such a lens looks, at a distance of 1."""
+    w, h = SIZE_PX
+    x, y = np.meshgrid(np.arange(w, dtype=float), np.arange(h, dtype=float))
+    xy = normalised(camera(k1=k1), np.stack([x, y], axis=-1))
+    return np.concatenate([xy, np.ones((h, w, 1))], axis=-1)
+
+
+@cache
+def _places_px(k1: float, turned_rad: tuple[float, ...]) -> Singles:
+    """(2,height,width): which place of the canvas each pixel shows after a turn."""
+    before = _rays(k1) @ rotations.to_matrix(rotations.exp(np.array(turned_rad)))
+    places = before[..., :2] / before[..., 2:] * FOCAL_PX + _CANVAS / 2
+    return np.moveaxis(places, -1, 0).astype(np.float32, order="C")
 
 
 @dataclass
@@ -45,10 +63,6 @@ class Room:
         self.person = np.asarray(
             cv2.resize(shirt, (90, 180), interpolation=cv2.INTER_NEAREST), np.uint8
         )
-        h, w = SIZE_PX[1], SIZE_PX[0]
-        x, y = np.meshgrid(np.arange(w, dtype=float), np.arange(h, dtype=float))
-        xy = normalised(self.camera, np.stack([x, y], axis=-1))
-        self._rays = np.concatenate([xy, np.ones((h, w, 1))], axis=-1)
         self._rng = rng
 
     def picture(
@@ -58,15 +72,15 @@ class Room:
         light: float = 1.0,
     ) -> Bytes:
         """What the camera shows after a turn, with somebody's upper left corner at `person_px`."""
-        turned = np.zeros(3) if turned_rad is None else turned_rad
-        before = self._rays @ rotations.to_matrix(rotations.exp(turned))
-        places = (before[..., :2] / before[..., 2:] * FOCAL_PX + _CANVAS / 2).astype(np.float32)
-        seen = cv2.remap(self.canvas, places[..., 0], places[..., 1], cv2.INTER_LINEAR)
-        out = np.asarray(seen, dtype=float)
+        turned = (0.0, 0.0, 0.0) if turned_rad is None else tuple(turned_rad.tolist())
+        x_px, y_px = _places_px(float(self.camera.dist[0]), turned)
+        seen = cv2.remap(self.canvas, x_px, y_px, cv2.INTER_LINEAR)
+        out = np.asarray(seen, dtype=np.float32)
         if person_px is not None:
             x, y = person_px
             h, w = (min(SIZE_PX[1] - y, 180), min(SIZE_PX[0] - x, 90))
             out[y : y + h, x : x + w] = self.person[:h, :w]
-        out = light * out + self._rng.normal(0.0, 3.0, out.shape)
+        out *= light
+        out += 3.0 * self._rng.standard_normal(out.shape, dtype=np.float32)
         picture: Bytes = np.clip(out, 0, 255).astype(np.uint8)
         return picture

@@ -1,10 +1,14 @@
-"""Looks for the board once in each picture, however often a test shows that picture.
+"""Looks for the board once in each picture, however often a test shows that picture, and solves once from
+the same views.
 
-What a detector finds depends on the board and the picture alone; tests show the same picture for many ticks.
+What a detector finds depends on the board and the picture alone, and what is solved on the views alone;
+tests show the same picture for many ticks, and calibrate from the same folder several times.
 """
 
 import hashlib
-from collections.abc import Iterator
+import pickle
+import weakref
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -12,6 +16,7 @@ from typing import Any
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView
+from mocapd.calibrate.extrinsics import folder_calibration
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.types import Bytes, Ints
 
@@ -19,6 +24,10 @@ _Key = tuple[BoardSpec, tuple[int, ...], bytes]
 
 _views: dict[_Key, BoardView | None] = {}
 _markers: dict[_Key, Ints] = {}
+_digests: dict[
+    int, tuple["weakref.ref[Any]", bytes]
+] = {}  # of pictures that cannot be written to, by id
+_solved: dict[tuple[str, bytes], Any] = {}
 
 
 @contextmanager
@@ -42,9 +51,41 @@ def seen_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(BoardDetector, "find", find_once)
         patch.setattr(BoardDetector, "markers", markers_once)
+        for name in ("solve_intrinsics", "solve_extrinsics"):
+            solve = getattr(folder_calibration, name)
+            patch.setattr(folder_calibration, name, _once(name, solve))
         yield
 
 
+def _once(name: str, solve: Callable[..., Any]) -> Callable[..., Any]:
+    """What it returned for arguments of the same content; a refusal is made anew."""
+
+    def solve_once(*arguments: Any) -> Any:
+        key = (name, hashlib.blake2b(pickle.dumps(arguments), digest_size=16).digest())
+        if key not in _solved:
+            _solved[key] = solve(*arguments)
+        return _solved[key]
+
+    return solve_once
+
+
 def _key(detector: BoardDetector, pixels: Any) -> _Key:
-    content = hashlib.blake2b(pixels.tobytes(), digest_size=16).digest()
-    return detector.spec, pixels.shape, content
+    return detector.spec, pixels.shape, _digest(pixels)
+
+
+def _digest(pixels: Any) -> bytes:
+    """Of what is in the picture; it is read once only where it is sure to stay the same."""
+    known = _digests.get(id(pixels))
+    if known is not None and known[0]() is pixels:
+        return known[1]
+    digest = hashlib.blake2b(pixels.tobytes(), digest_size=16).digest()
+    if pixels.base is None and not pixels.flags.writeable:
+        _digests[id(pixels)] = weakref.ref(pixels), digest
+    return digest
+
+
+def never_written(pixels: Bytes) -> Bytes:
+    """The same picture, which can no longer be written to."""
+    assert pixels.base is None
+    pixels.flags.writeable = False
+    return pixels

@@ -18,7 +18,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
-from mocapd.sim.setup import SimSetup, setup_of
+from mocapd.sim.setup import setup_of
+from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.world import World
 from mocapd.types import Bytes, Camera, LabelledPicture
 from tests.calibrate.swatches import MODEL, swatches

@@ -9,7 +9,7 @@ import numpy as np
 from mocapd.assets import asset_path
 from mocapd.sim.film import Film
 from mocapd.sim.scenario import load_scenario
-from mocapd.sim.setup import SimSetup
+from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.world import rig_of
 from mocapd.types import Bytes
 

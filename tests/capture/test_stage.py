@@ -11,7 +11,7 @@ from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError
 from mocapd.sim.clips import Clip, wearer_clips
 from mocapd.sim.film import Film, encode_jpeg
-from mocapd.sim.setup import SimSetup
+from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.setup_scenes import WEARER_S, SetupScene
 from mocapd.sim.world import rig_of
 from mocapd.types import Frame

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
-PATIENCE_S = 120.0  # after which a process is given up, however busy the machine is [s]
+PATIENCE_S = 600.0  # after which a process is given up, however busy the machine is [s]
 _LOOK_EVERY_S = 0.01
 _OWN = Path("/proc/self/task")
 

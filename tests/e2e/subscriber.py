@@ -15,7 +15,7 @@ import zenoh
 from pythonosc.dispatcher import Dispatcher
 from pythonosc.osc_server import ThreadingOSCUDPServer
 
-PATIENCE_S = 240.0  # the first daemon ever makes the pose database
+PATIENCE_S = 600.0  # the first daemon ever makes the pose database
 
 
 def main() -> None:

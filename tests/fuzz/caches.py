@@ -9,9 +9,11 @@ import numpy as np
 from mocapd.app.first_start import MARKER, prepare_apart
 from mocapd.config.sections import Config
 from mocapd.shirt.pose_database import database_file
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
-from mocapd.shirt.pose_database.database_file import FILE_NAME, load_or_build
+from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.sim import film as film_module
+from mocapd.sim import renderer as renderer_module
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import scenario_from_dict
 from tests.fuzz.mutations import damaged
@@ -37,15 +39,19 @@ def films(place: Place) -> Attempt:
         table(cameras=[camera], fps_hz=10.0, loop_s=0.3, motion=motion, lights=[], room={})
     )
     good = load_film(scenario, place.cache)
+    key = film_key(scenario)  # of code and scenario, which stay
     # films of other code may lie there too
-    (kept,) = place.cache.glob(f"*{film_key(scenario)[:16]}.film")
+    (kept,) = place.cache.glob(f"*{key[:16]}.film")
     data, path = kept.read_bytes(), place.folder / kept.name
     wanted = _shown(good)
 
     def attempt(random: Random, number: int) -> bool:
         changed = damaged(random, data)
         path.write_bytes(changed)
-        with patch.object(film_module, "camera_renderers", _anew):
+        with (
+            patch.object(film_module, "film_key", lambda _: key),
+            patch.object(renderer_module, "camera_renderers", _anew),
+        ):
             try:
                 found = load_film(scenario, place.folder)
             except _MadeAnew:
@@ -70,7 +76,7 @@ def databases(place: Place) -> Attempt:
     """The same of the pose database."""
     kept = place.cache / "database"
     good = load_or_build(kept, _DATABASE).database
-    data, path = (kept / FILE_NAME).read_bytes(), place.folder / FILE_NAME
+    data, path = (kept / CACHE_NAME).read_bytes(), place.folder / CACHE_NAME
     wanted = _arrays(good)
     digest = content_hash(_DATABASE)  # of code and body, which stay
 

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -51,12 +52,10 @@ class Answer:
 
 class PageBench:
     """A host and its page, made anew for each input; `base` and `cookie` are what a browser that was let in
-    has. The loop and the app's own threads are shared."""
-
-    loop = WarpLoop()
-    executor = ThreadPoolExecutor(1)
+    has. The loop and the app's own threads are shared by those of one process."""
 
     def __init__(self, folder: Path) -> None:
+        self.loop, self.executor = _of_this_process()
         self.host = Host(folder)
         encoder = PictureEncoder(lambda: self.host.hub, self.executor)
         self._app: ASGIApp = Access(make_app(self.host, encoder), PORT, SECRET)
@@ -140,6 +139,13 @@ class PageBench:
     def close(self) -> None:
         """End the setup."""
         self.host.bench.close()
+
+
+@cache
+def _of_this_process() -> tuple[WarpLoop, ThreadPoolExecutor]:
+    """Made when it is asked for: a loop from before the fork would have its rows' processes take each other's
+    wake-ups, and wait for ever."""
+    return WarpLoop(), ThreadPoolExecutor(1)
 
 
 def request(method: str, path: str, cookie: str = "", body: bytes = b"") -> bytes:

@@ -24,7 +24,7 @@ from mocapd.types import Frame
 from mocapd.web.wizard_link import PageCommand
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
-from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Json, Tell

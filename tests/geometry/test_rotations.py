@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
@@ -33,6 +33,7 @@ def same(a: Floats, b: Floats, tolerance_rad: float = 1e-7) -> bool:
     return bool((rotations.angle_rad(a, b) < tolerance_rad).all())
 
 
+@settings(max_examples=60)  # of several rotations each
 @given(QUATS, QUATS, QUATS)
 def test_group_axioms(a: Floats, b: Floats, c: Floats) -> None:
     product = rotations.multiply(a, b)
@@ -47,6 +48,7 @@ def test_group_axioms(a: Floats, b: Floats, c: Floats) -> None:
     assert np.allclose(rotations.inverse(product), undone, atol=1e-12)
 
 
+@settings(max_examples=60)  # of several rotations each
 @given(QUATS, QUATS, VECTORS, VECTORS)
 def test_it_acts_on_vectors_as_rotations_do(a: Floats, b: Floats, v: Floats, u: Floats) -> None:
     both = rotations.rotate(rotations.multiply(a, b), v)

@@ -17,6 +17,7 @@ from mocapd.errors import CannotCreateError
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.pose_database import database_file
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import (
     DatabaseParams,
     PoseDatabase,
@@ -25,7 +26,6 @@ from mocapd.shirt.pose_database.database import (
     content_hash,
 )
 from mocapd.shirt.pose_database.database_file import (
-    FILE_NAME,
     LOCK_NAME,
     load_or_build,
     write_database,
@@ -137,7 +137,7 @@ def test_the_hash_follows_the_parameters() -> None:
 
 
 def test_the_file_gives_back_what_was_written(database: PoseDatabase, tmp_path: Path) -> None:
-    write_database(tmp_path / FILE_NAME, database, content_hash(SMALL))
+    write_database(tmp_path / CACHE_NAME, database, content_hash(SMALL))
     loaded = load_or_build(tmp_path, SMALL)
     assert not loaded.built
     assert loaded.reason == loaded.warning == ""
@@ -145,7 +145,7 @@ def test_the_file_gives_back_what_was_written(database: PoseDatabase, tmp_path: 
     query = np.roll(database.id_map(3), 1, axis=0)
     for a, b in zip(loaded.database.nearest(query), database.nearest(query), strict=True):
         np.testing.assert_array_equal(a, b)
-    assert [path.name for path in tmp_path.iterdir()] == [FILE_NAME]
+    assert [path.name for path in tmp_path.iterdir()] == [CACHE_NAME]
 
 
 @pytest.mark.parametrize("damage", ["version", "cut", "header", "flipped", "empty"])
@@ -153,7 +153,7 @@ def test_an_unusable_file_is_rebuilt_and_the_reason_told(
     database: PoseDatabase, tmp_path: Path, damage: str
 ) -> None:
     tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
-    path = tmp_path / FILE_NAME
+    path = tmp_path / CACHE_NAME
     write_database(
         path, database, "of another version" if damage == "version" else content_hash(tiny)
     )
@@ -169,7 +169,7 @@ def test_an_unusable_file_is_rebuilt_and_the_reason_told(
     path.write_bytes(data)
     loaded = load_or_build(tmp_path, tiny)
     assert loaded.built
-    assert FILE_NAME in loaded.reason
+    assert CACHE_NAME in loaded.reason
     assert len(loaded.database) == 60
     assert not load_or_build(tmp_path, tiny).built
 
@@ -186,7 +186,7 @@ def test_any_changed_byte_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     """The header was in no checksum: 1,137 of 5,001 changed files were tracebacks at each start."""
     tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
     load_or_build(tmp_path, tiny)
-    path = tmp_path / FILE_NAME
+    path = tmp_path / CACHE_NAME
     whole = path.read_bytes()
     wanted = content_hash(tiny)  # which takes longer than all else here
     monkeypatch.setattr(database_file, "content_hash", lambda _: wanted)

@@ -1,7 +1,7 @@
 """What a user's calibration of the simulated rig would know, without a film."""
 
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
-from mocapd.sim.setup import SimSetup
+from mocapd.sim.setup_record import SimSetup
 
 
 def calibration_of_setup(setup: SimSetup) -> Calibration:

@@ -100,14 +100,15 @@ def test_projection_equals_opencv_and_the_box_holds_all_points() -> None:
 
 def _first_hit(corners: Floats, ray: Floats) -> tuple[int, float, Floats]:
     """The front triangle (T,3,3) in camera axes that a ray from 0 meets first: index, depth, weights."""
-    best, depth, weights = -1, np.inf, np.zeros(3)
-    for k, (a, b, c) in enumerate(corners):
-        if np.cross(b - a, c - a) @ a >= 0.0:  # seen from behind
-            continue
-        share = np.linalg.solve(np.stack([a, b, c], axis=-1), ray)
-        if (share >= 0.0).all() and 1.0 / share.sum() < depth:
-            best, depth, weights = k, 1.0 / share.sum(), share / share.sum()
-    return best, depth, weights
+    a, b, c = corners.swapaxes(0, 1)
+    in_front = (np.cross(b - a, c - a) * a).sum(axis=1) < 0.0  # else seen from behind
+    share = np.linalg.solve(corners.swapaxes(1, 2), np.tile(ray[:, None], (len(corners), 1, 1)))
+    share = share[:, :, 0]
+    met = np.flatnonzero(in_front & (share >= 0.0).all(axis=1))
+    if not len(met):
+        return -1, np.inf, np.zeros(3)
+    best = int(met[np.argmax(share[met].sum(axis=1))])
+    return best, 1.0 / share[best].sum(), share[best] / share[best].sum()
 
 
 def test_the_rasteriser_equals_casting_a_ray_through_every_pixel() -> None:

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mocapd.assets import asset_path
@@ -18,6 +18,7 @@ from tests.sim.small import LAMP_OFF_S, LAMP_ON_S, scenario
 TIMES = st.floats(0.0, 40.0)
 
 
+@settings(max_examples=25)  # each builds two worlds
 @given(TIMES, TIMES)
 def test_same_time_same_world_whatever_was_asked_before(a: float, b: float) -> None:
     world, other = World(scenario()), World(scenario())

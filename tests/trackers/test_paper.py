@@ -1,6 +1,7 @@
 """The paper's variant, on pictures painted by its own rasteriser: kernels, placement, solver, tracker."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -82,15 +83,26 @@ def colours() -> ColourModel:
     )
 
 
-def picture(body: Posture | None, seen_by: Camera, light: Floats | float = 1.0) -> Bytes:
-    """A grey room, with the body in it."""
+@cache
+def empty_room(light: tuple[float, ...]) -> Bytes:
+    """A grey room; light: of all channels, or of each (BGR)."""
     rng = np.random.default_rng(1)
-    out = np.full((480, 640, 3), 105.0) + rng.normal(0.0, 2.0, (480, 640, 1))
-    if body is not None:
-        seen = draw(MODEL, body, seen_by, Grid(0, 0, 640, 480, 1)).triangle_at
-        paint = np.vstack([[70, 60, 50], standard_shirt().srgb])[:, ::-1].astype(float)
-        out[seen >= 0] = paint[MODEL.colour[seen[seen >= 0]]]
-    pixels = np.clip(out * light, 0, 255).astype(np.uint8)
+    grey = np.full((480, 640, 3), 105.0) + rng.normal(0.0, 2.0, (480, 640, 1))
+    pixels = np.clip(grey * light, 0, 255).astype(np.uint8)
+    pixels.flags.writeable = False
+    return pixels
+
+
+def picture(body: Posture | None, seen_by: Camera, light: tuple[float, ...] = (1.0,)) -> Bytes:
+    """The room, with the body in it."""
+    room = empty_room(light)
+    if body is None:
+        return room
+    pixels = room.copy()
+    seen = draw(MODEL, body, seen_by, Grid(0, 0, 640, 480, 1)).triangle_at
+    paint = np.vstack([[70, 60, 50], standard_shirt().srgb])[:, ::-1].astype(float)
+    painted = np.clip(paint * light, 0, 255).astype(np.uint8)
+    pixels[seen >= 0] = painted[MODEL.colour[seen[seen >= 0]]]
     pixels.flags.writeable = False
     return pixels
 
@@ -245,8 +257,8 @@ def test_solver_moves_the_pose_to_where_the_patches_are_seen() -> None:
 
 def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
     c, body = RIG.cameras[0], standing()
-    light = np.array([0.45, 0.6, 0.9])  # BGR
-    W = np.diag(1.0 / light[::-1])
+    light = (0.45, 0.6, 0.9)  # BGR
+    W = np.diag(1.0 / np.array(light[::-1]))
     segmenter = PaperSegmenter(c, colours(), np.eye(3), Params())
     segmenter.look(picture(None, c))
     before = segmenter.look(picture(body, c, light))
@@ -263,7 +275,7 @@ def test_poor_classification_falls_back_on_a_reference_illumination() -> None:
 
 def test_white_balance_follows_the_light_and_a_new_light_is_remembered() -> None:
     c, body = RIG.cameras[0], standing()
-    light = np.array([0.5, 0.8, 0.9])  # BGR, a lamp
+    light = (0.5, 0.8, 0.9)  # BGR, a lamp
     segmenter = PaperSegmenter(c, colours(), np.eye(3), Params())
     grid = Grid(0, 0, 320, 240, 2)
     seen = draw(MODEL, body, c, grid)

@@ -25,25 +25,26 @@ def naive(
 ) -> tuple[Ints, NDArray[np.bool_]]:
     """Triangle seen at each pixel, and where that is too close to call: on an edge, or a tie in depth."""
     seen, close = np.full((H, W), NOTHING), np.zeros((H, W), bool)
+    facing = []
+    for t, corners in enumerate(triangles):
+        a, b, c = xy[corners].tolist()
+        area = cross(np.subtract(b, a), np.subtract(c, a))
+        # a front is clockwise, as y points down
+        if area < 0.0 and (depth[corners] > 0.05).all():
+            facing.append((t, a, b, c, area, depth[corners].tolist()))
     for y in range(H):
         for x in range(W):
             hits = []
-            for t, corners in enumerate(triangles):
-                a, b, c = xy[corners]
-                z = depth[corners]
-                if (z <= 0.05).any():
-                    continue
-                area = cross(b - a, c - a)
-                if area >= 0.0:  # turned away: y points down, so the front is clockwise
-                    continue
-                p = np.array([float(x), float(y)])
-                shares = np.array([
-                    cross(b - p, c - p), cross(c - p, a - p), cross(a - p, b - p),
-                ]) / area  # fmt: skip
-                if np.abs(shares).min() < 1e-6:
+            for t, (ax, ay), (bx, by), (cx, cy), area, z in facing:
+                shares = (
+                    ((bx - x) * (cy - y) - (by - y) * (cx - x)) / area,
+                    ((cx - x) * (ay - y) - (cy - y) * (ax - x)) / area,
+                    ((ax - x) * (by - y) - (ay - y) * (bx - x)) / area,
+                )
+                if min(map(abs, shares)) < 1e-6:
                     close[y, x] = True
-                if (shares >= 0.0).all():
-                    hits.append((float(shares @ z), t))
+                if min(shares) >= 0.0:
+                    hits.append((sum(share * d for share, d in zip(shares, z, strict=True)), t))
             hits.sort()
             if hits:
                 seen[y, x] = hits[0][1]

@@ -13,7 +13,7 @@ from websockets.typing import Origin
 
 from mocapd.web.server import WebServer
 
-PATIENCE_S = 30.0  # before a test gives up waiting [s]
+PATIENCE_S = 120.0  # before a test gives up waiting [s]
 
 
 def origin_of(server: WebServer) -> str:

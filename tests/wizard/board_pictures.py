@@ -10,10 +10,11 @@ from mocapd.sim.board.board_picture import BoardFilm
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.wizard.draft import DraftCamera
 from tests.calibrate.board_scenes import PRINT, cameras, floor_pose, held_poses, middle_m
+from tests.calibrate.seen_once import never_written
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 RIG = cameras(2)
-EMPTY = np.full((480, 640, 3), 110, np.uint8)
+EMPTY = never_written(np.full((480, 640, 3), 110, np.uint8))
 
 # where the board's middle is in the picture, how far [m], and its turn (rotation vector [rad])
 _CLOSE = (
@@ -56,19 +57,25 @@ def film(camera: int) -> BoardFilm:
 
 
 @cache
-def close_pictures(camera: int, tilted: bool = True) -> tuple[Bytes, ...]:
-    """What this camera sees while the board is shown to it."""
-    return tuple(
-        film(camera).picture(*pose, seed=i)
-        for i, pose in enumerate(close_poses(RIG[camera], tilted))
-    )
+def close_pictures(camera: int, tilted: bool = True, first: int = len(_CLOSE)) -> tuple[Bytes, ...]:
+    """What this camera sees while the board is shown to it, at the first so many places."""
+    return tuple(_close_picture(camera, tilted, i) for i in range(first))
+
+
+@cache
+def _close_picture(camera: int, tilted: bool, i: int) -> Bytes:
+    pose = close_poses(RIG[camera], tilted)[i]
+    return never_written(film(camera).picture(*pose, seed=i))
 
 
 @cache
 def held_pictures() -> tuple[dict[str, Bytes], ...]:
     """What both cameras see while the board is held in the play area, place by place."""
     return tuple(
-        {one.name: film(c).picture(*pose, seed=100 * c + i) for c, one in enumerate(RIG)}
+        {
+            one.name: never_written(film(c).picture(*pose, seed=100 * c + i))
+            for c, one in enumerate(RIG)
+        }
         for i, pose in enumerate(held_poses(11))
     )
 
@@ -76,4 +83,7 @@ def held_pictures() -> tuple[dict[str, Bytes], ...]:
 @cache
 def floor_pictures() -> dict[str, Bytes]:
     """The board on the floor."""
-    return {one.name: film(c).picture(*floor_pose(), seed=50 + c) for c, one in enumerate(RIG)}
+    return {
+        one.name: never_written(film(c).picture(*floor_pose(), seed=50 + c))
+        for c, one in enumerate(RIG)
+    }

@@ -26,8 +26,8 @@ from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.cameras.same_port import AsksForPorts, PortChange
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_step import CheckStep
-from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft

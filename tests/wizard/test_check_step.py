@@ -12,8 +12,8 @@ from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.wizard.check.check_measure import CameraMeasure, Measure
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_step import CheckStep, Phase, missing
-from mocapd.wizard.check.check_tracking import CheckSettings
 from mocapd.wizard.check.check_verdict import (
     Delivery,
     Grade,

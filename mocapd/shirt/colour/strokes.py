@@ -78,12 +78,14 @@ def stroke_colours(image: Bytes, strokes: Bytes) -> list[Floats]:
         raise InputError(f"strokes {strokes.shape} on an image {image.shape[:2]}")
     colours: list[Floats] = []
     for colour in range(1, COLOURS + 1):
-        count, components = cv2.connectedComponents((strokes == colour).astype(np.uint8))
-        parts = [
-            _trim(image[components == part][:, ::-1].astype(float) / 255.0)
-            for part in range(1, count)
-        ]
-        colours.append(np.concatenate(parts) if parts else np.empty((0, 3)))
+        mask = strokes == colour
+        if not mask.any():
+            colours.append(np.empty((0, 3)))
+            continue
+        count, components = cv2.connectedComponents(mask.astype(np.uint8))
+        values, part_of = image[mask][:, ::-1].astype(float) / 255.0, components[mask]
+        parts = [_trim(values[part_of == part]) for part in range(1, count)]
+        colours.append(np.concatenate(parts))
     return colours
 
 

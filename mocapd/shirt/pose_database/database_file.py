@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from mocapd.boundary.messages import parse_json
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.file_lock import one_at_a_time
+from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import (
     VERSION,
     DatabaseParams,
@@ -32,7 +33,6 @@ from mocapd.shirt.pose_database.database import (
 from mocapd.shirt.pose_database.idmap_index import IdMapIndex, Projection
 from mocapd.whole_file import whole_file
 
-FILE_NAME = "pose_database.bin"
 LOCK_NAME = "pose_database.lock"
 _MAGIC = b"mocapd pose database 2\n"
 _ALIGNMENT = 64
@@ -71,7 +71,7 @@ def load_or_build(
     written and `must_cache`; otherwise the database stays in memory and `warning` says so.
     """
     params = params or DatabaseParams()
-    path = cache_dir / FILE_NAME
+    path = cache_dir / CACHE_NAME
     wanted = content_hash(params)
     try:
         return LoadedDatabase(_read(path, wanted), built=False)

@@ -53,7 +53,9 @@ def render_poses(
     posed = PosedJoints(rest, R, joints, turned)
     camera = CameraArrays(identity, t, K, no_lens)
     for n in range(local_xyzw.shape[0]):
-        local[:] = local_xyzw[n]
+        for j in range(J):  # by numbers: numba takes five seconds to compile an array's assignment
+            for i in range(4):
+                local[j, i] = local_xyzw[n, j, i]
         quat_multiply(camera_from_root_xyzw[n].astype(np.float64), local[0].copy(), local[0])
         forward_kinematics(parents, rest, root, local, R, joints, turned)
         for i in range(3):  # joint 3 is the upper chest

@@ -1,9 +1,9 @@
 """The person's motion as a pure function of time: keyframed limbs, stepping feet, slow sway."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local
 from mocapd.geometry import rotations
@@ -12,6 +12,9 @@ from mocapd.sim.person.legs import leg_rotations
 from mocapd.sim.person.poses import POSES, ArmDirections
 from mocapd.sim.scenario import PoseKeyframe, Scenario
 from mocapd.types import Floats, Pose, Skeleton
+
+if TYPE_CHECKING:  # takes half a second to import, which playing a film does not need
+    from scipy.interpolate import PchipInterpolator
 
 # How a bend or twist of the trunk is shared among its bones.
 _TRUNK_SHARES = {"spine": 0.30, "chest": 0.35, "upperChest": 0.35}
@@ -26,8 +29,8 @@ class Motion:
 
     skeleton: Skeleton
     loop_s: float
-    local_rad: PchipInterpolator  # (J*3,) rotation vectors relative to the parent bone
-    root: PchipInterpolator  # x, z [m], yaw [rad], crouch [m]
+    local_rad: "PchipInterpolator"  # (J*3,) rotation vectors relative to the parent bone
+    root: "PchipInterpolator"  # x, z [m], yaw [rad], crouch [m]
     swings: tuple[tuple[int, Floats, float, float, float], ...]  # joint, vector, Hz, from, to
     sway: Floats  # (3, 4): cycles per loop, phase [rad], amplitude about x and z [rad]
     feet: tuple[FootTrack, FootTrack]  # left, right
@@ -102,8 +105,10 @@ def _window(t: float, start: float, end: float) -> float:
     return float(min(edge, 1.0) ** 2 * (3 - 2 * min(edge, 1.0)))
 
 
-def _periodic(times: Floats, values: Floats, loop_s: float, step: Floats) -> PchipInterpolator:
+def _periodic(times: Floats, values: Floats, loop_s: float, step: Floats) -> "PchipInterpolator":
     """Monotone cubic through the keys, repeated over three loops; `step` is the gain per loop."""
+    from scipy.interpolate import PchipInterpolator
+
     around = np.concatenate([times + k * loop_s for k in range(-2, 4)])
     repeated = np.concatenate([values + k * step for k in range(-2, 4)])
     return PchipInterpolator(around, repeated, axis=0)

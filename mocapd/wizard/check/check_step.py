@@ -17,7 +17,8 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.loop import OnDeath
 from mocapd.types import Tracking
 from mocapd.wizard.check.check_measure import Measure
-from mocapd.wizard.check.check_tracking import CheckSettings, CheckTracker, CheckTracking, prepare
+from mocapd.wizard.check.check_settings import CheckSettings
+from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, prepare
 from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
 from mocapd.wizard.check.check_verdict import (
     CameraVerdict,

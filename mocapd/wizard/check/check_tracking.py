@@ -1,13 +1,12 @@
 """The tracker of the step Check: as the daemon will have it, on the setup's own pictures."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibration.record import Calibration
-from mocapd.config.sections import TrackerSection
-from mocapd.pipeline.bundler import BundlerParams, CameraCounts
+from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
@@ -19,21 +18,12 @@ from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.only_cameras import OnlyCameras
 
 _BUILDING = 0.8  # share of the preparation that is not the rehearsal
-
-
-@dataclass(frozen=True, slots=True)
-class CheckSettings:
-    """How the daemon will track: its section `tracker`, the preset of `smoothing`, and how frames wait for
-    each other."""
-
-    tracker: TrackerSection
-    smoothing: str = "balanced"
-    bundler: BundlerParams = field(default_factory=BundlerParams)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

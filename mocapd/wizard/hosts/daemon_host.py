@@ -22,7 +22,7 @@ from mocapd.session.session import Session
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange, find_port_changes, same_camera
-from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import load_draft

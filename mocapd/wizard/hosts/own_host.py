@@ -15,7 +15,7 @@ from mocapd.service.service import Snapshot, ThreadDiedError
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
-from mocapd.wizard.check.check_tracking import CheckSettings
+from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.hosts.open_cameras import OpenCameras
 from mocapd.wizard.newest_body import NewestBody
