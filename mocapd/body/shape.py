@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.skeleton import INDEX, NAMES, PARENTS, mean_proportions
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX, PARENTS, mean_proportions
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Skeleton
 

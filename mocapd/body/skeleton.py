@@ -6,25 +6,10 @@ from functools import cache
 import numpy as np
 
 from mocapd.assets import asset_path
+from mocapd.body.bones import NAMES, PARENT_OF
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints, Pose, Skeleton
 
-NAMES = (
-    "hips", "spine", "chest", "upperChest", "neck", "head",
-    "leftShoulder", "leftUpperArm", "leftLowerArm", "leftHand",
-    "leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes",
-    "rightShoulder", "rightUpperArm", "rightLowerArm", "rightHand",
-    "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
-)  # fmt: skip
-PARENT_OF = {
-    "spine": "hips", "chest": "spine", "upperChest": "chest", "neck": "upperChest", "head": "neck",
-    "leftShoulder": "upperChest", "leftUpperArm": "leftShoulder", "leftLowerArm": "leftUpperArm",
-    "leftHand": "leftLowerArm", "leftUpperLeg": "hips", "leftLowerLeg": "leftUpperLeg",
-    "leftFoot": "leftLowerLeg", "leftToes": "leftFoot",
-    "rightShoulder": "upperChest", "rightUpperArm": "rightShoulder", "rightLowerArm": "rightUpperArm",
-    "rightHand": "rightLowerArm", "rightUpperLeg": "hips", "rightLowerLeg": "rightUpperLeg",
-    "rightFoot": "rightLowerLeg", "rightToes": "rightFoot",
-}  # fmt: skip
 INDEX = {name: i for i, name in enumerate(NAMES)}
 PARENTS = np.array([INDEX[PARENT_OF[n]] if n in PARENT_OF else -1 for n in NAMES], dtype=np.int64)
 N_JOINTS = len(NAMES)

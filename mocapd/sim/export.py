@@ -8,7 +8,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-from mocapd.body.skeleton import NAMES, PARENTS
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import PARENTS
 from mocapd.body.surface import posed_vertices
 from mocapd.errors import CannotCreateError
 from mocapd.geometry.rig_file import camera_to_dict

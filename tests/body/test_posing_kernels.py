@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
+from mocapd.body.bones import NAMES
 from mocapd.body.model import build_model, shaped
 from mocapd.body.posing_kernels import (
     difference,
@@ -16,7 +17,7 @@ from mocapd.body.posing_kernels import (
     skin_and_project,
     surface_row,
 )
-from mocapd.body.skeleton import INDEX, N_JOINTS, NAMES, PARENTS, joint_positions
+from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS, joint_positions
 from mocapd.body.surface import LEGS, posed_vertices
 from mocapd.body.surface_building import mean_surface
 from mocapd.geometry import rotations

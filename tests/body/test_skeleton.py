@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from mocapd.body.bones import NAMES
 from mocapd.body.skeleton import (
     INDEX,
     N_JOINTS,
-    NAMES,
     PARENTS,
     global_from_local,
     joint_positions,

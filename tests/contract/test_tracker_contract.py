@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from mocapd.body.bones import NAMES
 from mocapd.body.shape import skeleton_of
-from mocapd.body.skeleton import NAMES, joint_positions
+from mocapd.body.skeleton import joint_positions
 from mocapd.calibration.record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Track, unprobed

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import INDEX, NAMES
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX
 from mocapd.errors import InputError
 from mocapd.evaluate.score import JOINT_SETS, interior_angle_deg, match, score
 from mocapd.evaluate.truth import load_truth

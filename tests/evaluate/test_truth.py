@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import NAMES
+from mocapd.body.bones import NAMES
 from mocapd.errors import InputError
 from mocapd.evaluate.truth import labelled_frames, load_truth
 from tests.evaluate.tracks import moving_truth

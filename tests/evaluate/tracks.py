@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from mocapd.body.skeleton import INDEX, N_JOINTS, NAMES, standard_skeleton
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
 from mocapd.evaluate.truth import Truth
 from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats

@@ -7,7 +7,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import PARENT_OF, standard_skeleton
+from mocapd.body.bones import PARENT_OF
+from mocapd.body.skeleton import standard_skeleton
 from mocapd.outputs.from_skeleton import rest_skeleton
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.vmc.placing import placing

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import NAMES
+from mocapd.body.bones import NAMES
 from mocapd.config.effective import load_config
 from mocapd.errors import InputError
 from mocapd.geometry import rotations

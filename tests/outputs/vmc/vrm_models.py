@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.body.skeleton import NAMES, PARENT_OF, standard_skeleton
+from mocapd.body.bones import NAMES, PARENT_OF
+from mocapd.body.skeleton import standard_skeleton
 from mocapd.outputs.vmc.bone_names import unity_name
 from mocapd.types import Floats
 from tests.outputs.receivers.humanoid import Quaternion, Transform, Vector, multiply, rotated
