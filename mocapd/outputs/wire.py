@@ -65,6 +65,12 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     joints: Annotated[
         dict[str, Joint], Meta(description="by VRM 1.0 bone name; empty when tracking is `lost`")
     ]
+    predicted_ns: Annotated[
+        int,
+        Meta(
+            description="how far the pose lies ahead of the newest evidence, on request; the capture times are then those it is for [ns]"
+        ),
+    ] = 0
 
 
 def encode_msgpack(frame: SkeletonFrame) -> bytes:

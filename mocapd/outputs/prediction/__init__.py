@@ -1,0 +1,1 @@
+"""Where a person will be in a moment, from frames as they are sent."""
