@@ -23,6 +23,7 @@ import zenoh
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
+from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
 from mocapd.outputs.zenoh.zenoh_config import client_config
@@ -31,6 +32,7 @@ ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]
 ATTEMPT_S = 1.0  # how long one attempt may take [s]
 POLL_S = 0.002  # how often `Client.wait` looks [s]
+_KEPT = 8  # frames that wait for a game, so that `predict` sees how the person moved
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,17 +144,18 @@ class Client:
         self._session = self._opened.enter_context(connect(link))
         with zenoh_call():
             self._subscriber = self._opened.enter_context(
-                self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(1))
+                self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(_KEPT))
             )
         self._rest_key = link.rest_key
+        self._predictor: PosePredictor | None = None  # from the first `predict` on
         # a thread left waiting in Zenoh would abort the interpreter's exit
         atexit.register(self.close)
 
     def poll(self) -> Body | None:
         """The newest body that was not fetched yet; None: nothing new. Never waits."""
         with zenoh_call():
-            sample = self._subscriber.try_recv()
-        return None if sample is None else _body(sample)
+            samples = self._waiting()
+        return self._newest(samples)
 
     def wait(self, timeout_s: float) -> Body | None:
         """The next body, waiting up to `timeout_s` [s]; None: none came."""
@@ -160,6 +163,21 @@ class Client:
         while (body := self.poll()) is None and time.monotonic() < deadline_s:
             time.sleep(POLL_S)
         return body
+
+    def predict(self, to_time: float | None = None) -> Body | None:
+        """The body at a moment [Unix time, s] for which no frame is there yet; None: until now. Never waits.
+
+        Call it once per picture with the time at which that will be seen. It hides what cameras, tracking and smoothing
+        take, and lets a picture of 90 Hz have a pose of its own each time. What it knows are the frames that came by now;
+        at most a tenth of a second ahead, then the pose stays. None before the first frame. While `lost`, and for a
+        time before the newest frame's, it is the newest body.
+        """
+        if self._predictor is None:
+            self._predictor = PosePredictor()
+        self.poll()
+        unix_ns = time.time_ns() if to_time is None else round(to_time * 1e9)
+        frame = self._predictor.at(unix_ns)
+        return None if frame is None else Body(frame)
 
     def rest(self, timeout_s: float = 1.0) -> RestSkeleton | None:
         """The person's skeleton in the T-pose as it is known now, asked of the daemon, which takes a
@@ -178,10 +196,26 @@ class Client:
         samples = iter(self._subscriber)
         while True:
             with zenoh_call():
-                sample = next(samples, None)
-            if sample is None:
+                first = next(samples, None)
+                later = self._waiting() if first is not None else []
+            if first is None:
                 return
-            yield _body(sample)
+            body = self._newest([first, *later])
+            assert body is not None
+            yield body
+
+    def _waiting(self) -> list[zenoh.Sample]:
+        """What came meanwhile, the newest last."""
+        return list(iter(self._subscriber.try_recv, None))
+
+    def _newest(self, samples: list[zenoh.Sample]) -> Body | None:
+        if self._predictor is None:
+            return _body(samples[-1]) if samples else None
+        body = None
+        for sample in samples:
+            body = _body(sample)
+            self._predictor.take(body.frame)
+        return body
 
     def close(self) -> None:
         """Disconnect; may be called twice. Ends an iteration under way in another thread."""

@@ -118,7 +118,8 @@ class BodyState:
     """A person at one instant. Lost: `pose` and `joints_m` are None and every confidence is 0.
 
     joints_m (J,3) [m, world]; confidence (J,) in 0..1, near 0 for a joint without evidence;
-    `cameras`: names of the cameras whose evidence was used.
+    `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: how much smoothing delays the pose of a
+    person who moves, about.
     """
 
     t_ns: int
@@ -128,3 +129,4 @@ class BodyState:
     joints_m: Floats | None
     confidence: Floats
     cameras: tuple[str, ...] = ()
+    smoothing_lag_ns: int = 0

@@ -34,6 +34,7 @@ def skeleton_frame(
         tracking=body.tracking.value,
         cameras=body.cameras,
         joints=_joints(body, skeleton),
+        smoothing_lag_ns=body.smoothing_lag_ns,
     )
 
 

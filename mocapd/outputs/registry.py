@@ -8,6 +8,8 @@ from typing import Any, Protocol
 from mocapd.outputs.aim import address_text, aimed_by_destination
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
+from mocapd.outputs.prediction.predicted_sink import PredictedSink
+from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.threaded import ThreadedSink
 from mocapd.outputs.vmc import vmc_params
 from mocapd.outputs.vrchat import vrchat_sink
@@ -142,12 +144,16 @@ def default_sections() -> Mapping[str, OutputSection]:
 
 def build_sinks(sections: Mapping[str, OutputSection], instance: str) -> tuple[Sink, ...]:
     """A sink for each output that is enabled; one that is not named is not."""
-    sinks = []
+    sinks: list[Sink] = []
     for name, entry in OUTPUTS.items():
         section = sections.get(name)
         if section is not None and section.enabled:
             sink = entry.build(section, instance)
-            sinks.append(ThreadedSink(sink) if entry.blocks else sink)
+            if isinstance(section, PredictionParams) and section.predict_hz > 0.0:
+                ahead_s = section.predict_ahead_ms / 1e3
+                sinks.append(PredictedSink(sink, section.predict_hz, ahead_s))
+            else:
+                sinks.append(ThreadedSink(sink) if entry.blocks else sink)
     return tuple(sinks)
 
 

@@ -65,10 +65,16 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     joints: Annotated[
         dict[str, Joint], Meta(description="by VRM 1.0 bone name; empty when tracking is `lost`")
     ]
+    smoothing_lag_ns: Annotated[
+        int,
+        Meta(
+            description="how much smoothing delays a person who moves, about: the pose is as old as that more [ns]"
+        ),
+    ] = 0
     predicted_ns: Annotated[
         int,
         Meta(
-            description="how far the pose lies ahead of the newest evidence, on request; the capture times are then those it is for [ns]"
+            description="of a predicted pose: how far ahead of what was seen; the capture times are those it is for [ns]"
         ),
     ] = 0
 

@@ -18,10 +18,12 @@ REST_AFTER_S = 0.5  # a longer gap between bodies starts the filters afresh [s]
 
 @dataclass(frozen=True, slots=True)
 class SmoothingPreset:
-    """The two filters of a preset: of the root's position and of the bones' global rotations."""
+    """The two filters of a preset: of the root's position and of the bones' global rotations; lag_s: behind an arm
+    that swings, as measured below [s]."""
 
     root: OneEuroParams
     bones: OneEuroParams
+    lag_s: float
 
 
 # Measured at 30 Hz by `pytest -s tests/pipeline/test_smoothing_table.py`, which keeps this true.
@@ -37,9 +39,9 @@ class SmoothingPreset:
 PRESETS: Mapping[str, SmoothingPreset | None] = MappingProxyType(
     {
         "off": None,
-        "responsive": SmoothingPreset(OneEuroParams(1.0, 40.0), OneEuroParams(1.0, 6.0)),
-        "balanced": SmoothingPreset(OneEuroParams(0.7, 20.0), OneEuroParams(0.7, 3.0)),
-        "smooth": SmoothingPreset(OneEuroParams(0.5, 7.0), OneEuroParams(0.5, 1.0)),
+        "responsive": SmoothingPreset(OneEuroParams(1.0, 40.0), OneEuroParams(1.0, 6.0), 0.006),
+        "balanced": SmoothingPreset(OneEuroParams(0.7, 20.0), OneEuroParams(0.7, 3.0), 0.010),
+        "smooth": SmoothingPreset(OneEuroParams(0.5, 7.0), OneEuroParams(0.5, 1.0), 0.022),
     }
 )
 
@@ -58,9 +60,11 @@ class Smoother:
             )
         self.skeleton = skeleton
         self._filters: tuple[VectorOneEuro, RotationOneEuro] | None = None
+        self._lag_ns = 0
         chosen = PRESETS[preset]
         if chosen is not None:
             self._filters = VectorOneEuro(chosen.root), RotationOneEuro(chosen.bones)
+            self._lag_ns = nanoseconds(chosen.lag_s)
         self._t_ns: int | None = None
 
     def reset(self) -> None:
@@ -84,4 +88,5 @@ class Smoother:
             dt_s = seconds(gap_ns)
         self._t_ns = body.t_ns
         pose = Pose(root.step(body.pose.root_m, dt_s), bones.step(body.pose.quats_xyzw, dt_s))
-        return replace(body, pose=pose, joints_m=joint_positions(self.skeleton, pose))
+        joints_m = joint_positions(self.skeleton, pose)
+        return replace(body, pose=pose, joints_m=joints_m, smoothing_lag_ns=self._lag_ns)

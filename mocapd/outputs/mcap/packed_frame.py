@@ -58,6 +58,10 @@ class PackedFrame(msgspec.Struct, frozen=True):
         ),
     ]
     c: Annotated[bytes, Meta(description="confidence * 255 of each joint")]
+    smoothing_lag_ns: Annotated[
+        int, Meta(description="as in mocapd.Skeleton.v1, and so the next")
+    ] = 0
+    predicted_ns: int = 0
     schema: Annotated[str, Meta(description=f"always `{PACKED}`")] = PACKED
 
 
@@ -89,6 +93,8 @@ def pack(frame: SkeletonFrame, names: tuple[str, ...]) -> PackedFrame | None:
         largest.astype(np.uint8).tobytes(),
         _planes(np.rint(np.clip(others * _TURN_STEPS, -32767, 32767)), 2),
         np.rint(np.clip(confidence, 0.0, 1.0) * 255).astype(np.uint8).tobytes(),
+        frame.smoothing_lag_ns,
+        frame.predicted_ns,
     )
 
 
@@ -129,6 +135,8 @@ def unpack(packed: PackedFrame, rest: RestSkeleton) -> SkeletonFrame:
         packed.tracking,
         packed.cameras,
         joints,
+        packed.smoothing_lag_ns,
+        packed.predicted_ns,
     )
 
 

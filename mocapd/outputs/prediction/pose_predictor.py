@@ -9,11 +9,14 @@ import msgspec
 from mocapd.body.bones import NAMES, PARENT_OF
 from mocapd.outputs.prediction import quaternions
 from mocapd.outputs.prediction.quaternions import Quaternion, Vector
-from mocapd.outputs.prediction.trend import MOST_AHEAD_S, WINDOW_S, step_shares
+from mocapd.outputs.prediction.trend import WINDOW_S, step_shares
 from mocapd.outputs.wire import Joint, SkeletonFrame
+
+MOST_AHEAD_S = 0.1  # farther than that nobody can tell [s]
 
 _NS_PER_S = 1_000_000_000
 _MOST_GAP_S = 0.25  # between frames; what was before a longer one says nothing of now [s]
+_MOST_LAG_NS = 50_000_000  # that is believed, of smoothing
 _MOST_FRAMES = 16  # that are remembered, however fast they come
 _SURE = 0.3  # confidence from which a joint's motion is believed whole; below, less of it
 
@@ -40,7 +43,9 @@ class PosePredictor:
     def __init__(self) -> None:
         self._newest: SkeletonFrame | None = None
         self._steps: list[_Step] = []  # newest first
-        self._offsets_m: dict[str, Vector] | None = None  # of the newest: bone by bone, in the parent's axes
+        self._offsets_m: dict[str, Vector] | None = (
+            None  # of the newest: bone by bone, in the parent's axes
+        )
 
     def take(self, frame: SkeletonFrame) -> None:
         """Learn the newest frame. One that is no newer, of another daemon, or after a gap begins anew; so does `lost`."""
@@ -63,21 +68,24 @@ class PosePredictor:
         """The pose at this time [Unix, ns], by the sender's clock: a frame whose capture time is that, and `predicted_ns` how
         much of it lies ahead of the newest one's. None before the first frame.
 
-        A time that is no later than the newest frame gets that frame as it is, and so does every time while `lost`;
-        one that is farther ahead than anybody can tell (MOST_AHEAD_S) gets the pose of that moment.
+        What smoothing has delayed is made up for. A time before the newest frame's gets that frame as it is, and so
+        does every time while `lost`; one that is farther ahead than anybody can tell (MOST_AHEAD_S) gets the pose of
+        that moment.
         """
         newest = self._newest
         if newest is None or not newest.joints:
             return newest
         ahead_ns = min(unix_ns - newest.capture_unix_ns, round(MOST_AHEAD_S * _NS_PER_S))
-        if ahead_ns <= 0:
+        if ahead_ns < 0:
             return newest
+        lag_ns = min(max(0, newest.smoothing_lag_ns), _MOST_LAG_NS)
         return msgspec.structs.replace(
             newest,
             capture_unix_ns=newest.capture_unix_ns + ahead_ns,
             capture_monotonic_ns=newest.capture_monotonic_ns + ahead_ns,
             predicted_ns=newest.predicted_ns + ahead_ns,
-            joints=self._joints(newest, ahead_ns / _NS_PER_S),
+            joints=self._joints(newest, (ahead_ns + lag_ns) / _NS_PER_S),
+            smoothing_lag_ns=newest.smoothing_lag_ns - lag_ns,
         )
 
     def _joints(self, newest: SkeletonFrame, ahead_s: float) -> dict[str, Joint]:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Sequence
 
 WINDOW_S = 0.14  # of the frames that count: five at 30 Hz, nine at 60 [s]
-MOST_AHEAD_S = 0.1  # farther than that nobody can tell: the pose stays there [s]
 
 _SPEED_SHARE = 0.88
 _SPEED_HOLDS_S = 0.26  # after which a motion has been given up, on the average [s]
@@ -26,7 +25,6 @@ def step_shares(ages_s: Sequence[float], ahead_s: float) -> list[float]:
     n = len(ages_s)
     if n < 2:
         return []
-    ahead_s = min(ahead_s, MOST_AHEAD_S)
     speed, acceleration = _slopes(ages_s)
     held_s = _SPEED_HOLDS_S * (1.0 - math.exp(-ahead_s / _SPEED_HOLDS_S))
     by_speed = _SPEED_SHARE * held_s

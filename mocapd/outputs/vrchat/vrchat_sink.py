@@ -13,6 +13,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.facing import SEEN_ABOVE, facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
+from mocapd.outputs.prediction.prediction_params import PredictionParams, check_cap
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
 from mocapd.outputs.vrchat.confident_trackers import ConfidentTrackers
@@ -32,7 +33,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Params:
+class Params(PredictionParams):
     """What goes to VRChat. Raises ConfigError for a destination that does not do.
 
     destination: where VRChat listens, `address:port`, numeric addresses only; `auto`: found in the local network, needs the
@@ -50,6 +51,7 @@ class Params:
     yaw_deg: Annotated[float, Meta(ge=-360, le=360)] = 0.0
 
     def __post_init__(self) -> None:
+        check_cap(self, self.rate_hz, "vrchat")
         if self.destination == AUTO:
             return
         try:

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 from msgspec import Meta
 
 from mocapd.errors import ConfigError
+from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.zenoh.zenoh_limits import receive_limits, unicast_limits
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
 
@@ -26,7 +27,7 @@ PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 
 @dataclass(frozen=True, slots=True)
-class Params:
+class Params(PredictionParams):
     """How the daemon is on Zenoh. Raises ConfigError naming the value and the mend.
 
     format: `msgpack` or `json`

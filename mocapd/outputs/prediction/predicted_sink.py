@@ -1,0 +1,108 @@
+"""An output that is sent predicted poses at a rate of its own, faster than the cameras if need be."""
+
+import itertools
+import threading
+
+import msgspec
+
+from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds, seconds
+from mocapd.errors import MocapdError
+from mocapd.outputs.base import Sink, SinkStatus
+from mocapd.outputs.messages import StateMessage
+from mocapd.outputs.prediction.pose_predictor import PosePredictor
+from mocapd.outputs.wire import SkeletonFrame
+
+JOIN_S = 1.0  # how long `close` waits for a send under way [s]
+_SILENT_NS = NS_PER_S // 4  # without a frame nothing is sent, for nothing is known
+
+
+class PredictedSink:
+    """Wraps any sink. `send` and `tell` return at once; a thread of its own sends the pose of now, and of `ahead_s` later,
+    `rate_hz` times a second. `lost` is sent once, as it comes.
+
+    Frames are numbered by themselves: there are more of them. An error of the inner sink ends the thread, and the
+    next `send` raises it.
+    """
+
+    def __init__(self, sink: Sink, rate_hz: float, ahead_s: float) -> None:
+        self.name = sink.name
+        self._sink = sink
+        self._period_ns, self._ahead_ns = round(NS_PER_S / rate_hz), nanoseconds(ahead_s)
+        self._seq = itertools.count()
+        self._changed = threading.Condition()  # guards what follows
+        self._frames: list[SkeletonFrame] = []
+        self._closed = True
+        self._thread: threading.Thread | None = None
+        self._error: MocapdError | None = None
+
+    def open(self) -> None:
+        """Open the inner sink, in the caller's thread so that its errors arrive there."""
+        self._sink.open()
+        with self._changed:
+            self._frames, self._closed = [], False
+        self._error = None
+        name = f"output-{self.name}"
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def send(self, frame: SkeletonFrame) -> None:
+        """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
+        if self._thread is not None and not self._thread.is_alive():
+            raise self._error or RuntimeError(f"the thread of output {self.name} died, see above")
+        with self._changed:
+            if not self._closed:
+                self._frames.append(frame)
+
+    def tell(self, message: StateMessage) -> None:
+        """As the inner sink does."""
+        self._sink.tell(message)
+
+    def status(self) -> SinkStatus:
+        """The inner sink's."""
+        return self._sink.status()
+
+    def close(self) -> None:
+        """Let the thread go, then close the inner sink; may be called twice."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+        if self._thread is not None:
+            self._thread.join(JOIN_S)
+            self._thread = None
+        self._sink.close()
+
+    def _run(self) -> None:
+        predictor = PosePredictor()
+        newest: SkeletonFrame | None = None
+        due_ns = monotonic_ns()
+        try:
+            while (frames := self._came_until(due_ns)) is not None:
+                for frame in frames:
+                    predictor.take(frame)
+                    newest = frame
+                now_ns = monotonic_ns()
+                if newest is not None and (newest.joints or frames):
+                    self._send(predictor, newest, now_ns)
+                # after a pause the beat goes on from now, rather than catching up
+                due_ns = max(due_ns + self._period_ns, now_ns)
+        except MocapdError as error:  # handed to the pipeline's thread by `send`
+            self._error = error
+
+    def _came_until(self, due_ns: int) -> list[SkeletonFrame] | None:
+        """The frames that came by then; None when it is closed."""
+        with self._changed:
+            wait_s = max(0.0, seconds(due_ns - monotonic_ns()))
+            if self._changed.wait_for(lambda: self._closed, wait_s):
+                return None
+            frames, self._frames = self._frames, []
+            return frames
+
+    def _send(self, predictor: PosePredictor, newest: SkeletonFrame, now_ns: int) -> None:
+        if now_ns - newest.publish_monotonic_ns > _SILENT_NS:
+            return
+        to_unix = newest.capture_unix_ns - newest.capture_monotonic_ns
+        frame = predictor.at(now_ns + self._ahead_ns + to_unix)
+        assert frame is not None
+        self._sink.send(
+            msgspec.structs.replace(frame, seq=next(self._seq), publish_monotonic_ns=now_ns)
+        )
