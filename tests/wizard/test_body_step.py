@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.clock import monotonic_ns
@@ -18,6 +19,7 @@ from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, bu
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import Frame, FrameSet, Rig
+from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
@@ -150,6 +152,24 @@ def test_proportions_of_an_odd_wearer(
     do(step, "stature", {"m": 1.8})
     assert kept(context).factors is None
     assert step.view().state is StepState.WAITING
+
+
+def test_every_camera_has_its_picture_though_the_last_frame_of_one_came_too_late(
+    person: SimulatedWearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+) -> None:
+    known = calibration_of(replace(draft, stature_m=person.stature_m))
+    tracker = Stepping(build_colour_tracker(known, database), known_shape(known))
+    observations = BodyObservations(
+        build_model(person.stature_m), person.rig.cameras, BodyObservationParams(every_s=0.0)
+    )
+    for frames in bends[:6]:
+        observations.add(tracker.step(frames), frames)
+    left = FrameSet(bends[6].t_ns, {"left": bends[6].frames["left"]})
+    assert observations.add(tracker.step(left), left)
+    assert set(observations.pictures) == {"left", "right"}
+    shown = observations.observations[observations.pictured]
+    assert shown.t_ns == bends[5].t_ns
+    assert observations.observations[-1].t_ns == left.t_ns
 
 
 def test_a_stature_that_the_room_contradicts_is_told_with_its_likely_cause(

@@ -73,13 +73,13 @@ def measure(
         return None
     tell("working out the proportions", SEEN)
     fit = fit_shape(observations.observations, model, draft.rig.cameras)
-    last = fit.states[-1], observations.observations[-1]
+    shown = fit.states[observations.pictured], observations.observations[observations.pictured]
     return BodyMeasurement(
         BodyShape(draft.stature_m, fit.factors),
         fit,
         scale_of(fit, model, draft.floor_known),
         {
-            camera.name: body_picture(observations.pictures[camera.name], camera, model, *last, i)
+            camera.name: body_picture(observations.pictures[camera.name], camera, model, *shown, i)
             for i, camera in enumerate(draft.rig.cameras)
             if camera.name in observations.pictures
         },

@@ -30,7 +30,8 @@ class BodyObservationParams:
 
 
 class BodyObservations:
-    """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last observation only."""
+    """Takes what a tracker says, frame set by frame set. Keeps the pictures of one observation, `pictured`: of the last
+    that as many cameras took part in as in any, for a camera's frame may come too late."""
 
     def __init__(
         self,
@@ -42,6 +43,7 @@ class BodyObservations:
         self._p = params if params is not None else BodyObservationParams()
         self.observations: list[BodyObservation] = []
         self.pictures: dict[str, Bytes] = {}
+        self.pictured = 0
         self._last: BodyObservation | None = None
         self._bends: list[Floats] = []
 
@@ -60,7 +62,9 @@ class BodyObservations:
         if self._last.t_ns >= due_ns:
             self.observations.append(self._last)
             self._bends.append(elbow_bends(body))
-            self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
+            if len(frames.frames) >= len(self.pictures):
+                self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
+                self.pictured = len(self.observations) - 1
         return True
 
     @property
