@@ -21,12 +21,13 @@ _SIDES = [
 @dataclass(frozen=True, slots=True)
 class BodyObservationParams:
     """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
-    `longest_good_s` of them without bends."""
+    `longest_good_s` of them without bends; `patience_s`: by when they must have been seen."""
 
     good_s: float = 4.5
     every_s: float = 0.15
     bend_rad: float = 0.6
     longest_good_s: float = 12.0
+    patience_s: float = 40.0
 
 
 class BodyObservations:
