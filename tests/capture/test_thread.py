@@ -31,7 +31,7 @@ class Shelf:
 
     def wait_for(self, count: int) -> bool:
         with self.changed:
-            return self.changed.wait_for(lambda: len(self.items) >= count, 10.0)
+            return self.changed.wait_for(lambda: len(self.items) >= count, 120.0)
 
 
 def nobody_dies(error: BaseException) -> None:

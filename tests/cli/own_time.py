@@ -33,9 +33,22 @@ def own_time() -> Callable[[], float]:
     return _since_now(_OWN)
 
 
+def waits_of(pid: int) -> Callable[[], float]:
+    """What tells how long all threads of a process together have waited for a processor [s]."""
+    return _waits(Path(f"/proc/{pid}/task"))
+
+
 def _since_now(*folders: Path) -> Callable[[], float]:
     """What tells the time from now on [s], without what threads of these folders of /proc waited for a
-    processor; of those that end, what they had waited when it was asked last."""
+    processor."""
+    waited_s = _waits(*folders)
+    began_s = time.monotonic() - waited_s()
+    return lambda: time.monotonic() - waited_s() - began_s
+
+
+def _waits(*folders: Path) -> Callable[[], float]:
+    """What tells how long threads of these folders of /proc have waited for a processor [s]; of those that end,
+    what they had waited when it was asked last."""
     waits_ns: dict[Path, int] = {}
 
     def waited_s() -> float:
@@ -47,5 +60,4 @@ def _since_now(*folders: Path) -> Callable[[], float]:
                         waits_ns[thread] = int(waited_ns)
         return 1e-9 * sum(waits_ns.values())
 
-    began_s = time.monotonic() - waited_s()
-    return lambda: time.monotonic() - waited_s() - began_s
+    return waited_s

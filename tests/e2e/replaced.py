@@ -21,10 +21,12 @@ from websockets.typing import Origin
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
+from mocapd.types import Floats
 from mocapd.web.runtime_file import Running, begin_setup, running
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.saving import save_draft
 from tests.cli.mocapd_process import COMMAND
+from tests.cli.own_time import waits_of
 from tests.e2e.test_daemon import SCENARIO
 from tests.outputs.frames import free_port
 
@@ -62,20 +64,23 @@ def wait_until(condition: Callable[[], object], what: str) -> None:
 
 @dataclass(frozen=True)
 class Heard:
-    """One frame as it came: its number, when it was published, and whether somebody was seen."""
+    """One frame as it came: its number, when it was published, whether somebody was seen, and how long the
+    daemon's threads have waited for a processor by then [s]."""
 
     seq: int
     published_ns: int
     tracking: str
+    waited_s: float
 
 
 class Game:
     """Connects once, and keeps what comes. `departures`: that the daemon's token went."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, daemon: "Daemon") -> None:
+        self._waited_s = waits_of(daemon.process.pid)
         config = {
             "mode": "client",
-            "connect": {"endpoints": [f"tcp/127.0.0.1:{port}"], "timeout_ms": 5000},
+            "connect": {"endpoints": [f"tcp/127.0.0.1:{daemon.port}"], "timeout_ms": 5000},
             "scouting": {"multicast": {"enabled": False}},
         }
         self.session = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
@@ -102,7 +107,7 @@ class Game:
 
     def _hear(self, message: dict[str, Any]) -> None:
         numbers = message["seq"], message["publish_monotonic_ns"]
-        self.heard.append(Heard(*numbers, message["tracking"]))
+        self.heard.append(Heard(*numbers, message["tracking"], self._waited_s()))
 
     def _token(self, sample: zenoh.Sample) -> None:
         self.departures += sample.kind == zenoh.SampleKind.DELETE
@@ -130,8 +135,16 @@ class Game:
 
     def gap_s(self, since: int) -> float:
         """The longest time between frames from number `since` in the list on [s]."""
-        stamps_ns = [one.published_ns for one in self.heard[since:]]
-        return float(np.diff(stamps_ns).max()) / 1e9
+        return float(self._gaps_s(since).max())
+
+    def own_gap_s(self, since: int) -> float:
+        """The same without what the daemon waited for a processor from the frame before to the frame after."""
+        waited_s = np.array([one.waited_s for one in self.heard[since:]])
+        waited_s = np.concatenate([waited_s[:1], waited_s, waited_s[-1:]])
+        return float((self._gaps_s(since) - (waited_s[3:] - waited_s[:-3])).max())
+
+    def _gaps_s(self, since: int) -> Floats:
+        return np.diff([one.published_ns for one in self.heard[since:]]) / 1e9
 
 
 class Daemon:

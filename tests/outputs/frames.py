@@ -98,7 +98,7 @@ def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
     raise AssertionError
 
 
-def eventually(holds: Callable[[], bool], within_s: float = 30.0) -> bool:
+def eventually(holds: Callable[[], bool], within_s: float = 120.0) -> bool:
     """Whether it holds before the time is over."""
     deadline_s = time.monotonic() + within_s
     while not holds():

@@ -78,7 +78,7 @@ class Run:
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         with self.news:
-            assert self.news.wait_for(condition, 20.0)
+            assert self.news.wait_for(condition, 120.0)
 
     def feed_until_out(self, n: int) -> None:
         for k in range(n):

@@ -1,23 +1,21 @@
 """The step Body: stature, proportions of an odd wearer, and a room of another scale."""
 
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
-from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
-from mocapd.types import Frame, FrameSet, Rig
+from mocapd.types import FrameSet, Rig
+from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
@@ -25,10 +23,12 @@ from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Scene, StepState, Tell
 from tests.trackers.stepping import Stepping
 from tests.wizard.context import FakeContext, do
+from tests.wizard.playing import playing
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 pytestmark = pytest.mark.kernels
 
+PATIENT = BodyObservationParams(patience_s=600.0)  # with a busy machine
 ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
 
 
@@ -73,34 +73,6 @@ def kept(context: FakeContext) -> Draft:
     return context.draft
 
 
-@contextmanager
-def playing(context: FakeContext, bends: list[FrameSet]) -> Iterator[None]:
-    """The loop of arm bends goes to the hub, at its own pace."""
-    stop = threading.Event()
-
-    def play() -> None:
-        begin_ns, period_ns = monotonic_ns(), round(1e9 / FPS_HZ)
-        number = 0
-        while not stop.is_set():
-            due_ns = begin_ns + number * period_ns
-            if stop.wait(max(0.0, (due_ns - monotonic_ns()) / 1e9)):
-                return
-            frames = bends[number % len(bends)]
-            first_ns = min(frame.t_ns for frame in frames.frames.values())
-            for name, frame in frames.frames.items():
-                t_ns = due_ns + frame.t_ns - first_ns
-                context.hub.put(Frame(name, number, t_ns, frame.pixels))
-            number = max(number + 1, (monotonic_ns() - begin_ns) // period_ns)
-
-    thread = threading.Thread(target=play)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
-
-
 def measured(
     context: FakeContext,
     person: SimulatedWearer,
@@ -114,12 +86,12 @@ def measured(
         known = calibration_of(replace(draft, factors=None)).assuming(1.75)
         return ReadyTracker(build_colour_tracker(known, database), known_shape(known))
 
-    step = BodyStep(context, make)
+    step = BodyStep(context, make, PATIENT)
     step.enter()
     do(step, "stature", {"m": m})
     do(step, "measure", {})
     step.tick(0)
-    with playing(context, bends):
+    with playing(context, lambda number: bends[number % len(bends)], 1.0 / FPS_HZ):
         assert context.run_job(step)
     return step
 
@@ -150,6 +122,24 @@ def test_proportions_of_an_odd_wearer(
     do(step, "stature", {"m": 1.8})
     assert kept(context).factors is None
     assert step.view().state is StepState.WAITING
+
+
+def test_every_camera_has_its_picture_though_the_last_frame_of_one_came_too_late(
+    person: SimulatedWearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
+) -> None:
+    known = calibration_of(replace(draft, stature_m=person.stature_m))
+    tracker = Stepping(build_colour_tracker(known, database), known_shape(known))
+    observations = BodyObservations(
+        build_model(person.stature_m), person.rig.cameras, BodyObservationParams(every_s=0.0)
+    )
+    for frames in bends[:6]:
+        observations.add(tracker.step(frames), frames)
+    left = FrameSet(bends[6].t_ns, {"left": bends[6].frames["left"]})
+    assert observations.add(tracker.step(left), left)
+    assert set(observations.pictures) == {"left", "right"}
+    shown = observations.observations[observations.pictured]
+    assert shown.t_ns == bends[5].t_ns
+    assert observations.observations[-1].t_ns == left.t_ns
 
 
 def test_a_stature_that_the_room_contradicts_is_told_with_its_likely_cause(

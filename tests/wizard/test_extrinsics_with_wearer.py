@@ -1,9 +1,7 @@
 """The room without a board: what must be known first, a simulated wearer, and one whom nobody sees."""
 
 import json
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +10,6 @@ import pytest
 
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
-from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
@@ -24,10 +21,11 @@ from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
+from tests.wizard.playing import playing
 from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 SHORT = WalkParams(
-    good_s=3.0, facings=1, places=1, patience_s=25.0,
+    good_s=3.0, facings=1, places=1, patience_s=600.0,
     extrinsics=SelfCalibrationParams(keyframes=14, rounds=6, averaged=2, polish=1),
 )  # fmt: skip
 
@@ -60,31 +58,6 @@ def draft() -> Draft:
     )
 
 
-@contextmanager
-def playing(context: FakeContext, frame_set: Callable[[int], FrameSet]) -> Iterator[None]:
-    """Frame sets by number go to the hub, at their own pace."""
-    stop = threading.Event()
-
-    def play() -> None:
-        begin_ns, period_ns = monotonic_ns(), round(1e9 * EVERY / FPS_HZ)
-        number = 0
-        while not stop.wait(max(0.0, (begin_ns + number * period_ns - monotonic_ns()) / 1e9)):
-            frames = frame_set(number)
-            first_ns = min(frame.t_ns for frame in frames.frames.values())
-            for name, frame in frames.frames.items():
-                t_ns = begin_ns + number * period_ns + frame.t_ns - first_ns
-                context.hub.put(Frame(name, number, t_ns, frame.pixels))
-            number = max(number + 1, (monotonic_ns() - begin_ns) // period_ns)
-
-    thread = threading.Thread(target=play)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
-
-
 def walking(
     context: FakeContext, database: PoseDatabase, params: WalkParams = SHORT
 ) -> ExtrinsicsWithWearer:
@@ -114,7 +87,7 @@ def test_the_room_of_a_wearer(tmp_path: Path, draft: Draft, database: PoseDataba
     step = walking(context, database)
     assert context.scenes == [Scene.MOVING]
     assert step.view().state is StepState.WORKING
-    with playing(context, bends(person)):
+    with playing(context, bends(person), EVERY / FPS_HZ):
         context.run_job(step)
     view = step.view()
     assert view.state is StepState.DONE, view.problems
@@ -152,6 +125,7 @@ def test_a_wearer_whom_nobody_sees(tmp_path: Path, draft: Draft, database: PoseD
         lambda number: FrameSet(
             0, {name: Frame(name, number, 0, pixels) for name, pixels in black.items()}
         ),
+        EVERY / FPS_HZ,
     ):
         context.run_job(step)
     view = step.view()

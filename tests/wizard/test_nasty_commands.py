@@ -25,7 +25,7 @@ from tests.wizard.nasty import (
     without_room,
 )
 
-WAIT_S = 10.0
+WAIT_S = 120.0
 
 
 @pytest.mark.parametrize("name", list(StepName))

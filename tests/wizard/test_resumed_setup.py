@@ -21,7 +21,7 @@ from mocapd.wizard.wizard import MakeStep, Wizard
 from mocapd.wizard.wizard_view import WizardView
 from tests.wizard.drafts import begun, drafted, same
 
-WAIT_S = 10.0
+WAIT_S = 120.0
 
 
 class Find(Command, frozen=True):

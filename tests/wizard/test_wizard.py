@@ -22,7 +22,7 @@ from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView
 
-WAIT_S = 10.0
+WAIT_S = 120.0
 CAMERA = DraftCamera("cam0", "sim:cam0", (640, 480))
 PLACED = Camera("cam0", (640, 480), np.eye(3), np.zeros(5), np.eye(3), np.zeros(3))
 

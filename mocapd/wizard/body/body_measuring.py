@@ -26,7 +26,6 @@ from mocapd.wizard.step import Tell
 
 READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, everything is seen
 _TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
-_PATIENCE_S = 40.0  # in which the wearer must have been seen enough
 
 
 MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
@@ -58,7 +57,7 @@ def measure(
     watched: BodyWatch,
     tell: Tell,
     make_tracker: MakeTracker,
-    params: BodyObservationParams | None = None,
+    params: BodyObservationParams,
 ) -> BodyMeasurement | None:
     """Measure the wearer of a draft whose room, colours and stature are known; None when stopped.
 
@@ -69,17 +68,18 @@ def measure(
     ready = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
     observations = BodyObservations(model, draft.rig.cameras, params)
-    if not _watch(hub, draft.rig, ready, observations, watched, tell):
+    give_up_ns = monotonic_ns() + nanoseconds(params.patience_s)
+    if not _watch(hub, draft.rig, ready, observations, watched, tell, give_up_ns):
         return None
     tell("working out the proportions", SEEN)
     fit = fit_shape(observations.observations, model, draft.rig.cameras)
-    last = fit.states[-1], observations.observations[-1]
+    shown = fit.states[observations.pictured], observations.observations[observations.pictured]
     return BodyMeasurement(
         BodyShape(draft.stature_m, fit.factors),
         fit,
         scale_of(fit, model, draft.floor_known),
         {
-            camera.name: body_picture(observations.pictures[camera.name], camera, model, *last, i)
+            camera.name: body_picture(observations.pictures[camera.name], camera, model, *shown, i)
             for i, camera in enumerate(draft.rig.cameras)
             if camera.name in observations.pictures
         },
@@ -111,12 +111,12 @@ def _watch(
     observations: BodyObservations,
     watched: BodyWatch,
     tell: Tell,
+    give_up_ns: int,
 ) -> bool:
     """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
     collector = FrameCollector(rig.names, hub.bundler)
     entry = OnlyCameras(collector, frozenset(rig.names))
-    give_up_ns = monotonic_ns() + nanoseconds(_PATIENCE_S)
     hub.join(entry)
     try:
         while observations.share < 1.0:

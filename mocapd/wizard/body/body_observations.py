@@ -21,16 +21,18 @@ _SIDES = [
 @dataclass(frozen=True, slots=True)
 class BodyObservationParams:
     """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
-    `longest_good_s` of them without bends."""
+    `longest_good_s` of them without bends; `patience_s`: by when they must have been seen."""
 
     good_s: float = 4.5
     every_s: float = 0.15
     bend_rad: float = 0.6
     longest_good_s: float = 12.0
+    patience_s: float = 40.0
 
 
 class BodyObservations:
-    """Takes what a tracker says, frame set by frame set. Keeps the pictures of the last observation only."""
+    """Takes what a tracker says, frame set by frame set. Keeps the pictures of one observation, `pictured`: of the last
+    that as many cameras took part in as in any, for a camera's frame may come too late."""
 
     def __init__(
         self,
@@ -42,6 +44,7 @@ class BodyObservations:
         self._p = params if params is not None else BodyObservationParams()
         self.observations: list[BodyObservation] = []
         self.pictures: dict[str, Bytes] = {}
+        self.pictured = 0
         self._last: BodyObservation | None = None
         self._bends: list[Floats] = []
 
@@ -60,7 +63,9 @@ class BodyObservations:
         if self._last.t_ns >= due_ns:
             self.observations.append(self._last)
             self._bends.append(elbow_bends(body))
-            self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
+            if len(frames.frames) >= len(self.pictures):
+                self.pictures = {name: frame.pixels for name, frame in frames.frames.items()}
+                self.pictured = len(self.observations) - 1
         return True
 
     @property

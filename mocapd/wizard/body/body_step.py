@@ -19,6 +19,7 @@ from mocapd.wizard.body.body_measuring import (
     measure,
     measuring_tracker,
 )
+from mocapd.wizard.body.body_observations import BodyObservationParams
 from mocapd.wizard.body.body_verbs import BODY, MeasureBody, SkipBody, Stature
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
@@ -34,8 +35,14 @@ class BodyStep:
     name = StepName.BODY
     verbs = BODY
 
-    def __init__(self, context: Context, make_tracker: MakeTracker = measuring_tracker) -> None:
+    def __init__(
+        self,
+        context: Context,
+        make_tracker: MakeTracker = measuring_tracker,
+        params: BodyObservationParams | None = None,
+    ) -> None:
         self._context, self._make_tracker = context, make_tracker
+        self._params = params if params is not None else BodyObservationParams()
         self._watched: BodyWatch | None = None  # while a job measures
         self._measured: BodyMeasurement | None = None
         self._skipped = False
@@ -102,7 +109,7 @@ class BodyStep:
         context, watched = self._context, BodyWatch()
         self._watched, self._troubles = watched, ()
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
-        make_tracker = self._make_tracker
+        make_tracker, params = self._make_tracker, self._params
 
         def done(measured: BodyMeasurement | None) -> None:
             if measured is not None and watched is self._watched:
@@ -111,7 +118,7 @@ class BodyStep:
                 self._watched = None
 
         context.start_job(
-            lambda tell: measure(hub, draft, cache_dir, watched, tell, make_tracker), done
+            lambda tell: measure(hub, draft, cache_dir, watched, tell, make_tracker, params), done
         )
 
     def _found(self, measured: BodyMeasurement) -> None:
