@@ -1,15 +1,19 @@
-"""The clients' programs, each run once for all tests of a file."""
+"""The clients' programs, each run once for all tests."""
 
+import json
 import os
 import shutil
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from mocapd.file_lock import one_at_a_time
 from tests.clients.godot import godot_player
 from tests.clients.played import Played
-from tests.clients.stream_cases import streams
+from tests.clients.stream_cases import Stream, streams
+from tests.clients.unity import unity_player
 
 
 def need(*packages_of: tuple[str, str]) -> None:
@@ -23,14 +27,37 @@ def need(*packages_of: tuple[str, str]) -> None:
     pytest.skip(reason)
 
 
+def _told_once(
+    play: Callable[[dict[str, Stream], Path], dict[str, Any]],
+    name: str,
+    factory: pytest.TempPathFactory,
+) -> dict[str, Any]:
+    """What a client makes of every stream: played once, also where several processes share the tests."""
+    base = factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    told = shared / f"{name}.json"
+    with one_at_a_time(shared, f"{name}.lock"):
+        if not told.is_file():
+            told.write_text(json.dumps(play(streams(), factory.mktemp(name))))
+    read: dict[str, Any] = json.loads(told.read_text())
+    return read
+
+
 @pytest.fixture(scope="session")
 def godot_told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What the Godot add-on made of every stream; one process."""
+    """What the Godot add-on made of every stream."""
     need(("godot3-server", "godot3-server"))
-    return godot_player.play(streams(), tmp_path_factory.mktemp("godot"))
+    return _told_once(godot_player.play, "godot", tmp_path_factory)
 
 
-PLAYERS = ("godot",)
+@pytest.fixture(scope="session")
+def unity_told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What the Unity package made of every stream."""
+    need(("mcs", "mono-mcs"), ("mono", "mono-runtime"))
+    return _told_once(unity_player.play, "unity", tmp_path_factory)
+
+
+PLAYERS = ("godot", "unity")
 
 
 @pytest.fixture(scope="module", params=PLAYERS)
