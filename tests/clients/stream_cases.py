@@ -10,6 +10,9 @@ from collections.abc import Iterable
 
 import msgspec
 
+from mocapd.app.waving_person import waving_person
+from mocapd.body.shape import mean_shape
+from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.osc import osc_encoding as osc
 from mocapd.outputs.osc.osc_frame import FRAME, FRAME_TYPES, JOINT, JOINT_TYPES
 from mocapd.outputs.wire import Joint, SkeletonFrame
@@ -21,6 +24,8 @@ Stream = list[Step]
 
 AFTER_2038_NS = (2**31 + 5) * 1_000_000_000 + 7  # seconds that an int32 cannot hold
 FRAME_NS = 33_000_000
+RATE_HZ = 60
+STATURE_M = 1.75
 SEED = 10
 
 
@@ -140,6 +145,25 @@ def as_v2(packet: bytes) -> bytes:
     return packet.replace(b"/mocapd/v1/", b"/mocapd/v2/")
 
 
+def waving() -> list[SkeletonFrame]:
+    """A second of `mocapd send-test`: a person who waves and steps to the left."""
+    shape = mean_shape(STATURE_M)
+    frames = []
+    for seq in range(RATE_HZ):
+        gone_ns = seq * 1_000_000_000 // RATE_HZ
+        sample = waving_person(shape, gone_ns, gone_ns)
+        frame = skeleton_frame(
+            sample.track.body,
+            sample.skeleton,
+            instance="golden",
+            seq=seq,
+            publish_monotonic_ns=gone_ns,
+            unix_from_monotonic_ns=whole().capture_unix_ns,
+        )
+        frames.append(frame)
+    return frames
+
+
 def told_well() -> dict[str, Stream]:
     """Streams with nothing wrong in them, whatever the network did to their order."""
     golden, first = kept("whole"), whole()
@@ -157,6 +181,7 @@ def told_well() -> dict[str, Stream]:
         "a joint is missing": at(0.0, datagrams(msgspec.structs.replace(first, joints=without))),
         "added fields": at(0.0, [_added_fields()]),
         "after 2038": at(0.0, datagrams(msgspec.structs.replace(first, capture_unix_ns=AFTER_2038_NS))),
+        "waving": [step for f in waving() for step in at(f.seq / RATE_HZ, datagrams(f))],
         "two persons": at(0.0, [golden[0], *datagrams(moved(later(first, 0, person=1), 2.0)), golden[1]]),
     }  # fmt: skip
 

@@ -8,7 +8,7 @@ import pytest
 
 from mocapd.types import Floats
 from tests.clients.played import Played
-from tests.clients.stream_cases import AFTER_2038_NS, RECOVERS
+from tests.clients.stream_cases import AFTER_2038_NS, RECOVERS, waving
 from tests.golden import make_osc
 from tests.outputs.receivers.typed_osc import decoded
 
@@ -66,6 +66,17 @@ def test_every_joint_is_where_it_is(played: Stream, client: str, name: str) -> N
     assert positions_m["leftHand"][1] > positions_m["head"][1]
     assert side * (positions_m["leftFoot"][0] - positions_m["rightFoot"][0]) > 0.5
     assert positions_m["leftToes"][2] > positions_m["leftFoot"][2]  # faces +Z
+
+
+def test_a_person_who_moves_is_followed_frame_by_frame(played: Stream, client: str) -> None:
+    stream, frames = played("waving"), waving()
+    assert stream.frames == len(frames)
+    assert {tracking for _, tracking in stream.steps[1:]} == {"live"}
+    assert not stream.trouble
+    positions_m = stream.positions_m()
+    for name, joint in frames[-1].joints.items():
+        at_m = ENGINE_FROM_WORLD[client] @ joint.p
+        assert np.linalg.norm(positions_m[name] - at_m) < MILLIMETRE_M
 
 
 def test_what_comes_twice_counts_once(played: Stream) -> None:
