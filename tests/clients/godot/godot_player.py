@@ -40,7 +40,7 @@ def play(streams: dict[str, Stream], folder: Path) -> dict[str, Any]:
         "MOCAPD_PORT": str(free_port(socket.SOCK_DGRAM)),
     }
     command = ["godot3-server", "--path", str(folder), "-s", str(SCRIPT)]
-    run = subprocess.run(command, env=env, capture_output=True, text=True, timeout=300, check=False)
+    run = subprocess.run(command, env=env, capture_output=True, text=True, timeout=900, check=False)
     said = run.stdout + run.stderr
     assert run.returncode == 0, said
     assert "SCRIPT ERROR" not in said, said

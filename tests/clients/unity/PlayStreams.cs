@@ -173,7 +173,7 @@ namespace Mocapd.Tests
                 + Json(frame.Instance) + ",\"joints\":{" + string.Join(",", joints) + "}}";
         }
 
-        private static string Described(int bone, Joint joint, RestPose rest)
+        private static string Described(int bone, JointPose joint, RestPose rest)
         {
             string name = Bones.UnityName(bone);
             Vec3 at = joint.Position;

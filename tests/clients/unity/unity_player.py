@@ -53,7 +53,7 @@ def _compile(folder: Path, name: str, sources: Iterable[Path], references: Seque
 
 def _run(command: Sequence[str], folder: Path) -> str:
     run = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
+        command, cwd=folder, capture_output=True, text=True, timeout=900, check=False
     )
     assert run.returncode == 0, run.stdout + run.stderr
     return run.stdout

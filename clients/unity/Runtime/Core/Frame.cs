@@ -17,7 +17,7 @@ namespace Mocapd
     }
 
     /// <summary>One bone of a frame, in Unity's axes.</summary>
-    public readonly struct Joint
+    public readonly struct JointPose
     {
         /// <summary>In the world [m].</summary>
         public readonly Vec3 Position;
@@ -31,7 +31,7 @@ namespace Mocapd
         /// <summary>0..1, near 0 where there is no evidence.</summary>
         public readonly float Confidence;
 
-        public Joint(Vec3 position, Quat rotation, Quat localRotation, float confidence)
+        public JointPose(Vec3 position, Quat rotation, Quat localRotation, float confidence)
         {
             Position = position;
             Rotation = rotation;
@@ -43,7 +43,7 @@ namespace Mocapd
     /// <summary>One person at one instant. Not changed any more once it is whole.</summary>
     public sealed class Frame
     {
-        private readonly Joint[] _joints = new Joint[Bones.Count];
+        private readonly JointPose[] _joints = new JointPose[Bones.Count];
         private readonly bool[] _known = new bool[Bones.Count];
 
         /// <summary>Number of the person.</summary>
@@ -76,9 +76,9 @@ namespace Mocapd
         public bool Has(Bone bone) => _known[(int)bone];
 
         /// <summary>One bone; only meaningful where Has says so.</summary>
-        public Joint this[Bone bone] => _joints[(int)bone];
+        public JointPose this[Bone bone] => _joints[(int)bone];
 
-        internal void Set(int bone, Joint joint)
+        internal void Set(int bone, JointPose joint)
         {
             _joints[bone] = joint;
             _known[bone] = true;

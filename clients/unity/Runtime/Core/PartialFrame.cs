@@ -80,7 +80,7 @@ namespace Mocapd
             int bone = Bones.OfVrmName(name);
             if (bone >= 0) // else one that is newer than this package
             {
-                Frame.Set(bone, new Joint(
+                Frame.Set(bone, new JointPose(
                     UnityAxes.Position(n[0], n[1], n[2]),
                     UnityAxes.Rotation(n[3], n[4], n[5], n[6]),
                     UnityAxes.Rotation(n[7], n[8], n[9], n[10]),

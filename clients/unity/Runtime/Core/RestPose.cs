@@ -38,7 +38,7 @@ namespace Mocapd
                 {
                     continue;
                 }
-                Joint above = frame[(Bone)parent];
+                JointPose above = frame[(Bone)parent];
                 rest._offsets[bone] = above.Rotation.Inverse * (frame[(Bone)bone].Position - above.Position);
                 places[bone] = places[parent] + rest._offsets[bone];
                 lowest = Math.Min(lowest, places[bone].Y);

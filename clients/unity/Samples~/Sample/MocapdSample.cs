@@ -76,7 +76,7 @@ namespace Mocapd.Sample
         }
 
         // Unity's capsule is 2 m long, along its Y.
-        private static void Place(Transform limb, Joint from, Joint to)
+        private static void Place(Transform limb, JointPose from, JointPose to)
         {
             Vector3 start = from.Position.ToVector3();
             Vector3 along = to.Position.ToVector3() - start;
