@@ -5,12 +5,38 @@ Re-implements Malcolmnixon/GodotXRVmcTracker
 value and do not move on; Root/Pos, OK and T are ignored, so that travel must be in Hips;
 positions and rotations are chained from Hips, and a bone that was never told is at zero; z is
 turned round. A datagram from a new port makes that THE connection, and the old one is read no
-more.
+more. The XRBodyTracker gets joints with the axes of Godot's humanoid, no toes, every one flagged as
+tracked, and a root under the hips; tracking data are there from the first bone on, for ever.
 """
 
 import struct
 
-from tests.outputs.receivers.humanoid import ORIGIN, PARENT_OF, Transform, Vector, chained
+import numpy as np
+
+from mocapd.types import Floats
+from tests.outputs.receivers.godot_xr_body import ROOT, XrJoint, columns
+from tests.outputs.receivers.humanoid import (
+    ORIGIN,
+    PARENT_OF,
+    Quaternion,
+    Transform,
+    Vector,
+    chained,
+    rotated,
+)
+
+_ALL_TRACKED = 1 | 2 | 4 | 8
+# A joint's axes (the `roll` of its JOINT_MAPPING) on a person in the T-pose who faces -Z, the left at -X
+_AXES = {
+    **dict.fromkeys(("Hips", "Spine", "Chest", "UpperChest", "Neck", "Head"), "-X +Y -Z"),
+    "LeftShoulder": "-Z -X +Y", "LeftUpperArm": "+Z -X -Y", "LeftLowerArm": "-Y -X -Z", "LeftHand": "+Z -X -Y",
+    "RightShoulder": "+Z +X +Y", "RightUpperArm": "-Z +X -Y", "RightLowerArm": "+Y +X -Z", "RightHand": "-Z +X -Y",
+    **{
+        side + bone: axes
+        for side in ("Left", "Right")
+        for bone, axes in (("UpperLeg", "+X -Y -Z"), ("LowerLeg", "-X -Y +Z"), ("Foot", "+X -Z +Y"))
+    },
+}  # fmt: skip
 
 Peer = tuple[str, int]
 Value = int | float | str | bytes
@@ -25,6 +51,26 @@ class GodotXrVmcTracker:
         self._connection: Peer | None = None
         self._bones: dict[str, Transform] = dict.fromkeys(PARENT_OF, ORIGIN)
         self.poses = 0  # how often the body was posed
+
+    @property
+    def has_tracking_data(self) -> bool:
+        """Of the XRBodyTracker."""
+        return self.poses > 0
+
+    def tracker(self) -> dict[str, XrJoint]:
+        """The XRBodyTracker's joints, as they are set, in its tracking space."""
+        placed = chained(self._bones)
+        joints = {
+            bone: XrJoint(np.array(at_m), _matrix(turn) @ columns(_AXES[bone]), _ALL_TRACKED)
+            for bone, (at_m, turn) in placed.items()
+            if bone in _AXES
+        }
+        side, up = joints["Hips"].basis[:, 0], np.array([0.0, 1.0, 0.0])
+        back = -np.cross(side, up)
+        back /= np.linalg.norm(back)
+        floor_m = joints["Hips"].origin_m * (1.0, 0.0, 1.0)
+        heading = np.array([np.cross(up, back), up, back]).T
+        return {ROOT: XrJoint(floor_m, heading, _ALL_TRACKED), **joints}
 
     def receive(self, datagram: bytes, peer: Peer = ("127.0.0.1", 50000)) -> None:
         """Taken only from the newest connection."""
@@ -51,6 +97,11 @@ class GodotXrVmcTracker:
         px, py, pz, qx, qy, qz, qw = (float(value) for value in entry[2:9])
         self._bones[str(entry[1])] = ((px, py, -pz), (qx, qy, -qz, -qw))
         return True
+
+
+def _matrix(turn: Quaternion) -> Floats:
+    units: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    return np.array([rotated(turn, unit) for unit in units]).T
 
 
 class _OscReader:
