@@ -26,7 +26,7 @@ from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
 from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
-from mocapd.outputs.zenoh.zenoh_config import client_config
+from mocapd.outputs.zenoh.zenoh_client_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]

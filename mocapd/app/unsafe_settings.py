@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from mocapd.boundary.files import is_file
 from mocapd.boundary.folders import readable_by_others
 from mocapd.boundary.urls import has_password
+from mocapd.config.web_params import is_of_this_machine
 
 if TYPE_CHECKING:
     from mocapd.config.effective import Effective
@@ -14,7 +15,11 @@ if TYPE_CHECKING:
 
 def unsafe_settings(effective: "Effective") -> list[str]:
     """Each with what anybody could do, and the mend. Imports numba: after `prepare_libraries`."""
-    return [*_camera_passwords(effective), *_state(effective.config.state_dir)]
+    return [
+        *_camera_passwords(effective),
+        *_sites(effective.config.web.allow_origins),
+        *_state(effective.config.state_dir),
+    ]
 
 
 def _camera_passwords(effective: "Effective") -> list[str]:
@@ -35,6 +40,16 @@ def _camera_passwords(effective: "Effective") -> list[str]:
             f" ({_mode(file)}): `chmod 600 {file}`"
         ]
     return []
+
+
+def _sites(origins: tuple[str, ...]) -> list[str]:
+    sites = [origin for origin in origins if not is_of_this_machine(origin)]
+    if not sites:
+        return []
+    return [
+        f"web.allow_origins lets {' and '.join(sites)} see where the wearer is and moves, once a page from"
+        " there was given `mocapd web-link`: leave out what is not played"
+    ]
 
 
 def _state(folder: Path) -> list[str]:

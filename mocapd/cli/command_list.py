@@ -19,6 +19,7 @@ from mocapd.cli import (
     track,
     version,
     watch,
+    web_link,
 )
 from mocapd.cli import eval as evaluation
 
@@ -42,6 +43,7 @@ for command in (
     bench,
     watch,
     recenter,
+    web_link,
     send_test,
     cameras,
     check_config,

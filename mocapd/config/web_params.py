@@ -1,18 +1,60 @@
 """What a user may set of the page in the browser."""
 
+import re
 from dataclasses import dataclass
 from typing import Annotated
 
 from msgspec import Meta
 
+from mocapd.errors import ConfigError
+
+_LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
+_ORIGIN = re.compile(
+    r"(?P<scheme>https?)://(?P<host>[a-z0-9-]+(\.[a-z0-9-]+)*|\[[0-9a-f:]+\])(:(?P<port>[1-9]\d{0,4}))?"
+)
+_DEFAULT_PORTS = {"http": "80", "https": "443"}  # a browser leaves it out
+
 
 @dataclass(frozen=True, slots=True)
 class Params:
-    """The page with the setup and the live view, on this machine only (127.0.0.1).
+    """The page with the setup and the live view, on this machine only (127.0.0.1). Raises ConfigError.
 
     enabled: serve the page
     port: its TCP port; 0: a free one, told when it starts
+    allow_origins: sites whose pages may have the frames, and nothing else, once given `mocapd web-link`
     """
 
     enabled: bool = True
     port: Annotated[int, Meta(ge=0, le=65535)] = 0
+    allow_origins: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for origin in self.allow_origins:
+            _check_origin(origin)
+
+
+def is_of_this_machine(origin: str) -> bool:
+    """Whether only this machine serves pages of this origin."""
+    found = _ORIGIN.fullmatch(origin)
+    return found is not None and found["host"] in _LOOPBACK
+
+
+def _check_origin(origin: str) -> None:
+    """Raises ConfigError for what no browser would send, and for sites that a network could change."""
+    found = _ORIGIN.fullmatch(origin)
+    if found is None or found["port"] == _DEFAULT_PORTS[found["scheme"]]:
+        raise _refusal(
+            origin,
+            "write the origin as a browser does: https://game.example or http://localhost:8000, in small"
+            " letters, without a path, a * or the usual port",
+        )
+    if found["scheme"] == "http" and found["host"] not in _LOOPBACK:
+        raise _refusal(
+            origin,
+            f"write https{origin.removeprefix('http')} (whoever is on the way could change a page without"
+            " encryption), or an origin of this machine",
+        )
+
+
+def _refusal(origin: str, fix: str) -> ConfigError:
+    return ConfigError(f"{origin[:200]!r} does not do", "web.allow_origins", fix)

@@ -6,16 +6,20 @@ own that they let point here (DNS rebinding). So next to the token, Host and Ori
 A browser sends a cookie to every port of this machine, also to those of other users. So the page has
 a place of its own, a path that nobody can guess: its cookie is for that path alone, and holds a secret
 of the browser's session, not the token. Programs give the token, with or without that path.
+
+Sites that the user has allowed may have the frames' WebSocket and nothing else: see frames_access.
 """
 
 import secrets
-from dataclasses import dataclass
-from html import escape
 
 from starlette.datastructures import MutableHeaders
 from starlette.requests import HTTPConnection
 from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from mocapd.web.frames_access import PATH as FRAMES_PATH
+from mocapd.web.frames_access import FramesAccess
+from mocapd.web.refusal import Refusal, refusal_page
 
 TOKEN = "token"  # its name in the URL's query
 LET_IN = "let_in"  # in the scope's state, for the connection that asked
@@ -35,14 +39,6 @@ LONGEST_ADDRESS = 8 << 10  # path and query of a request [bytes]
 _WS_POLICY_VIOLATION = 1008
 
 
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """status: of HTTP; what: for people."""
-
-    status: int
-    what: str
-
-
 class Access:
     """ASGI middleware: lets in who may see the page, and puts the protecting headers on every answer.
 
@@ -50,8 +46,11 @@ class Access:
     where a cookie lets in from then on.
     """
 
-    def __init__(self, app: ASGIApp, port: int, token: str) -> None:
+    def __init__(
+        self, app: ASGIApp, port: int, token: str, frames: FramesAccess | None = None
+    ) -> None:
         self._app, self._token = app, token
+        self._frames = frames or FramesAccess()
         self._session = secrets.token_urlsafe(24)
         self._place = f"/{secrets.token_urlsafe(9)}"
         self._hosts = frozenset({f"127.0.0.1:{port}", f"localhost:{port}"})
@@ -95,7 +94,7 @@ class Access:
                 app = RedirectResponse(f"{self._place}/?{TOKEN}={self._token}", 303)
             await app(scope, receive, protected)
         elif scope["type"] == "http" or "websocket.http.response" in scope.get("extensions", {}):
-            answer = HTMLResponse(_page(refusal), refusal.status)
+            answer = HTMLResponse(refusal_page(refusal), refusal.status)
             await answer(scope, receive, protected)
         else:
             await send({"type": "websocket.close", "code": _WS_POLICY_VIOLATION})
@@ -109,6 +108,8 @@ class Access:
         hosts = connection.headers.getlist("host")
         if len(hosts) != 1 or hosts[0] not in self._hosts:
             return Refusal(403, "This address is not the one that mocapd printed.")
+        if connection.scope["type"] == "websocket" and connection.scope["path"] == FRAMES_PATH:
+            return self._frames.refusal(connection)
         if any(origin not in self._origins for origin in connection.headers.getlist("origin")):
             return Refusal(403, "Another site asked for this.")
         if not known:
@@ -120,13 +121,3 @@ class Access:
 
 def _same(given: str, secret: str) -> bool:
     return secrets.compare_digest(given.encode(errors="replace"), secret.encode())
-
-
-def _page(refusal: Refusal) -> str:
-    return (
-        "<!doctype html><html lang=en><meta charset=utf-8>"
-        "<meta name=viewport content='width=device-width'><title>mocapd</title>"
-        f"<h1>Not let in</h1><p>{escape(refusal.what)}</p>"
-        "<p>Open the whole address that <code>mocapd calibrate</code> printed in its terminal, "
-        "on the machine where it runs.</p></html>"
-    )

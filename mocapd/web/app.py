@@ -15,6 +15,9 @@ import mocapd
 from mocapd.boundary.messages import decode_json
 from mocapd.errors import MalformedError, MocapdError
 from mocapd.web.encoder import PictureEncoder
+from mocapd.web.frames_access import PATH as FRAMES_PATH
+from mocapd.web.frames_access import FramesAccess
+from mocapd.web.frames_link import MOST_GAMES, FramesLink
 from mocapd.web.host import Host
 from mocapd.web.live_link import LiveLink
 from mocapd.web.picture_link import picture_link
@@ -38,16 +41,17 @@ MOST_SOCKETS = 24  # WebSockets at once; a window has three
 _PNG = b"\x89PNG"
 
 
-def make_app(host: Host, encoder: PictureEncoder) -> Starlette:
+def make_app(host: Host, encoder: PictureEncoder, frames: FramesAccess | None = None) -> Starlette:
     """The routes; who may use them is decided before (see access)."""
-    return Starlette(routes=_Routes(host, encoder).routes())
+    return Starlette(routes=_Routes(host, encoder, frames or FramesAccess()).routes())
 
 
 class _Routes:
-    def __init__(self, host: Host, encoder: PictureEncoder) -> None:
-        self._host, self._encoder = host, encoder
+    def __init__(self, host: Host, encoder: PictureEncoder, frames: FramesAccess) -> None:
+        self._host, self._encoder, self._frames_access = host, encoder, frames
         self._seat = Seat()
-        self._sockets = 0  # that are open
+        self._sockets = 0  # that are open, of our own page
+        self._games = 0  # and of allowed sites, which take no room of the page's
         # all of them, now: no path is ever made of what somebody asks for
         self._files = {
             path.name: (path.read_bytes(), MEDIA_TYPES[path.suffix])
@@ -67,6 +71,7 @@ class _Routes:
             WebSocketRoute("/pictures", self._pictures),
             WebSocketRoute("/live", self._live),
             WebSocketRoute("/recording", self._recording),
+            WebSocketRoute(FRAMES_PATH, self._frames),
         ]
 
     async def _index(self, _request: Request) -> Response:
@@ -98,6 +103,8 @@ class _Routes:
                 cameras=hub.names if hub is not None else (),
                 setup=wizard.view().step.value if wizard is not None else None,
                 tracks=host.snapshot() is not None,
+                origins=self._frames_access.origins,
+                frames_key=self._frames_access.key,
             )
         )
 
@@ -141,6 +148,16 @@ class _Routes:
 
     async def _recording(self, socket: WebSocket) -> None:
         await self._if_room(socket, RecordingLink(socket, self._host, self._encoder.executor).run)
+
+    async def _frames(self, socket: WebSocket) -> None:
+        if self._games >= MOST_GAMES:
+            await socket.send_denial_response(PlainTextResponse("too many games", 503))
+            return
+        self._games += 1
+        try:
+            await FramesLink(socket, self._host).run()
+        finally:
+            self._games -= 1
 
     async def _if_room(self, socket: WebSocket, run: Callable[[], Awaitable[None]]) -> None:
         if self._sockets >= MOST_SOCKETS:

@@ -42,6 +42,12 @@ async def understood(socket: WebSocket, kind: type[T]) -> T:
         raise BadMessageError(str(error)) from error
 
 
+async def hear_nothing(socket: WebSocket) -> None:
+    """For a WebSocket on which only we speak. Raises WebSocketDisconnect or BadMessageError."""
+    await received(socket)
+    raise BadMessageError("nothing is to be said here")
+
+
 async def send_json(socket: WebSocket, message: object) -> None:
     """Send a message as text; see `as_json`. Raises WebSocketDisconnect."""
     await _sent(socket.send_text(as_json(message).decode()))

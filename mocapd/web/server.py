@@ -28,6 +28,7 @@ from mocapd.web.connections import (
     SocketConnection,
 )
 from mocapd.web.encoder import PictureEncoder
+from mocapd.web.frames_access import frames_access
 from mocapd.web.host import Host
 from mocapd.web.links import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs
@@ -51,6 +52,7 @@ class WebServer:
         place: Place | None = None,
     ) -> None:
         self._host, self._port, self._died = host, params.port, died
+        self._origins = params.allow_origins
         self._place = place
         self._token = secrets.token_urlsafe(24)
         self._executor = ThreadPoolExecutor(1, thread_name_prefix="web-encode")
@@ -88,12 +90,17 @@ class WebServer:
     def start(self) -> None:
         """Returns as soon as the page can be asked for.
 
-        Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced.
+        Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced, and as
+        `frames_access`.
         """
+        frames = frames_access(
+            self._origins, None if self._place is None else self._place.state_dir
+        )
         listening = _listen(self._port)
         self._port = listening.getsockname()[1]
         limit_logs()
-        app = Access(make_app(self._host, self.encoder), self._port, self._token)
+        routes = make_app(self._host, self.encoder, frames)
+        app = Access(routes, self._port, self._token, frames)
         config = uvicorn.Config(
             _Deadly(app, self._died),
             loop="asyncio",

@@ -7,13 +7,17 @@ from msgspec import Meta
 
 
 class Status(msgspec.Struct, frozen=True):
-    """GET /status. setup: the step that is shown; None without a setup. tracks: whether bodies come."""
+    """GET /status. setup: the step that is shown; None without a setup. tracks: whether bodies come;
+    origins,
+    frames_key: see FramesAccess."""
 
     version: str
     pid: int
     cameras: tuple[str, ...]
     setup: str | None
     tracks: bool
+    origins: tuple[str, ...] = ()
+    frames_key: str = ""
 
 
 class SetupRequest(msgspec.Struct, frozen=True):

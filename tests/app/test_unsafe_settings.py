@@ -82,3 +82,9 @@ def test_a_camera_with_an_odd_name_is_a_camera(clean_env: dict[str, str]) -> Non
     assert outcome.code == 0, outcome.err
     camera = json.loads(outcome.out)["camera"]["value"][0]
     assert (camera["id"], camera["source"]) == ('a"\n\\', "usb:\x7f")
+
+
+def test_a_site_elsewhere_that_may_have_the_frames_is_told(file: Path) -> None:
+    assert told(file, **{"web.allow_origins": '["http://localhost:8000"]'}) == ""
+    lines = told(file, **{"web.allow_origins": '["https://game.example", "http://localhost:8000"]'})
+    assert "lets https://game.example see" in lines

@@ -18,7 +18,7 @@ import zenoh
 
 from mocapd.client import Client, Link
 from mocapd.errors import UnavailableError
-from mocapd.outputs.zenoh.zenoh_config import client_config
+from mocapd.outputs.zenoh.zenoh_client_config import client_config
 from tests.attacks.scenario import Found
 from tests.conftest import ROOT
 

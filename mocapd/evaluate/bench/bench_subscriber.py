@@ -14,7 +14,7 @@ from mocapd.outputs import wire
 from mocapd.outputs.messages import Health
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_config import client_config
+from mocapd.outputs.zenoh.zenoh_client_config import client_config
 
 CONNECT_S = 1.0
 ANSWER_S = 2.0

@@ -204,19 +204,3 @@ READ_ONLY: dict[str, Any] = {
     "subjects": [{"id": "anyone"}],
     "policies": [{"rules": ["ask", "tell"], "subjects": ["anyone"]}],
 }
-
-
-def client_config(
-    endpoint: str, *, timeout_s: float, tls_root_ca: str = "", user: str = "", password: str = ""
-) -> dict[str, Any]:
-    """Zenoh's configuration for a program that connects to `endpoint` and listens nowhere."""
-    return {
-        "mode": "client",
-        "connect": {"endpoints": [endpoint], "timeout_ms": round(timeout_s * 1000)},
-        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
-        "transport": {
-            "shared_memory": {"enabled": False},
-            "link": {"tls": {"root_ca_certificate": tls_root_ca or None}},
-            "auth": {"usrpwd": {"user": user or None, "password": password or None}},
-        },
-    }

@@ -1,0 +1,35 @@
+"""`mocapd web-link`"""
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.errors import ConfigError
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("web-link")(web_link)
+
+
+def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
+    """Print what to open so that a game in the browser gets the frames of the running daemon.
+
+    One line for each site in web.allow_origins. What follows the # lets that site have the frames: give it to no other.
+
+    Example: mocapd web-link
+    """
+    from urllib.parse import urlsplit
+
+    from mocapd.app.chosen_page import daemon_meant
+    from mocapd.web.frames_access import FramesAccess
+
+    daemon = daemon_meant(effective_config(config, settings).config)
+    if not daemon.status.origins:
+        raise ConfigError(
+            "the running mocapd allows no site",
+            "web.allow_origins",
+            "start it with the site's origin, such as --set 'web.allow_origins=[\"http://localhost:8000\"]'",
+        )
+    access = FramesAccess(daemon.status.origins, daemon.status.frames_key)
+    for link in access.links(urlsplit(daemon.url).netloc):
+        print(link)
