@@ -49,7 +49,7 @@ Arrivals = dict[int, int]  # of each frame, by number: CLOCK_MONOTONIC [ns]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Delivery:
+class DeliveryTimes:
     """under_way_ms: by way, of each frame that came; lost: by way, frames that did not; busy_share: of one core, that the
     sending process took for all outputs together."""
 
@@ -58,7 +58,7 @@ class Delivery:
     busy_share: float
 
 
-def deliver(seconds: float) -> Delivery:
+def deliver(seconds: float) -> DeliveryTimes:
     """Send for so long. Raises UnavailableError for a port that is taken meanwhile."""
     with ExitStack() as opened:
         silent = [
@@ -85,7 +85,7 @@ def deliver(seconds: float) -> Delivery:
         }
         sent_ns, busy_share = _send(sinks, seconds)
         heard = {way: _heard(game) for way, game in games.items()}
-    return Delivery(
+    return DeliveryTimes(
         {
             way: np.array([(at_ns - sent_ns[seq]) / 1e6 for seq, at_ns in arrivals.items()])
             for way, arrivals in heard.items()
