@@ -19,7 +19,10 @@ from mocapd.cli.options import (
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
+    from mocapd.config.sections import Config
+    from mocapd.evaluate.capture_eval import BuildTracker, Case
     from mocapd.evaluate.runs import EvaluationResults
+    from mocapd.session.tracker_setup import ReadyTracker
 
 
 class Joints(StrEnum):
@@ -56,6 +59,10 @@ def evaluate_captures(
             help="Run the tracker, the method as published and its baseline, and compare."
         ),
     ] = None,
+    prediction: Annotated[
+        bool,
+        typer.Option("--prediction", help="Score poses predicted for the time of display instead."),
+    ] = False,
     joints: Annotated[Joints, typer.Option(help="Which joints are scored.")] = Joints.UPPER,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
     out: Annotated[
@@ -100,6 +107,9 @@ def evaluate_captures(
             tracker, section = rivals.get(method, (name, sections[name]))
             return ready_tracker(tracker, known, cached(effective.cache_dir, progress), section)
 
+        if prediction:
+            typer.echo(_prediction(cases, effective, build))
+            return
         setting = runs.EvaluationSettings(
             build, effective.tracker.stature_m, joints.value, progress
         )
@@ -113,6 +123,18 @@ def evaluate_captures(
         words = _command(captures, name, compare, joints, out)
         for path in write_page(out, findings, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
+
+
+def _prediction(cases: "list[Case]", config: "Config", build: "BuildTracker") -> str:
+    from mocapd.calibration.from_origin import from_capture
+    from mocapd.evaluate.compare import FULL
+    from mocapd.evaluate.prediction_error import prediction_table
+
+    def built(case: "Case") -> "ReadyTracker":
+        known = from_capture(case.folder).assuming(config.tracker.stature_m)
+        return build(known, FULL)
+
+    return prediction_table(cases, built, config.smoothing.preset)
 
 
 def _print(findings: "EvaluationResults", as_json: bool) -> None:

@@ -1,25 +1,17 @@
 """How far off a pose is that was predicted for the time of display, beside the last pose held until then.
 
-`python -m mocapd.evaluate.prediction_error CAPTURE... [--smoothing PRESET]` tracks recorded captures as the daemon
-does, smoothing included, and prints the table of docs/prediction.md. Hands only: what moves fastest.
+Recorded captures are tracked as the daemon does, smoothing included. Hands only: what moves fastest.
 """
 
-import argparse
-import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from mocapd.app.libraries import prepare_libraries
-from mocapd.app.progress import ProgressBars
 from mocapd.body.shape import skeleton_of
-from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
-from mocapd.config.effective import load_config
-from mocapd.evaluate.capture_eval import Case, open_case
+from mocapd.evaluate.capture_eval import Case
 from mocapd.evaluate.score import SKIP_S
 from mocapd.evaluate.tables import number, table
 from mocapd.evaluate.truth import Truth
@@ -27,7 +19,7 @@ from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
+from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.types import Floats
 
 AHEAD_S = (0.0, 0.016, 0.033, 0.05)
@@ -44,7 +36,7 @@ class PredictionErrors:
 
 
 def published(case: Case, ready: ReadyTracker, preset: str) -> Iterator[SkeletonFrame]:
-    """What a daemon would send while it watches this capture."""
+    """What a daemon with this preset of smoothing would send while it watches this capture."""
     shape = ready.shape
     smoother = Smoother(preset, skeleton_of(shape))
     for seq, frames in enumerate(frame_sets(case.folder)):
@@ -104,6 +96,19 @@ def _true_hands(truth: Truth, at_s: float) -> Floats | None:
     return hands if np.isfinite(hands).all() else None
 
 
+def prediction_table(
+    cases: Sequence[Case], build: Callable[[Case], ReadyTracker], preset: str
+) -> str:
+    """RMS of the hands [cm] by capture: held → predicted (their ratio). `build` makes the tracker of a capture."""
+    found = [
+        (case.name, prediction_errors(published(case, build(case), preset), case.truth))
+        for case in cases
+    ]
+    rows = [_row(name, [errors]) for name, errors in found]
+    rows.append(_row("all", [errors for _, errors in found]))
+    return table(["capture", "0 ms", *(f"{1e3 * ahead_s:.0f} ms" for ahead_s in AHEAD_S[1:])], rows)
+
+
 def _row(name: str, errors: Sequence[PredictionErrors]) -> list[str]:
     cells = [name]
     for ahead_s in AHEAD_S:
@@ -119,33 +124,3 @@ def _row(name: str, errors: Sequence[PredictionErrors]) -> list[str]:
             continue
         cells.append(f"{number(held, 2)} → {number(predicted, 2)} ({number(predicted / held, 2)})")
     return cells
-
-
-def main() -> None:
-    """The command in the module's docstring."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("captures", type=Path, nargs="+", help="folders with a truth.npz")
-    parser.add_argument("--smoothing", default="balanced", help="preset [default: balanced]")
-    told = parser.parse_args()
-    config = load_config().config
-    prepare_libraries(config.cache_dir)
-    rows, all_errors = [], []
-    with ProgressBars() as progress:
-        for capture in told.captures:
-            case = open_case(capture)
-            own = config.tracker
-            ready = ready_tracker(
-                own.name,
-                from_capture(case.folder).assuming(own.stature_m),
-                cached(config.cache_dir, progress),
-                own.sections[own.name],
-            )
-            all_errors.append(prediction_errors(published(case, ready, told.smoothing), case.truth))
-            rows.append(_row(case.name, all_errors[-1:]))
-    rows.append(_row("all", all_errors))
-    header = ["capture", "0 ms", *(f"{1e3 * ahead_s:.0f} ms" for ahead_s in AHEAD_S[1:])]
-    sys.stdout.write(table(header, rows) + "\n")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,7 @@
 """How long a frame is under way from the daemon's outputs to a game on this machine, and what all outputs cost.
 
 `python -m mocapd.evaluate.bench.bench_delivery [--seconds S]` sends frames at 60 Hz to every output at once. A game
-hears them in a process of its own, by `mocapd.client` and by plain UDP.
+hears them in a process of its own, by Zenoh and by plain UDP.
 """
 
 import argparse
@@ -10,7 +10,6 @@ import socket
 import struct
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
@@ -18,10 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd import client
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.evaluate.bench.bench_outputs import RATE_HZ, STATURE_M, moving_frames
+from mocapd.evaluate.bench.bench_subscriber import Subscriber
 from mocapd.evaluate.tables import number, table
 from mocapd.outputs.base import Sink
 from mocapd.outputs.from_skeleton import rest_skeleton
@@ -129,14 +128,12 @@ def hear(way: str, port: int) -> Arrivals:
     """What a game does: every frame, until it is silent."""
     arrivals: Arrivals = {}
     if way == "zenoh":
-        with client.Client(client.Link(f"tcp/127.0.0.1:{port}")) as game:
+        with Subscriber(f"tcp/127.0.0.1:{port}", _INSTANCE) as game:
+            while not game.connect():
+                time.sleep(0.1)
             _say(_READY)
-            ending = threading.Thread(target=_close_when_silent, args=(game, arrivals))
-            ending.start()
-            for body in game:
-                arrivals[body.seq] = monotonic_ns()
-            ending.join()
-        return arrivals
+            _wait_for_silence(game)
+            return {heard.frame.seq: heard.arrival_ns for heard in game.heard()}
     with _bound(port) as listening:
         _say(_READY)
         for seq in _whole_frames(listening):
@@ -144,14 +141,12 @@ def hear(way: str, port: int) -> Arrivals:
     return arrivals
 
 
-def _close_when_silent(game: client.Client, arrivals: Arrivals) -> None:
-    """Ends its iteration."""
+def _wait_for_silence(game: Subscriber) -> None:
     before, silent_s = 0, 0.0
-    while silent_s < (_SILENT_S if arrivals else 10 * _SILENT_S):
+    while silent_s < (_SILENT_S if before else 10 * _SILENT_S):
         time.sleep(0.1)
-        silent_s = silent_s + 0.1 if len(arrivals) == before else 0.0
-        before = len(arrivals)
-    game.close()
+        silent_s = silent_s + 0.1 if game.count == before else 0.0
+        before = game.count
 
 
 def _say(text: str) -> None:

@@ -65,6 +65,11 @@ class Subscriber:
     def _arrived(self, sample: zenoh.Sample) -> None:
         self._received.append((monotonic_ns(), sample.payload.to_bytes()))
 
+    @property
+    def count(self) -> int:
+        """Of frames so far."""
+        return len(self._received)
+
     def heard(self) -> list[Heard]:
         """Every frame so far, in order of arrival."""
         return [Heard(wire.decode(data), at_ns) for at_ns, data in tuple(self._received)]
