@@ -20,7 +20,7 @@ PAGES = (
     *ROOT.glob("*.md"),
     *(ROOT / "docs").rglob("*.md"),
     *(ROOT / "locks").rglob("*.md"),
-    *(ROOT / "clients").rglob("*.md"),
+    *(page for page in (ROOT / "clients").rglob("*.md") if "node_modules" not in page.parts),
     *(ROOT / "mocapd").rglob("*.md"),
 )
 MODULES = tuple((ROOT / "mocapd").rglob("*.py"))

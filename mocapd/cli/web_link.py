@@ -21,7 +21,7 @@ def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
     from urllib.parse import urlsplit
 
     from mocapd.app.chosen_page import daemon_meant
-    from mocapd.web.frames_access import FramesAccess
+    from mocapd.web.games.frames_access import FramesAccess
 
     daemon = daemon_meant(effective_config(config, settings).config)
     if not daemon.status.origins:

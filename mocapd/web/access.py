@@ -7,7 +7,7 @@ A browser sends a cookie to every port of this machine, also to those of other u
 a place of its own, a path that nobody can guess: its cookie is for that path alone, and holds a secret
 of the browser's session, not the token. Programs give the token, with or without that path.
 
-Sites that the user has allowed may have the frames' WebSocket and nothing else: see frames_access.
+Sites that the user has allowed may have the frames' WebSocket and nothing else: see games.frames_access.
 """
 
 import secrets
@@ -17,8 +17,8 @@ from starlette.requests import HTTPConnection
 from starlette.responses import HTMLResponse, RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from mocapd.web.frames_access import PATH as FRAMES_PATH
-from mocapd.web.frames_access import FramesAccess
+from mocapd.web.games.frames_access import PATH as FRAMES_PATH
+from mocapd.web.games.frames_access import FramesAccess
 from mocapd.web.refusal import Refusal, refusal_page
 
 TOKEN = "token"  # its name in the URL's query

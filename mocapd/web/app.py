@@ -15,9 +15,9 @@ import mocapd
 from mocapd.boundary.messages import decode_json
 from mocapd.errors import MalformedError, MocapdError
 from mocapd.web.encoder import PictureEncoder
-from mocapd.web.frames_access import PATH as FRAMES_PATH
-from mocapd.web.frames_access import FramesAccess
-from mocapd.web.frames_link import MOST_GAMES, FramesLink
+from mocapd.web.games.frames_access import PATH as FRAMES_PATH
+from mocapd.web.games.frames_access import FramesAccess
+from mocapd.web.games.frames_link import MOST_GAMES, FramesLink
 from mocapd.web.host import Host
 from mocapd.web.live_link import LiveLink
 from mocapd.web.picture_link import picture_link

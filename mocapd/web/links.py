@@ -34,18 +34,15 @@ async def received(socket: WebSocket) -> str | bytes:
     return text if text is not None else data
 
 
-async def understood(socket: WebSocket, kind: type[T]) -> T:
-    """The next message as `kind`. Raises WebSocketDisconnect or BadMessageError."""
+async def understood(socket: WebSocket, kind: type[T], longest: int = LONGEST_MESSAGE) -> T:
+    """The next message as `kind`, of at most `longest` bytes. Raises WebSocketDisconnect or BadMessageError."""
+    said = await received(socket)
+    if len(said) > longest:
+        raise BadMessageError("that is too much")
     try:
-        return decode_json(await received(socket), kind)
+        return decode_json(said, kind)
     except MalformedError as error:
         raise BadMessageError(str(error)) from error
-
-
-async def hear_nothing(socket: WebSocket) -> None:
-    """For a WebSocket on which only we speak. Raises WebSocketDisconnect or BadMessageError."""
-    await received(socket)
-    raise BadMessageError("nothing is to be said here")
 
 
 async def send_json(socket: WebSocket, message: object) -> None:

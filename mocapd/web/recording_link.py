@@ -19,7 +19,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame
 from mocapd.web.encoder import Picture, delivered, encode
 from mocapd.web.host import Host
-from mocapd.web.links import hear_nothing, send_bytes, serve
+from mocapd.web.links import BadMessageError, received, send_bytes, serve
 from mocapd.web.picture_link import message
 
 MOST_WAITING = 24  # pictures of all cameras: a third of a second of two
@@ -58,7 +58,11 @@ class RecordingLink:
 
     async def run(self) -> None:
         """Until the recorder leaves."""
-        await serve(self._socket, self._send(), hear_nothing(self._socket))
+        await serve(self._socket, self._send(), self._listen())
+
+    async def _listen(self) -> None:
+        await received(self._socket)
+        raise BadMessageError("nothing is to be said here")
 
     async def _send(self) -> None:
         loop = asyncio.get_running_loop()

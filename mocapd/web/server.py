@@ -28,7 +28,7 @@ from mocapd.web.connections import (
     SocketConnection,
 )
 from mocapd.web.encoder import PictureEncoder
-from mocapd.web.frames_access import frames_access
+from mocapd.web.games.frames_access import frames_access
 from mocapd.web.host import Host
 from mocapd.web.links import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs

@@ -16,11 +16,12 @@ from websockets.sync.client import ClientConnection
 from websockets.sync.client import connect as open_socket
 from websockets.typing import Origin
 
+from mocapd.clock import NS_PER_S
 from mocapd.config.web_params import Params
 from mocapd.errors import InputError
 from mocapd.outputs import messages, wire
-from mocapd.web.frames_access import FILE_NAME, FramesAccess
-from mocapd.web.frames_link import MOST_GAMES
+from mocapd.web.games.frames_access import FILE_NAME, FramesAccess
+from mocapd.web.games.frames_link import MOST_GAMES, UNREAD
 from mocapd.web.runtime_file import Place, running
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, connect, get, origin_of, token_of, until_closed
@@ -184,9 +185,30 @@ def test_without_allowed_origins_nobody_is_let_in(host: TinyHost, place: Place) 
     assert not (place.state_dir / FILE_NAME).exists()
 
 
-def test_who_says_something_is_shown_out(server: WebServer, place: Place) -> None:
+def test_a_page_that_reads_slowly_gets_the_newest_and_no_backlog(
+    server: WebServer, place: Place
+) -> None:
     with opened(address_of(server, place), SITE) as link:
-        link.send("let me in")
+        link.recv(PATIENCE_S)  # the rest skeleton
+        first = [json.loads(link.recv(PATIENCE_S)) for _ in range(UNREAD)]
+        with pytest.raises(TimeoutError):
+            link.recv(0.1)
+        for frame in first:
+            link.send(json.dumps({"seen": frame["seq"]}))
+        after = json.loads(link.recv(PATIENCE_S))
+        assert after["seq"] == UNREAD
+        assert after["capture_unix_ns"] - first[-1]["capture_unix_ns"] >= 0.1 * NS_PER_S
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["let me in", '{"seen": -1}', '{"seen": "all"}', '{"seen": 1' + " " * 200 + "}", b"\xff"],
+)
+def test_who_says_anything_else_is_shown_out(
+    server: WebServer, place: Place, word: str | bytes
+) -> None:
+    with opened(address_of(server, place), SITE) as link:
+        link.send(word)
         with pytest.raises(ConnectionClosedError):
             until_closed(link)
 

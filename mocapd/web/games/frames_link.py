@@ -2,12 +2,17 @@
 
 First `mocapd.Skeleton.Rest.v1`, and again when it changes noticeably; then `mocapd.Skeleton.v1` as often as the
 body changes. Both without the names of this machine and its cameras, which are no site's business.
+
+The page answers each frame with its number, {seen}: a page that is too slow for all of them skips some, and none waits
+for it in the sockets' buffers.
 """
 
 import asyncio
-import itertools
 from dataclasses import replace
+from typing import Annotated
 
+import msgspec
+from msgspec import Meta
 from starlette.websockets import WebSocket
 
 from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
@@ -18,11 +23,19 @@ from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.types import BodyState, Skeleton
 from mocapd.web.host import Host
-from mocapd.web.links import hear_nothing, send_json, serve
+from mocapd.web.links import send_json, serve, understood
 
 MOST_GAMES = 4  # of these WebSockets at once
+UNREAD = 2  # frames that are on their way to a page at once
 NOBODY = ""  # in place of the instance
 _LOOK_EVERY_S = 0.008
+_LONGEST_ANSWER = 100  # [bytes]
+
+
+class Seen(msgspec.Struct, frozen=True):
+    """The page has read this frame, and all before it."""
+
+    seen: Annotated[int, Meta(ge=0, le=2**53)]
 
 
 class FramesLink:
@@ -30,23 +43,31 @@ class FramesLink:
 
     def __init__(self, socket: WebSocket, host: Host) -> None:
         self._socket, self._host = socket, host
+        self._sent = self._read = 0  # frames
 
     async def run(self) -> None:
-        """Until it leaves, or says something."""
-        await serve(self._socket, self._send(), hear_nothing(self._socket))
+        """Until it leaves, or says what is not understood."""
+        await serve(self._socket, self._send(), self._listen())
+
+    async def _listen(self) -> None:
+        while True:
+            answer = await understood(self._socket, Seen, _LONGEST_ANSWER)
+            self._read = max(self._read, min(answer.seen + 1, self._sent))
 
     async def _send(self) -> None:
-        numbers = itertools.count()
         newest: BodyState | None = None
         told: Skeleton | None = None
         while True:
             found = self._host.body()
-            if found is not None and found.body is not newest:
+            waited_for = self._sent - self._read >= UNREAD
+            if found is not None and found.body is not newest and not waited_for:
                 newest = found.body
                 if told is None or is_noticeable(told, found.skeleton):
                     told = found.skeleton
                     await send_json(self._socket, _rest(found))
-                await send_json(self._socket, _frame(found, next(numbers)))
+                frame = _frame(found, self._sent)
+                self._sent += 1
+                await send_json(self._socket, frame)
             await asyncio.sleep(_LOOK_EVERY_S)
 
 
