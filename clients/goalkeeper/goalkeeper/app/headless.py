@@ -52,7 +52,7 @@ def play_headless(
         for event in steps.tick():
             if isinstance(event, Saved | Conceded):
                 lines.append(_line(event))
-            pauses += isinstance(event, Paused)
+            pauses += isinstance(event, Paused) and not stream.state().ended
     return Report(match.score, match.difficulty.level, tuple(lines), pauses, ticks * TICK_S)
 
 

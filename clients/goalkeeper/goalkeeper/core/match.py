@@ -104,9 +104,7 @@ class Match:
 
     @property
     def wind_up(self) -> float:
-        """How much of the run-up before the next shot is done, 0..1; 1 from the shot on until the ball is loose."""
-        if self.ball is not None and self.ball.since_launch_s < 0.4:
-            return 1.0
+        """How much of the run-up before the next shot is done, 0..1."""
         if self.shot is None:
             return 0.0
         return min(max(1.0 - (self.shot.launch_s - self.t_s) / _WIND_UP_S, 0.0), 1.0)
