@@ -11,7 +11,7 @@ from goalkeeper.core.pitch import TICK_S
 from mocapd.types import Floats
 
 LOOKS = 32
-NEAR_M = 2.0  # before the goal line; farther away no ball can touch a keeper of these tests
+NEAR_M = 1.3  # before the goal line; farther away no ball can touch a keeper of these tests
 # Two surfaces may be this far apart, or in each other, and be called touching or not: TOUCH_M of the swept test,
 # the sag of a path that it takes for straight within a tick (0.09 mm), and what lies between two looks.
 GRAZING_M = 4e-4

@@ -9,11 +9,12 @@ from goalkeeper.core.flight import BALL_RADIUS_M, BOUNCE, GRAVITY_MPS2
 from goalkeeper.core.limbs import ENDS, RADII_M, STARTS, LimbPose, known_limbs
 from goalkeeper.core.pitch import GOAL_DEPTH_M, GOAL_LINE_Z_M, TICK_S
 from goalkeeper.core.shots import Shot
-from goalkeeper.core.sweep import Capsules, Contact, first_contact
+from goalkeeper.core.sweep import TOUCH_M, Capsules, Contact, first_contact
 from mocapd.types import Floats
 
 # The whole ball over the line.
 OVER_LINE_Z_M = GOAL_LINE_Z_M - BALL_RADIUS_M
+_THICKEST_M = float(RADII_M.max()) + TOUCH_M
 _REBOUND = 0.45  # of the speed against the limb
 _LEAST_AWAY_MPS = 1.5  # from the goal, after a save
 _NET_STOPS = 0.25  # of the speed that is left in the net
@@ -105,7 +106,9 @@ class ShotBall:
     ) -> Outcome | None:
         flight = self.shot.flight
         from_m, to_m = flight.at(begin_s), flight.at(end_s)
-        contact = first_contact(from_m, to_m, BALL_RADIUS_M, swept_capsules(before, now))
+        contact = None
+        if min(from_m[2], to_m[2]) < _nearest_z_m(before, now):
+            contact = first_contact(from_m, to_m, BALL_RADIUS_M, swept_capsules(before, now))
         over = 2.0  # the part of the piece after which the ball is in the goal; more than 1: not in this one
         if to_m[2] <= OVER_LINE_Z_M:
             over = float((from_m[2] - OVER_LINE_Z_M) / (from_m[2] - to_m[2]))
@@ -120,6 +123,12 @@ class ShotBall:
             self._loose = LooseBall(to_m, velocity)
             return Outcome(-1, speed_mps, to_m)
         return None
+
+
+def _nearest_z_m(before: LimbPose, now: LimbPose) -> float:
+    """A ball farther out than this touches nothing: most ticks of a flight are over with that."""
+    farthest_out = max(float(before.points_m[:, 2].max()), float(now.points_m[:, 2].max()))
+    return farthest_out + _THICKEST_M + BALL_RADIUS_M
 
 
 def swept_capsules(before: LimbPose, now: LimbPose) -> Capsules:
