@@ -15,7 +15,7 @@ import numpy as np
 import platformdirs
 
 from goalkeeper.app.game import Game, GameParts
-from goalkeeper.app.window import SOFTWARE_HZ, Pace, calm_collector
+from goalkeeper.app.window import SOFTWARE_HZ, WAITING_HZ, Pace, calm_collector
 from goalkeeper.core.match import Match, MatchRules, Phase
 from goalkeeper.render.cameras import View
 from goalkeeper.render.stage import Renderer, StageParams, open_stage
@@ -63,10 +63,11 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _wait_for_play(game: Game) -> None:
     """Raises UnavailableError when the demo does not get there."""
-    pace, until_s = Pace(SOFTWARE_HZ), time.monotonic() + _MOST_START_S
+    waiting, pace = Pace(WAITING_HZ), Pace(SOFTWARE_HZ)
+    until_s = time.monotonic() + _MOST_START_S
     while game.match.phase is not Phase.PLAYING:
         game.frame()
-        pace.wait()
+        (waiting if game.waits else pace).wait()
         if time.monotonic() > until_s or game.stream_ended:
             raise UnavailableError("the demo did not begin", "bench", "see the lines above")
 

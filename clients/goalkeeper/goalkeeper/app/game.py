@@ -51,6 +51,11 @@ class Game:
         return self._latency.median_s
 
     @property
+    def waits(self) -> bool:
+        """Whether no pose came yet: the processor is for who makes them."""
+        return self._steps.newest_s is None
+
+    @property
     def stream_ended(self) -> bool:
         """Whether no pose comes any more."""
         return self._parts.stream.state().ended

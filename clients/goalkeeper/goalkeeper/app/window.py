@@ -24,6 +24,7 @@ from goalkeeper.streams.sighting import PoseStream
 from mocapd.client import Link
 
 SOFTWARE_HZ = 75.0  # the processor's time belongs to the tracker too
+WAITING_HZ = 15.0  # while there is nobody to be seen
 _CALIBRATE_S = 8.0  # of a recording, in which nobody answers
 
 
@@ -46,10 +47,12 @@ def play(game: Game, stage: Stage) -> None:
     """Picture after picture, until Esc or the window's end."""
     window = _Window(game, stage)
     calm_collector()
-    pace = Pace(SOFTWARE_HZ) if stage.software else None
+    waiting, pace = Pace(WAITING_HZ), Pace(SOFTWARE_HZ)
     while window.open:
         game.frame()
-        if pace is not None:
+        if game.waits:
+            waiting.wait()
+        elif stage.software:
             pace.wait()
 
 
@@ -91,7 +94,7 @@ class Pace:
     def wait(self) -> None:
         """Until the next picture is due; one that is late moves those after it."""
         self._due_s = max(self._due_s + self._period_s, time.monotonic())
-        time.sleep(self._due_s - time.monotonic() if self._due_s > time.monotonic() else 0.0)
+        time.sleep(max(0.0, self._due_s - time.monotonic()))
 
 
 class _Window:
