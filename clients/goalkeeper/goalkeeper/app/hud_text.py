@@ -1,0 +1,82 @@
+"""What is written on the screen at an instant. Pure."""
+
+from goalkeeper.app.high_scores import Placed
+from goalkeeper.core.events import Conceded, Event, Saved
+from goalkeeper.core.match import Match, Phase
+from goalkeeper.render.hud_lines import HudText
+
+POPUP_S = 1.1
+_KEYS = "V view   P pause   C calibrate   F fullscreen   Esc quit"
+_ASK_FOR_T = "Stand where you want to play, stretch both arms out to the sides"
+
+
+class Popups:
+    """The words over a save or a goal, for a moment."""
+
+    def __init__(self) -> None:
+        self._text, self._until_s = "", 0.0
+
+    def heard(self, events: list[Event], now_s: float) -> None:
+        """What happened since the last picture."""
+        for event in events:
+            if isinstance(event, Saved):
+                streak = f"   {event.streak} in a row" if event.streak > 2 else ""
+                self._text = f"SAVED  +{event.points}{streak}"
+            elif isinstance(event, Conceded):
+                self._text = f"GOAL  {event.outcome.speed_mps * 3.6:.0f} km/h"
+            else:
+                continue
+            self._until_s = now_s + POPUP_S
+
+    def text(self, now_s: float) -> str:
+        """What is over the picture now."""
+        return self._text if now_s < self._until_s else ""
+
+
+def hud_text(match: Match, foot: str, trouble: str, popup: str, placed: Placed | None) -> HudText:
+    """foot: rate and latency; trouble: of the stream; placed: the table of high scores once the round is over."""
+    score, phase = match.score, match.phase
+    minutes, seconds = divmod(int(match.left_s + 0.999), 60)
+    times = f"  x{score.multiplier}" if score.multiplier > 1 else ""
+    big = message = table = ""
+    if phase is Phase.CALIBRATING:
+        done = round(100 * match.finder.progress)
+        message = trouble or _ASK_FOR_T + (f"  {done} %" if done else "")
+    elif phase is Phase.COUNTDOWN:
+        big = str(max(match.counted, 1))
+    elif phase is Phase.PAUSED:
+        big, message = "PAUSE", trouble or match.pause_reason
+    elif phase is Phase.REPLAY:
+        message = "BEST SAVE"
+    elif phase is Phase.OVER:
+        table = _table(match, placed)
+    return HudText(
+        score=f"{score.points}",
+        clock=f"{minutes}:{seconds:02d}",
+        streak=f"{score.saves} : {score.goals}{times}",
+        foot=foot,
+        keys=_KEYS,
+        big=big,
+        message=message,
+        popup="" if message else popup,
+        level=match.difficulty.level,
+        table=table,
+    )
+
+
+def _table(match: Match, placed: Placed | None) -> str:
+    score = match.score
+    lines = [
+        f"{score.points} points",
+        f"{score.saves} saves   {score.goals} goals   longest streak {score.best_streak}",
+        "",
+    ]
+    if placed is not None:
+        for place, one in enumerate(placed.scores[:6]):
+            mark = "  <" if place == placed.place else ""
+            lines.append(
+                f"{place + 1}.   {one.points}   {one.saves}:{one.goals}   {one.date}{mark}"
+            )
+        if placed.trouble:
+            lines.append(placed.trouble[:60])
+    return "\n".join([*lines, "", "Space: play again"])

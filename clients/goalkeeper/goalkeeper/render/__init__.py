@@ -1,0 +1,1 @@
+"""What is seen, with Panda3D."""

@@ -1,0 +1,1 @@
+"""What is heard: made by code, played with Panda3D."""

@@ -1,0 +1,1 @@
+"""Where the keeper's poses come from: a daemon, a recording, a simulated person."""

@@ -1,0 +1,91 @@
+"""The stream of a daemon that runs, and what can go wrong with it: none there, silent, of another version."""
+
+import threading
+
+from goalkeeper.streams.sighting import Sighting, StreamState, pose_of_frame
+from mocapd.client import Body, Client, Link
+from mocapd.errors import InputError, UnavailableError
+
+_SILENT_S = 1.0  # without a frame, before it is said
+_MOST_AGE_S = 1.0  # of a frame; beyond that two machines' clocks disagree
+_USUAL_AGE_S = 0.05  # taken instead
+_ATTEMPT_S = 2.0
+
+
+class LiveStream:
+    """The newest frame of one daemon; connects in a thread of its own, so that the game's window opens at once."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._client: Client | None = None
+        self._trouble = f"looking for mocapd at {link.endpoint}"
+        self._closed = threading.Event()
+        self._heard_s: float | None = None
+        self._now_s = 0.0
+        self._thread = threading.Thread(target=self._connect, name="connect", daemon=True)
+        self._thread.start()
+
+    def _connect(self) -> None:
+        """Until there is a daemon, or nobody wants one."""
+        link = Link(
+            self._link.endpoint,
+            self._link.instance,
+            self._link.person,
+            _ATTEMPT_S,
+            self._link.tls_root_ca,
+            self._link.user,
+            self._link.password,
+        )
+        while not self._closed.is_set():
+            try:
+                client = Client(link)
+            except UnavailableError as error:
+                self._trouble = str(error)
+                continue
+            if self._closed.is_set():
+                client.close()
+                return
+            self._trouble = ""
+            self._client = client
+            return
+
+    def poll(self, now_s: float) -> list[Sighting]:
+        """The newest frame, when there is one; now_s: of the monotonic clock."""
+        self._now_s = now_s
+        client = self._client
+        if client is None:
+            return []
+        try:
+            body = client.poll()
+        except (InputError, UnavailableError) as error:
+            self._trouble = str(error)
+            self._heard_s = now_s
+            return []
+        if body is None:
+            return []
+        self._trouble, self._heard_s = "", now_s
+        return [Sighting(_captured_s(body, now_s), pose_of_frame(body.frame))]
+
+    def state(self) -> StreamState:
+        """Whether frames come."""
+        if self._trouble or self._client is None:
+            return StreamState(self._trouble)
+        if self._heard_s is None or self._now_s - self._heard_s > _SILENT_S:
+            return StreamState("the stream has stopped: is mocapd still running?")
+        return StreamState()
+
+    def close(self) -> None:
+        """Disconnect."""
+        self._closed.set()
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+
+def _captured_s(body: Body, now_s: float) -> float:
+    """When it was exposed: by the sender's monotonic clock, which on one machine is that of now_s, else by Unix time."""
+    by_monotonic_s = body.frame.capture_monotonic_ns * 1e-9
+    for captured_s in (by_monotonic_s, now_s - body.age_s):
+        if 0.0 <= now_s - captured_s <= _MOST_AGE_S:
+            return captured_s
+    return now_s - _USUAL_AGE_S

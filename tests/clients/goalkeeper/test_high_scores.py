@@ -1,0 +1,46 @@
+"""High scores: best first, ten at most, and no file is worth a crash."""
+
+from pathlib import Path
+
+from goalkeeper.app.high_scores import KEPT, keep_round, read_high_scores
+from goalkeeper.core.scoring import Score
+
+DAY = "2026-01-02"
+
+
+def _score(points: int) -> Score:
+    return Score(points=points, saves=3, goals=1, streak=2, best_streak=3)
+
+
+def test_they_are_kept_best_first(tmp_path: Path) -> None:
+    path = tmp_path / "data" / "high_scores.json"
+    for points, place in ((300, 0), (500, 0), (400, 1), (0, None)):
+        placed = keep_round(path, _score(points), DAY)
+        assert placed.place == place
+        assert placed.trouble == ""
+    assert [one.points for one in read_high_scores(path)] == [500, 400, 300]
+
+
+def test_the_eleventh_best_is_forgotten(tmp_path: Path) -> None:
+    path = tmp_path / "high_scores.json"
+    for points in range(1, KEPT + 2):
+        keep_round(path, _score(points), DAY)
+    assert [one.points for one in read_high_scores(path)] == list(range(KEPT + 1, 1, -1))
+    assert keep_round(path, _score(1), DAY).place is None
+
+
+def test_a_damaged_file_is_said_and_left_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "high_scores.json"
+    for damaged in ("{", '{"scores": [{"points": -1}]}', "[1, 2]"):
+        path.write_text(damaged)
+        placed = keep_round(path, _score(100), DAY)
+        assert placed.place == 0
+        assert "high_scores.json" in placed.trouble
+        assert path.read_text() == damaged
+
+
+def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
+    (tmp_path / "data").write_text("a file in its place")
+    placed = keep_round(tmp_path / "data" / "high_scores.json", _score(100), DAY)
+    assert placed.place == 0
+    assert "cannot be written" in placed.trouble

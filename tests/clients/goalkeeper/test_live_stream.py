@@ -1,0 +1,105 @@
+"""The live stream's bad moments: no daemon, garbage, another version, silence; each is said, none ends the game."""
+
+import time
+from collections.abc import Iterator
+
+import msgspec
+import pytest
+
+from goalkeeper.streams.live_stream import LiveStream
+from goalkeeper.streams.sighting import Sighting
+from mocapd.client import Link
+from mocapd.clock import monotonic_ns
+from mocapd.outputs import wire
+from tests.clients.goalkeeper.session import session_frames
+from tests.outputs.frames import eventually, free_port
+from tests.outputs.zenoh_pair import Running, running_sink
+
+FRAME = session_frames(0.1)[0]
+
+
+@pytest.fixture
+def running() -> Iterator[Running]:
+    """A daemon's output."""
+    with running_sink() as one:
+        yield one
+
+
+@pytest.fixture
+def stream(running: Running) -> Iterator[LiveStream]:
+    """That listens to it."""
+    live = LiveStream(Link(running.endpoint))
+    running.heard()
+    yield live
+    live.close()
+
+
+def _next(stream: LiveStream) -> Sighting:
+    found: list[Sighting] = []
+
+    def came() -> bool:
+        found.extend(stream.poll(time.monotonic()))
+        return bool(found)
+
+    assert eventually(came)
+    return found[0]
+
+
+def _seen_now() -> wire.SkeletonFrame:
+    return msgspec.structs.replace(FRAME, capture_monotonic_ns=monotonic_ns())
+
+
+def test_without_a_daemon_it_says_what_to_start() -> None:
+    live = LiveStream(Link(f"tcp/127.0.0.1:{free_port()}"))
+    assert live.poll(0.0) == []
+    assert "looking for mocapd" in live.state().trouble
+    assert eventually(lambda: "start `mocapd run`" in live.state().trouble, 30.0)
+    assert not live.state().ended
+    live.close()
+
+
+def test_a_frame_is_as_old_as_its_exposure(running: Running, stream: LiveStream) -> None:
+    frame = _seen_now()
+    running.sink.send(frame)
+    one = _next(stream)
+    late = one.captured_s != pytest.approx(frame.capture_monotonic_ns * 1e-9)
+    # a frame that this machine let lie for a second is taken for one of another clock
+    assert not late or time.monotonic() - frame.capture_monotonic_ns * 1e-9 > 1.0
+    assert one.pose is not None
+    assert one.pose.point("leftHand") == pytest.approx(FRAME.joints["leftHand"].p)
+    assert stream.state().trouble == ""
+
+
+def test_clocks_that_disagree_give_the_usual_age(running: Running, stream: LiveStream) -> None:
+    running.sink.send(FRAME)  # of another boot, years ago
+    one = _next(stream)
+    assert one.captured_s == pytest.approx(time.monotonic() - 0.05, abs=5.0)
+
+
+def test_a_stream_that_stops_is_said(running: Running, stream: LiveStream) -> None:
+    running.sink.send(_seen_now())
+    _next(stream)
+    now_s = time.monotonic()
+    stream.poll(now_s + 5.0)
+    assert "the stream has stopped" in stream.state().trouble
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"joints": {"hips": "here"}}, "is no mocapd.Skeleton.v1"),
+        ({"schema": "mocapd.Skeleton.v2"}, "speaks 'mocapd.Skeleton.v2'"),
+    ],
+)
+def test_what_is_not_understood_is_said_and_the_next_frame_is_taken(
+    running: Running, stream: LiveStream, changes: dict[str, object], said: str
+) -> None:
+    running.sink.send(msgspec.structs.replace(FRAME, **changes))
+
+    def heard() -> bool:
+        return stream.poll(time.monotonic()) == [] and said in stream.state().trouble
+
+    assert eventually(heard)
+    running.sink.send(_seen_now())
+    assert _next(stream).pose is not None
+    assert stream.state().trouble == ""
