@@ -6,20 +6,19 @@ import numpy as np
 
 from mocapd.types import Floats
 from mocapd_analysis.differentiator import ACCELERATION, SPEED, derivatives, peak
-from mocapd_analysis.session import Session
+from mocapd_analysis.session import Flags, Session
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointSpeeds:
-    """Of all joints (F,J,3) by components and (F,J) by length; NaN where a run without gaps is too short.
+    """Of all joints (F,J); NaN where a run without gaps is too short.
 
     seen (F,J): the tracker had evidence, and a speed is known from both sides; peaks and means are those of these frames.
     """
 
-    velocity_m_s: Floats
     speed_m_s: Floats
     acceleration_m_s2: Floats
-    seen: np.ndarray[tuple[int, int], np.dtype[np.bool_]]
+    seen: Flags
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,7 @@ class Peak:
     at_s: float
 
 
-EDGE_S = 0.1
+EDGE_S = 0.5 * SPEED.window_s
 NO_PEAK = Peak(float("nan"), float("nan"))
 
 
@@ -42,14 +41,13 @@ def speeds_of(session: Session) -> JointSpeeds:
     is_seen = session.is_seen  # of each joint alone
     seen = np.stack([is_seen(name) for name in session.joint_names], axis=1)
     return JointSpeeds(
-        velocity,
         speed,
         np.linalg.norm(acceleration, axis=2),
         seen & np.isfinite(speed) & _is_inner(session)[:, None],
     )
 
 
-def _is_inner(session: Session) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _is_inner(session: Session) -> Flags:
     """Frames (F,) away from where tracking begins and ends: with frames on one side only noise looks like speed."""
     inner = np.zeros(len(session.times_s), dtype=bool)
     for part in session.segments:
@@ -58,9 +56,7 @@ def _is_inner(session: Session) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     return inner
 
 
-def highest(
-    times_s: Floats, values: Floats, seen: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> Peak:
+def highest(times_s: Floats, values: Floats, seen: Flags) -> Peak:
     """The largest of the values (F,) that were seen, between frames too."""
     usable = np.where(seen & np.isfinite(values), values, -np.inf)
     if not np.isfinite(usable).any():

@@ -8,6 +8,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from mocapd.types import Floats
 from mocapd_analysis.body_frame import in_body_m
@@ -179,6 +180,7 @@ def swing_plot(found: Measures) -> Figure | None:
         panel.plot(trail[:, axis], trail[:, 1], color=COLOURS[swing.side], lw=2.2)
         panel.set_aspect("equal", adjustable="datalim")
         panel.set_title(title, fontsize=9)
+        panel.xaxis.set_major_locator(MaxNLocator(5))
         panel.set_xlabel(f"{'xyz'[axis]} [m]")
         panel.grid(alpha=0.3)
     panels[0].set_ylabel("height [m]")

@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.types import Floats, Ints
+
+Flags = NDArray[np.bool_]
 
 # Two frames that lie farther apart are not joined: what happened between them is not known. Three
 # frames at 30 Hz may be missing; a swing's speed stays within a few percent over so short a hole.
@@ -46,12 +49,10 @@ class Session:
         """A joint's way (F,3) [m]."""
         return self.joints_m[:, self.joint(name)]
 
-    def is_seen(self, *names: str) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def is_seen(self, *names: str) -> Flags:
         """In which frames (F,) the tracker had evidence of all of these joints."""
         where = [self.joint(name) for name in names]
-        seen: np.ndarray[tuple[int], np.dtype[np.bool_]] = (
-            self.confidence[:, where] >= LEAST_CONFIDENCE
-        ).all(axis=1)
+        seen: Flags = np.all(self.confidence[:, where] >= LEAST_CONFIDENCE, axis=1)
         return seen
 
     @property

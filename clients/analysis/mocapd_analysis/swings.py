@@ -7,7 +7,7 @@ from scipy.signal import find_peaks
 
 from mocapd.types import Floats
 from mocapd_analysis.differentiator import peak
-from mocapd_analysis.session import Session
+from mocapd_analysis.session import Flags, Session
 
 LEAST_SPEED_M_S = 1.5
 LEAST_SHARE = 0.5  # of the session's fastest
@@ -34,7 +34,7 @@ def swings_of(
     session: Session,
     side: str,
     speed_m_s: Floats,
-    seen: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    seen: Flags,
 ) -> tuple[Swing, ...]:
     """The swings of one wrist in order of time, from its speed (F,)."""
     usable = np.where(seen, speed_m_s, np.nan)
@@ -43,14 +43,24 @@ def swings_of(
     least = max(LEAST_SPEED_M_S, LEAST_SHARE * float(np.nanmax(usable)))
     found: list[Swing] = []
     for part in session.segments:
-        times_s, speed = session.times_s[part], np.nan_to_num(usable[part], nan=0.0)
-        if len(speed) < 3:
-            continue
-        apart = max(1, round(APART_S / float(np.median(np.diff(times_s)))))
-        # an edge is no peak: half of a swing before tracking was lost has no known top
-        tops, _ = find_peaks(speed, height=least, prominence=0.3 * least, distance=apart)
-        found += [_swing(side, times_s, speed, int(top)) for top in tops]
+        for run in _known(usable, part):
+            times_s, speed = session.times_s[run], speed_m_s[run]
+            apart = max(1, round(APART_S / float(np.median(np.diff(times_s)))))
+            # an end is no top: half of a swing before the hand was lost has none that is known
+            tops, _ = find_peaks(speed, height=least, prominence=0.3 * least, distance=apart)
+            found += [_swing(side, times_s, speed, top) for top in tops.tolist()]
     return tuple(found)
+
+
+def _known(values: Floats, part: slice) -> list[slice]:
+    """The runs of three frames and more within `part` whose values (F,) are known."""
+    known = np.concatenate([[False], np.isfinite(values[part]), [False]]).astype(int)
+    starts, stops = (np.flatnonzero(np.diff(known) == way) + part.start for way in (1, -1))
+    return [
+        slice(start, stop)
+        for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
+        if stop - start >= 3
+    ]
 
 
 def _swing(side: str, times_s: Floats, speed: Floats, top: int) -> Swing:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.types import Floats
+from mocapd_analysis.session import Flags
 
 LAG_S = 1.0  # how far one side may follow the other [s]
 
@@ -60,9 +61,7 @@ def together(times_s: Floats, left: Floats, right: Floats) -> Together | None:
     return Together(of_lag[0], of_lag[best], best * step_s)
 
 
-def _correlation(
-    a: Floats, b: Floats, known: np.ndarray[tuple[int], np.dtype[np.bool_]], lag: int
-) -> float:
+def _correlation(a: Floats, b: Floats, known: Flags, lag: int) -> float:
     """Of a now with b `lag` frames later."""
     count = len(a) - abs(lag)
     first, later = max(-lag, 0), max(lag, 0)

@@ -61,6 +61,10 @@ def _viewer(browser: Browser, sessions: tuple[Measures, ...], path: Path) -> Non
         viewer.playback.playing = False
         viewer.playback.seek(swing.at_s if swing is not None else 5.0)
         page.wait_for_timeout(8_000)
+        # a machine without a graphics card is told so, over the picture
+        for close in page.locator(".mantine-Notification-closeButton").all():
+            close.click()
+        page.wait_for_timeout(2_000)
         page.screenshot(path=path, timeout=120_000)
         page.close()
     finally:

@@ -127,6 +127,13 @@ def test_a_swing_that_was_not_seen_is_none() -> None:
     assert "leftElbow" not in found.angles
 
 
+def test_where_the_hand_is_seen_again_is_no_swing() -> None:
+    one = circling(0.4, 1.5)  # as fast all the time: there is no top
+    hidden = one.confidence.copy()
+    hidden[100:130, AT["leftHand"]] = 0.0
+    assert measure(replace(one, confidence=hidden)).swings == ()
+
+
 def test_symmetry_of_a_mirrored_motion_is_zero_and_of_half_a_motion_two_thirds() -> None:
     turn = 2.0 * np.pi
     angle = 1.0 + 0.5 * np.sin(turn * T)

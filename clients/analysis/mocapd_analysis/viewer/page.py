@@ -13,7 +13,7 @@ from mocapd_analysis.viewer.person import TRAILS, Person
 from mocapd_analysis.viewer.playback import RATES, Playback, rate_of
 from mocapd_analysis.viewer.readings import reading, speed_window, summary
 
-COLOURS = ((86, 124, 148), (190, 122, 84))
+COLOURS = ((40, 78, 104), (150, 78, 38))
 FRAMES_HZ = 30.0
 _READINGS_S = 0.12
 # Where one looks from, of the person's middle [m].
@@ -58,9 +58,7 @@ class ViewerPage:
         )  # fmt: skip
         self.server.initial_camera.position = (1.9, 1.7, 3.2)
         self.server.initial_camera.look_at = (0.0, 0.95, 0.0)
-        self.server.gui.configure_theme(
-            control_layout="fixed", control_width="large", dark_mode=False
-        )
+        self.server.gui.configure_theme(control_width="large", dark_mode=False)
 
     def _controls(self) -> None:
         gui = self.server.gui

@@ -54,11 +54,11 @@ class Person:
         self._trails = {}
         for side in SIDES:
             if session.has(f"{side}Hand"):
-                faded = np.linspace(0.15, 1.0, TRAIL_POINTS)[:, None]
+                faded = np.linspace(0.4, 1.0, TRAIL_POINTS)[:, None]
                 colours = (faded * TRAILS[side] + (1.0 - faded) * 255.0).astype(np.uint8)
                 self._trails[side] = scene.add_line_segments(
                     f"{node}/trail_{side}", np.zeros((TRAIL_POINTS - 1, 2, 3), np.float32),
-                    np.stack([colours[:-1], colours[1:]], axis=1), thickness=0.018,
+                    np.stack([colours[:-1], colours[1:]], axis=1), thickness=0.028,
                 )  # fmt: skip
 
     def show(self, session: Session, at_s: float, trail_s: float, apart_m: float) -> None:

@@ -17,7 +17,7 @@ def reading(found: Measures, at_s: float) -> str:
     nearest = int(np.abs(session.times_s - at_s).argmin())
     if is_gap(session, at_s):
         return "*nobody was tracked here*"
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for side in wrists(found):
         hand = session.joint(f"{side}Hand")
         speed = found.wrist_speed_m_s(side)[nearest]
