@@ -19,6 +19,7 @@ if importlib.util.find_spec("viser") is None:
 from mocapd_analysis.viewer.moment import Moment
 from mocapd_analysis.viewer.page import ViewerPage
 
+SOON_MS = 120_000  # of a busy machine without a graphics card
 T = times(6.0, 30.0)
 A = measure(session(T, turning_arm(T, "left", 1.2 - np.cos(4.0 * T))))
 B = measure(session(T, turning_arm(T, "right", 1.2 - np.cos(3.0 * T + 1.0))))
@@ -32,16 +33,17 @@ def test_two_sessions_in_the_browser(browser: Browser) -> None:
         assert viewer.playback.end_s == pytest.approx(6.0)
         asked: list[str] = []
         page = browser.new_page(viewport={"width": 900, "height": 500})
+        page.set_default_timeout(SOON_MS)
         page.on("request", lambda request: asked.append(request.url))
         page.goto(viewer.url)
-        expect(page.get_by_text("two of them")).to_be_visible(timeout=60_000)
-        expect(page.locator("canvas").first).to_be_visible()
+        expect(page.get_by_text("two of them")).to_be_visible(timeout=SOON_MS)
+        expect(page.locator("canvas").first).to_be_visible(timeout=SOON_MS)
         page.get_by_role("button", name="Pause").dispatch_event("click")
         assert eventually(lambda: not viewer.playback.playing)
         at_s = viewer.playback.at_s
         viewer.tick(Moment((A, B)), 1.0)
         assert viewer.playback.at_s == at_s
-        expect(page.get_by_role("button", name="Play")).to_be_visible()
+        expect(page.get_by_role("button", name="Play")).to_be_visible(timeout=SOON_MS)
         outside = [one for one in asked if not one.startswith(("data:", "blob:", viewer.url))]
         assert outside == []
         page.close()
