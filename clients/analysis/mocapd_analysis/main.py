@@ -121,6 +121,8 @@ def accuracy(
 ) -> None:
     """How right the speeds are: peak speeds of wrists against the truth of many clips, by every method tried.
 
+    Takes some minutes.
+
     Example: mocapd-analysis accuracy ../shared/motion/clips
     """
     from mocapd_analysis.accuracy.table import accuracy_tables

@@ -47,6 +47,7 @@ class Clip:
 class Course:
     """A wrist's way as a curve of degree 5 from 0 to end_s, and its largest speed, away from the ends."""
 
+    joint: str
     way_m: BSpline
     end_s: float
     peak_m_s: float
@@ -88,13 +89,13 @@ def courses(clips: list[Clip], band_hz: float | None, least_m_s: float) -> list[
         for joint in WRISTS:
             if joint in clip.names:
                 way_m = joints_m[:, clip.names.index(joint)]
-                course = _course(clip, way_m, band_hz)
+                course = _course(clip, joint, way_m, band_hz)
                 if course.peak_m_s >= least_m_s:
                     found.append(course)
     return found
 
 
-def _course(clip: Clip, way_m: Floats, band_hz: float | None) -> Course:
+def _course(clip: Clip, joint: str, way_m: Floats, band_hz: float | None) -> Course:
     if band_hz is not None:
         band = butter(2, band_hz / (0.5 * clip.rate_hz), output="sos")
         way_m = sosfiltfilt(band, way_m, axis=0)
@@ -102,7 +103,7 @@ def _course(clip: Clip, way_m: Floats, band_hz: float | None) -> Course:
     curve = make_interp_spline(times_s, way_m, k=5)
     dense_s = np.arange(END_S, times_s[-1] - END_S, 0.002)
     speed = np.linalg.norm(curve.derivative()(dense_s), axis=1)
-    return Course(curve, float(times_s[-1]), float(speed.max()))
+    return Course(joint, curve, float(times_s[-1]), float(speed.max()))
 
 
 END_S = (

@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.types import Floats
+from mocapd_analysis.accuracy.accelerations import acceleration_lines
 from mocapd_analysis.accuracy.clips import BAND_HZ, END_S, Course, courses, read_clips
+from mocapd_analysis.accuracy.daemon_smoothing import smoothing_lines
 from mocapd_analysis.accuracy.methods import CHOSEN, METHODS, Velocity
 from mocapd_analysis.accuracy.tracker_noise import TRACKED, Noise, draw
 from mocapd_analysis.joint_speeds import highest
@@ -88,6 +90,12 @@ def accuracy_tables(folder: Path, seeds: int) -> Iterator[str]:
                 f"{name:22}{' *' if name == CHOSEN else '  '}| {100 * errors.mean():+6.1f} "
                 f"{_figures(errors)} |      {_figures(of_fast)}"
             )
+    yield ""
+    yield CONDITIONS[0].words
+    swings = courses(clips, CONDITIONS[0].band_hz, LEAST_M_S)
+    yield from acceleration_lines(swings, CONDITIONS[0].rate_hz, TRACKED)
+    yield ""
+    yield from smoothing_lines(clips, LEAST_M_S)
     yield ""
     yield "* what the analyst uses"
 
