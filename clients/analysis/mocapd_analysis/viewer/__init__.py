@@ -1,0 +1,1 @@
+"""Sessions replayed in the browser."""
