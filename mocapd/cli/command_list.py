@@ -9,10 +9,7 @@ from mocapd.cli import (
     cameras,
     check_config,
     demo,
-    export,
     recenter,
-    record,
-    replay,
     run,
     send_test,
     shirt,
@@ -22,6 +19,7 @@ from mocapd.cli import (
     web_link,
 )
 from mocapd.cli import eval as evaluation
+from mocapd.cli.recordings import export, record, replay
 
 app = typer.Typer(
     name="mocapd",

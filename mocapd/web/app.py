@@ -19,13 +19,13 @@ from mocapd.web.games.frames_access import PATH as FRAMES_PATH
 from mocapd.web.games.frames_access import FramesAccess
 from mocapd.web.games.frames_link import MOST_GAMES, FramesLink
 from mocapd.web.host import Host
-from mocapd.web.live_link import LiveLink
-from mocapd.web.picture_link import picture_link
-from mocapd.web.recording_link import RecordingLink
+from mocapd.web.links.live_link import LiveLink
+from mocapd.web.links.picture_link import picture_link
+from mocapd.web.links.recording_link import RecordingLink
+from mocapd.web.links.wizard_link import WizardLink
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
 from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
-from mocapd.web.wizard_link import WizardLink
 
 PAGE_DIR = Path(__file__).with_name("page")
 # given here, as what the system believes of a suffix differs, and nosniff is strict about scripts

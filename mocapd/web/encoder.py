@@ -14,7 +14,7 @@ from mocapd.boundary.pictures import is_plain_jpeg
 from mocapd.errors import MalformedError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Bytes, Frame
-from mocapd.web.links import MOST_HZ
+from mocapd.web.links.socket_link import MOST_HZ
 
 NARROWEST_PX, WIDTH_STEP_PX = 64, 32
 JPEG_QUALITY = 75

@@ -30,7 +30,7 @@ from mocapd.web.connections import (
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.games.frames_access import frames_access
 from mocapd.web.host import Host
-from mocapd.web.links import LONGEST_MESSAGE
+from mocapd.web.links.socket_link import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs
 from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url_of, withdraw
 

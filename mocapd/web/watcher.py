@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from mocapd.errors import UnavailableError
-from mocapd.web.picture_link import DEFAULT_WIDTH_PX
+from mocapd.web.links.picture_link import DEFAULT_WIDTH_PX
 from mocapd.web.runtime_file import Running, running
 
 ANNOUNCED_S = 20.0  # how long the daemon may take to say where its page is [s]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.app.published import PublishedStream
-from mocapd.app.recording_run import Recorder, duration
+from mocapd.app.recordings.published import PublishedStream
+from mocapd.app.recordings.recording_run import Recorder, duration
 from mocapd.app.status_line import StatusLine
 from mocapd.boundary.mcap_records import McapAttachment, McapFile
 from mocapd.capture.recording.mcap_origin import open_recording

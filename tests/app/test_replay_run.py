@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from mocapd.app.replay_run import Replay, ReplayParams
+from mocapd.app.recordings.replay_run import Replay, ReplayParams
 from mocapd.clock import NS_PER_S, monotonic_ns, unix_from_monotonic_ns
 from mocapd.errors import InputError
 from mocapd.outputs.base import SinkStatus

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.app.exporting import motion_of
+from mocapd.app.recordings.exporting import motion_of
 from mocapd.exports.formats import write_export
 from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.outputs.mcap.recording_reader import RecordingReader

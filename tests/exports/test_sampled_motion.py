@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.app.exporting import motion_of
+from mocapd.app.recordings.exporting import motion_of
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.exports.bvh.bvh_writer import zxy_degrees
 from mocapd.exports.formats import write_export

@@ -14,7 +14,7 @@ from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_nu
 from mocapd.boundary.pictures import decode_picture, is_plain_jpeg, read_header
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.errors import MocapdError
-from mocapd.web.wizard_link import PageCommand
+from mocapd.web.links.wizard_link import PageCommand
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample
 from tests.fuzz.mutations import JSON_VALUES, TOML_LINES, TOML_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError, named, taken

@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Scope
 from mocapd.web.access import TOKEN, Access
 from mocapd.web.app import make_app
 from mocapd.web.encoder import PictureEncoder
-from mocapd.web.links import LONGEST_MESSAGE
+from mocapd.web.links.socket_link import LONGEST_MESSAGE
 from mocapd.wizard.wizard import Wizard
 from tests.fuzz.setup_bench import SetupBench
 from tests.fuzz.warp_loop import WarpLoop

@@ -21,7 +21,7 @@ from mocapd.errors import CannotCreateError
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Frame
-from mocapd.web.wizard_link import PageCommand
+from mocapd.web.links.wizard_link import PageCommand
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_settings import CheckSettings

@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection
 from mocapd.clock import NS_PER_S
 from mocapd.geometry.camera_model import project
 from mocapd.types import Bytes
-from mocapd.web.links import MOST_HZ
+from mocapd.web.links.socket_link import MOST_HZ
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, connect
 from tests.web.tiny_host import OVERLAY, TinyHost

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
+from mocapd.web.links.wizard_link import NOT_THE_DRIVER
 from mocapd.web.server import WebServer
-from mocapd.web.wizard_link import NOT_THE_DRIVER
 from tests.web.browser import PATIENCE_S, Window, get, origin_of, token_of
 from tests.web.tiny_host import TinyHost
 

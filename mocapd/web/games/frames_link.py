@@ -23,7 +23,7 @@ from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.types import BodyState, Skeleton
 from mocapd.web.host import Host
-from mocapd.web.links import send_json, serve, understood
+from mocapd.web.links.socket_link import send_json, serve, understood
 
 MOST_GAMES = 4  # of these WebSockets at once
 UNREAD = 2  # frames that are on their way to a page at once

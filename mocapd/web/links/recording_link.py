@@ -19,8 +19,8 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame
 from mocapd.web.encoder import Picture, delivered, encode
 from mocapd.web.host import Host
-from mocapd.web.links import BadMessageError, received, send_bytes, serve
-from mocapd.web.picture_link import message
+from mocapd.web.links.picture_link import message
+from mocapd.web.links.socket_link import BadMessageError, received, send_bytes, serve
 
 MOST_WAITING = 24  # pictures of all cameras: a third of a second of two
 RECORDED_QUALITY = 95  # of a picture that no camera has encoded

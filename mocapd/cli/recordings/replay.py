@@ -11,7 +11,7 @@ from mocapd.errors import ConfigError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from mocapd.app.replay_run import ReplayPlace
+    from mocapd.app.recordings.replay_run import ReplayPlace
     from mocapd.outputs.base import Sink
     from mocapd.outputs.registry import OutputSection
 
@@ -49,7 +49,7 @@ def replay(
     from contextlib import ExitStack
 
     from mocapd.app.logs import set_up_logs
-    from mocapd.app.replay_run import Replay, ReplayParams
+    from mocapd.app.recordings.replay_run import Replay, ReplayParams
     from mocapd.app.running import Signals
     from mocapd.app.status_line import StatusLine
     from mocapd.outputs.instance import instance_name
@@ -94,7 +94,7 @@ def _chosen(
 
 
 def _text(file: Path, place: "ReplayPlace", sinks: "Sequence[Sink]") -> str:
-    from mocapd.app.recording_run import duration
+    from mocapd.app.recordings.recording_run import duration
 
     parts = [f"replaying {file}", duration(place.at_s), f"{place.frames} frames"]
     if place.rounds:

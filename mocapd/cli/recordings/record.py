@@ -57,8 +57,8 @@ def record(
 
     from mocapd.app.daemon_pictures import DaemonPictures
     from mocapd.app.logs import set_up_logs
-    from mocapd.app.published import PublishedStream
-    from mocapd.app.recording_run import Recorder, default_path, duration
+    from mocapd.app.recordings.published import PublishedStream
+    from mocapd.app.recordings.recording_run import Recorder, default_path, duration
     from mocapd.app.running import Signals
     from mocapd.app.status_line import StatusLine
     from mocapd.cli.watch import endpoint_of

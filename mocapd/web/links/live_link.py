@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket
 
 from mocapd.types import BodyState, Rig, Skeleton
 from mocapd.web.host import Host
-from mocapd.web.links import MOST_HZ, send_json, serve, understood
+from mocapd.web.links.socket_link import MOST_HZ, send_json, serve, understood
 from mocapd.web.live_json import body_json, figures_json, scene_json
 
 FIGURES_EVERY_S = 1.0

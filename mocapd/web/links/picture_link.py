@@ -17,7 +17,7 @@ from starlette.websockets import WebSocket
 
 from mocapd.web.encoder import Picture, PictureEncoder
 from mocapd.web.host import Host
-from mocapd.web.links import BadMessageError, send_bytes, serve, understood
+from mocapd.web.links.socket_link import BadMessageError, send_bytes, serve, understood
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.step import Shape

@@ -1,0 +1,1 @@
+"""Recording what a daemon publishes, playing it again, exporting it."""

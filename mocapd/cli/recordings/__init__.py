@@ -1,0 +1,1 @@
+"""The commands about recordings: record, replay, export."""
