@@ -7,11 +7,15 @@ from contextlib import closing
 from mocapd.app.waving_person import waving_person
 from mocapd.body.shape import mean_shape
 from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds
+from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.outputs.base import Sink, SinkStatus
+from mocapd.outputs.from_rig import calibration_info
 from mocapd.service.publisher import Publisher
 
 RATE_HZ = 60.0
 STATURE_M = 1.75
+NAME = "send-test"  # of the camera that there is not, and of what calibrated it
+CAMERA_PX = (640, 480)
 FEWEST = 3  # frames; of fewer it is not known whether they were refused
 NOBODY_LISTENS = 1  # exit code
 SAY_EVERY_NS = NS_PER_S
@@ -24,6 +28,9 @@ def send_test(sink: Sink, instance: str, duration_s: float) -> int:
     with closing(sink):
         sink.open()
         print("a person waves its left hand, and steps to its left and back", file=sys.stderr)
+        # some receivers leave the avatar as it is while a sender says that it is not calibrated
+        rig = nominal_rig(NAME, CAMERA_PX)
+        publisher.tell(calibration_info(rig, instance=instance, source=NAME))
         publisher.begin(waving_person(shape, 0, 0).skeleton, STATURE_M)
         frames, said, halfway = 0, 0, None
         began_ns, lasts_ns = monotonic_ns(), nanoseconds(duration_s)

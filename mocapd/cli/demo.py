@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
 from mocapd.cli.run import run_with
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ def add_to(app: typer.Typer) -> None:
     app.command("demo")(demo)
 
 
-def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
+def demo(config: ConfigOption = None, settings: SetOption = None, vrm: VrmOption = None) -> None:
     """Run the daemon on two simulated webcams.
 
     They show a person in the shirt in a furnished room with two coloured lamps, one of which goes
@@ -33,7 +33,7 @@ def demo(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
 
     def read() -> "Effective":
-        return effective_config(config, settings, capture=SCENARIO)
+        return effective_config(config, settings, capture=SCENARIO, **vrm_flags(vrm))
 
     watch = watch_command(read().config)
     raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))

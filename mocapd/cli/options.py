@@ -29,7 +29,14 @@ CameraOption = Annotated[
     ),
 ]
 
-
+VrmOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--vrm",
+        help="Send VMC with the bones of this avatar: vmc.vrm, with vmc.enabled.",
+        metavar="FILE",
+    ),
+]
 VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
 
 
@@ -39,6 +46,11 @@ def refuse_variant(variant: str | None) -> None:
 
     if variant is not None:
         raise ConfigError("there is no --variant any more", "command line", GONE["tracker.variant"])
+
+
+def vrm_flags(vrm: Path | None) -> dict[str, str]:
+    """What --vrm means, for `effective_config`."""
+    return {} if vrm is None else {"vmc__vrm": str(vrm), "vmc__enabled": "true"}
 
 
 def effective_config(

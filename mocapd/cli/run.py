@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.app.unsafe_settings import unsafe_settings
-from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
+from mocapd.cli.options import (
+    CameraOption,
+    ConfigOption,
+    SetOption,
+    VrmOption,
+    effective_config,
+    vrm_flags,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +40,7 @@ def run(
     rig: Annotated[Path | None, typer.Option(help="The rig file: the calibration.")] = None,
     tracker: Annotated[str | None, typer.Option(help="Which tracker.")] = None,
     instance: Annotated[str | None, typer.Option(help="This daemon's name in the keys.")] = None,
+    vrm: VrmOption = None,
 ) -> None:
     """Run the daemon in the foreground.
 
@@ -45,6 +53,7 @@ def run(
         "rig": None if rig is None else str(rig),
         "tracker__name": tracker,
         "instance": instance,
+        **vrm_flags(vrm),
     }
     raise typer.Exit(
         run_with(lambda: effective_config(config, settings, cameras, capture, **flags))

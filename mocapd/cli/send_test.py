@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
 from mocapd.errors import ConfigError
 
 
@@ -27,6 +27,7 @@ def send_test_command(
     seconds: Annotated[float, typer.Option(min=0.1, max=86_400.0, help="How long [s].")] = 10.0,
     config: ConfigOption = None,
     settings: SetOption = None,
+    vrm: VrmOption = None,
 ) -> None:
     """Send a person who waves and steps to an output, without cameras: to try firewall and avatar.
 
@@ -45,7 +46,7 @@ def send_test_command(
         raise ConfigError(
             f"there is no output {output[:100]!r}", "--output", f"one of: {', '.join(OUTPUTS)}"
         )
-    effective = effective_config(config, settings).config
+    effective = effective_config(config, settings, **vrm_flags(vrm)).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
     entry, section = OUTPUTS[output], effective.outputs[output]

@@ -26,7 +26,9 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.registry import OUTPUTS, OscSection, OutputEntry, VRChatSection, ZenohSection
 from mocapd.types import Floats
 from tests.outputs.frames import free_port
+from tests.outputs.receivers.typed_osc import decoded
 from tests.outputs.receivers.vrchat import VRChatReceiver
+from tests.outputs.vmc.vrm_models import model, write_vrm
 from tests.service.test_publisher import Recorder
 
 
@@ -34,7 +36,13 @@ class Command(Protocol):
     """Runs it; its exit code."""
 
     def __call__(
-        self, *, output: str, port: int | None = None, seconds: float = 0.3, host: str | None = None
+        self,
+        *,
+        output: str,
+        port: int | None = None,
+        seconds: float = 0.3,
+        host: str | None = None,
+        vrm: Path | None = None,
     ) -> int: ...
 
 
@@ -46,10 +54,15 @@ def code_of(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Command:
     monkeypatch.setattr(logs, "set_up_logs", lambda _level: None)  # it is for a whole process
 
     def run(
-        *, output: str, port: int | None = None, seconds: float = 0.3, host: str | None = None
+        *,
+        output: str,
+        port: int | None = None,
+        seconds: float = 0.3,
+        host: str | None = None,
+        vrm: Path | None = None,
     ) -> int:
         with pytest.raises(typer.Exit) as ended:
-            send_test_command(output=output, port=port, seconds=seconds, host=host)
+            send_test_command(output=output, port=port, seconds=seconds, host=host, vrm=vrm)
         return ended.value.exit_code
 
     return run
@@ -78,6 +91,22 @@ def test_a_listener_gets_it_and_the_code_is_0(
     assert f"receiver on 127.0.0.1:{port}" in out.out
     assert ("1 of 1.2 s: receiver on" in out.err) is (seconds > 1.0)
     assert listening.recv(2000).startswith(b"#bundle\0")
+
+
+def test_an_avatar_gets_its_own_bones_from_a_sender_that_is_calibrated(
+    code_of: Command, listening: socket.socket, tmp_path: Path
+) -> None:
+    avatar = model()
+    path = write_vrm(tmp_path / "me.vrm", avatar)
+    port = listening.getsockname()[1]
+    assert code_of(output="vmc", port=port, host="localhost", seconds=0.2, vrm=path) == 0
+    sent = {
+        (message.address, message.values[0].value): [value.value for value in message.values]
+        for message in decoded(listening.recv(2000))
+    }
+    assert sent["/VMC/Ext/OK", 1] == [1, 3, 0, 1]
+    arm = sent["/VMC/Ext/Bone/Pos", "LeftLowerArm"]
+    assert arm[1:4] == pytest.approx(avatar.in_unity()["leftLowerArm"].at, abs=1e-6)
 
 
 @pytest.mark.parametrize("output", ["zenoh", "osc", "vrchat"])

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
 from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ def replay(
     instance: Annotated[str | None, typer.Option(help="This daemon's name in the keys.")] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
+    vrm: VrmOption = None,
 ) -> None:
     """Play a recording through every configured output in real time.
 
@@ -56,7 +57,7 @@ def replay(
     from mocapd.outputs.mcap.recording_reader import RecordingReader
     from mocapd.outputs.registry import build_sinks
 
-    effective = effective_config(config, settings, instance=instance).config
+    effective = effective_config(config, settings, instance=instance, **vrm_flags(vrm)).config
     set_up_logs(effective.log_level)
     name = instance_name(effective.instance)
     sinks = build_sinks(_chosen(effective.outputs, outputs or ()), name)
