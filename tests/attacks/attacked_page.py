@@ -13,20 +13,23 @@ from pathlib import Path
 import httpx
 import psutil
 
+from mocapd.web.games.frames_access import FILE_NAME
 from tests.cli.mocapd_process import COMMAND
 from tests.conftest import ROOT
 
+SITE = "https://game.example"  # whose pages may have the frames
 START_S = 300.0  # the first start ever compiles, and renders the film
 PATIENCE_S = 30.0
 
 
 @dataclass(frozen=True)
 class AttackedPage:
-    """A running daemon: its process, its page's port and token, and what it wrote to stderr so far."""
+    """A running daemon: its process, its page's port and token, the key of SITE, and what it wrote to stderr so far."""
 
     process: subprocess.Popen[bytes]
     port: int
     token: str
+    frames_key: str
     log: Path
 
     @property
@@ -66,6 +69,7 @@ def attacked_page() -> Iterator[AttackedPage]:
     command = [
         *(*COMMAND, "run", "--capture", "sim:living_room", "--tracker", "canned"),
         *("--set", "zenoh.enabled=false", "--set", "osc.enabled=false"),
+        *("--set", f'web.allow_origins=["{SITE}"]'),
     ]
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "stderr"
@@ -82,7 +86,8 @@ def attacked_page() -> Iterator[AttackedPage]:
                     raise RuntimeError(f"there is no page:\n{log.read_text()}")
                 time.sleep(0.1)
             told = json.loads(said.read_text())
-            yield AttackedPage(process, told["port"], told["token"], log)
+            frames_key = (said.parent / FILE_NAME).read_text().strip()
+            yield AttackedPage(process, told["port"], told["token"], frames_key, log)
         finally:
             process.kill()
             process.wait()

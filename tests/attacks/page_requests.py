@@ -11,8 +11,10 @@ from itertools import islice
 
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
 
-from tests.attacks.attacked_page import PATIENCE_S, AttackedPage, attacked_page
+from mocapd.web.games.frames_access import PATH as FRAMES_PATH
+from tests.attacks.attacked_page import PATIENCE_S, SITE, AttackedPage, attacked_page
 from tests.attacks.scenario import Found, Scenario
 
 SEED = 20261122
@@ -60,6 +62,7 @@ _REQUESTS = (
     {"camera": "cam0", "width": 480, "after": None, "over": "setup"},
     {"camera": "cam1", "width": 64, "after": 3, "over": "body"},
 )
+_SEEN = ({"seen": 0}, {"seen": 7})
 _NASTY = (
     "null", "true", "-1", "0", "1e400", "1e308", "-1e-320", "1" + 30 * "0", "9" * 5000, "NaN",
     "20000", "2", "3", "0.5", '""', '"\u00e9"', '"\\u0000"', '"\\ud800"', '"' + 6000 * "x" + '"',
@@ -129,8 +132,7 @@ class Sockets:
         """As text where it is text, for the most part."""
         try:
             if self._open is None:
-                url = f"ws://{page.host}{self._path}?token={page.token}"
-                self._open = connect(url, proxy=None, open_timeout=PATIENCE_S, max_size=None)
+                self._open = self._opened(page)
                 if self._path == "/ws":
                     self._open.send('{"verb": "take_over"}')
                     self._open.send('{"verb": "begin"}')
@@ -141,6 +143,17 @@ class Sockets:
                     self._open.recv(0)
         except (WebSocketException, OSError):
             self.close()
+
+    def _opened(self, page: AttackedPage) -> ClientConnection:
+        is_game = self._path == FRAMES_PATH
+        secret = f"key={page.frames_key}" if is_game else f"token={page.token}"
+        return connect(
+            f"ws://{page.host}{self._path}?{secret}",
+            origin=Origin(SITE) if is_game else None,
+            proxy=None,
+            open_timeout=PATIENCE_S,
+            max_size=None,
+        )
 
     def close(self) -> None:
         """Until the next message."""
@@ -235,5 +248,9 @@ SCENARIOS = {
     "page-live": Scenario(
         "0 deaths of 500",
         lambda: deaths(500, lambda chance: messages(({"watch": True},), chance), Sockets("/live")),
+    ),
+    "page-frames": Scenario(
+        "0 deaths of 500",
+        lambda: deaths(500, lambda chance: messages(_SEEN, chance), Sockets(FRAMES_PATH)),
     ),
 }

@@ -15,6 +15,7 @@ from starlette.types import ASGIApp, Message, Scope
 from mocapd.web.access import TOKEN, Access
 from mocapd.web.app import make_app
 from mocapd.web.encoder import PictureEncoder
+from mocapd.web.games.frames_access import FramesAccess
 from mocapd.web.links.socket_link import LONGEST_MESSAGE
 from mocapd.wizard.wizard import Wizard
 from tests.fuzz.setup_bench import SetupBench
@@ -23,6 +24,8 @@ from tests.web.tiny_host import TinyHost
 
 PORT = 8080
 SECRET = "N0t-really-a-token-but-as-long-as-one"
+SITE = "https://game.example"
+SITE_KEY = "that-of-the-frames-for-allowed-sites"
 _ORIGIN = f"http://127.0.0.1:{PORT}"
 _ANSWERS_S = 1.5  # how long a page waits before it leaves, by the loop's own clock
 
@@ -58,7 +61,8 @@ class PageBench:
         self.loop, self.executor = _of_this_process()
         self.host = Host(folder)
         encoder = PictureEncoder(lambda: self.host.hub, self.executor)
-        self._app: ASGIApp = Access(make_app(self.host, encoder), PORT, SECRET)
+        frames = FramesAccess((SITE,), SITE_KEY)
+        self._app: ASGIApp = Access(make_app(self.host, encoder, frames), PORT, SECRET, frames)
         self.base, self.cookie = "", ""
 
     def let_in(self) -> None:
@@ -103,9 +107,11 @@ class PageBench:
         }
         return Answer(start["status"], headers, b"".join(one.get("body", b"") for one in said))
 
-    def talk(self, path: str, messages: Iterable[bytes], cookie: str) -> list[Message]:
+    def talk(
+        self, path: str, messages: Iterable[bytes], cookie: str, origin: str = _ORIGIN
+    ) -> list[Message]:
         """Open a WebSocket, say these, wait a little, and leave: what was answered."""
-        scope = _socket_scope(path, cookie)
+        scope = _socket_scope(path, cookie, origin)
         return self.loop.run_until_complete(self._talked(scope, list(messages)))
 
     async def _talked(self, scope: Scope, messages: list[bytes]) -> list[Message]:
@@ -182,14 +188,16 @@ def _taken_apart(raw: bytes) -> tuple[Scope, bytes, bool]:
     return scope, body, whole
 
 
-def _socket_scope(path: str, cookie: str) -> Scope:
-    headers = [("host", f"127.0.0.1:{PORT}"), ("origin", _ORIGIN), ("cookie", cookie)]
+def _socket_scope(path: str, cookie: str, origin: str) -> Scope:
+    headers = [("host", f"127.0.0.1:{PORT}"), ("origin", origin), ("cookie", cookie)]
     bare, _, query = path.partition("?")
     return {
         "type": "websocket", "asgi": {"version": "3.0", "spec_version": "2.3"}, "http_version": "1.1",
         "scheme": "ws", "path": bare, "raw_path": bare.encode(), "query_string": query.encode(),
         "root_path": "", "subprotocols": [], "state": {}, "extensions": {"websocket.http.response": {}},
-        "headers": [(name.encode(), value.encode("latin-1")) for name, value in headers if value],
+        "headers": [
+            (name.encode(), value.encode("latin-1", "replace")) for name, value in headers if value
+        ],
         "client": ("127.0.0.1", 50_000), "server": ("127.0.0.1", PORT),
     }  # fmt: skip
 

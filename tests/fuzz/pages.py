@@ -6,7 +6,7 @@ from random import Random
 
 from tests.fuzz import setups
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
-from tests.fuzz.page_bench import SECRET, PageBench, request
+from tests.fuzz.page_bench import SECRET, SITE, SITE_KEY, PageBench, request
 from tests.fuzz.row import Attempt, Place, WrongError, one_of
 
 _PATHS = (
@@ -18,6 +18,7 @@ _PIECES = (
 )  # fmt: skip
 _PICTURES = {"camera": "cam0", "width": 480, "after": None, "over": "setup"}
 _WATCH = {"watch": True}
+_FRAMES = f"/frames?key={SITE_KEY}"
 
 
 def requests(place: Place) -> Attempt:
@@ -90,6 +91,44 @@ def picture_messages(place: Place) -> Attempt:
 def live_messages(place: Place) -> Attempt:
     """/live."""
     return _of_socket(place, "/live", lambda random: _changed(random, _WATCH))
+
+
+def frames_messages(place: Place) -> Attempt:
+    """/frames, of an allowed site that has the key."""
+
+    def talk(random: Random, _number: int, page: PageBench) -> bool:
+        messages = [_changed(random, {"seen": random.randint(0, 3)}) for _ in range(3)]
+        said = page.talk(_FRAMES, messages, "", SITE)
+        if not any(one["type"] == "websocket.accept" for one in said):
+            raise WrongError("the WebSocket was not opened")
+        return not any(one["type"] == "websocket.close" for one in said)
+
+    return _of_page(place, talk)
+
+
+def other_sites(place: Place) -> Attempt:
+    """Sites that are not allowed, and those that have no key, get no frame, whatever they say."""
+    page = PageBench(place.folder)
+    assert any(one["type"] == "websocket.accept" for one in page.talk(_FRAMES, [], "", SITE))
+
+    def attempt(random: Random, _number: int) -> bool:
+        site, path = SITE, _FRAMES
+        if random.random() < 0.5:
+            at = random.randint(0, len(site))
+            site = random.choice((
+                site[:at] + random.choice(_PIECES) + site[at:], site[:-1], f"{site}:443", "null", "",
+                site.upper(), site.replace("https", "http"), f"{site}, {site}", f"x{site}",
+            ))  # fmt: skip
+        else:
+            wrong = damaged(random, SITE_KEY.encode()).decode(errors="replace")
+            if wrong == SITE_KEY:
+                return False
+            path = random.choice(("/frames", f"/frames?key={wrong}", f"/frames?token={SITE_KEY}"))
+        if any(one["type"] == "websocket.accept" for one in page.talk(path, [b"{}"], "", site)):
+            raise WrongError("frames for a site that is not allowed")
+        return False
+
+    return attempt
 
 
 def _changed(random: Random, message: Mapping[str, object]) -> bytes:
