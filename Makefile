@@ -1,7 +1,8 @@
 # mocapd: `make demo` shows it, `make test` tests it. Both make the environment in .venv first.
 VENV := .venv
-BIN := $(VENV)/bin
-READY := $(VENV)/ready
+clients test-clients: VENV := .venv-clients
+BIN = $(VENV)/bin
+READY = $(VENV)/ready
 # The first Python that runs and that the locks are for, else one later; say PYTHON=... to choose another.
 PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	"$$p" -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, $$below))" 2>/dev/null \
@@ -9,36 +10,39 @@ PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 
 # What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
 LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 14) and sys.platform == "linux" \
 	and platform.machine() in ("x86_64", "aarch64")))
-PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+PIP_INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev demo test check bench fuzz attack lock clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack lock clean
 
 help: ## say what can be made
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
 
 # .venv/ready holds what the environment was made from: this folder, pyproject.toml and the locks.
 # When any differs, or the environment's Python is gone, it is made anew. .venv/ready-dev says the same
 # of the developers' tools, which are added to it. Whatever is installed by a lock is a wheel with one of
 # its hashes, hatchling for the checkout itself included: nothing else is downloaded.
-env: STAMP := $(READY)
-env: STAMPS := $(READY)
+env clients: STAMP = $(READY)
+env clients: STAMPS = $(READY)
 env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt
 env: PROJECT := .
 env: QUICKLY := false
 env: ## make or renew the environment in .venv
-dev: STAMP := $(READY)-dev
-dev: STAMPS := $(READY) $(READY)-dev
+dev: STAMP = $(READY)-dev
+dev: STAMPS = $(READY) $(READY)-dev
 dev: LOCKS := --requirement locks/dev.txt
 dev: PROJECT := .[dev]
+clients: LOCKS := --requirement locks/clients.txt
+clients: PROJECT := .[dev,clients]
 # uv, itself from the lock, takes a fifth of pip's time; where it gets nowhere (an index of one's own), pip goes on.
-dev: QUICKLY := sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
+dev clients: QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
 	$(PIP_INSTALL) $(BY_HASH) --requirement $(VENV)/uv.txt && \
 	$(BIN)/python -m uv --no-config --no-cache pip install --quiet --python $(BIN)/python $(BY_HASH)
 dev: ## the same with the developers' tools
-env dev:
+clients: ## make or renew the environment of the clients' tests in .venv-clients
+env dev clients:
 	@if [ -z "$(PYTHON)" ]; then \
 		echo "make: no Python 3.11 or later was found -- install one (apt install python3 python3-venv)," \
 			"or name it: make demo PYTHON=/path/to/python3" >&2; exit 1; fi
@@ -66,8 +70,12 @@ demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one liv
 # What is compiled is kept for the next process, whatever the caller's own wish: there are a hundred and more.
 test: export PYTHONDONTWRITEBYTECODE :=
 # Four processes on two cores, as many tests wait for something else.
-test: dev ## run all tests
-	$(BIN)/python -m pytest --numprocesses 4 --dist loadfile --no-loadscope-reorder
+test: dev ## run all tests but those of clients/
+	$(BIN)/python -m pytest --numprocesses 4 --dist loadfile --no-loadscope-reorder --ignore tests/clients
+
+test-clients: export PYTHONDONTWRITEBYTECODE :=
+test-clients: clients ## run the tests of clients/
+	$(BIN)/python -m pytest --numprocesses 4 --dist loadfile tests/clients
 
 check: dev ## lint, format, types, import contract, dead code
 	$(BIN)/ruff check .
@@ -91,5 +99,5 @@ lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes ne
 	$(BIN)/python -m tests.supply.third_party_notices
 
 clean: ## remove the environment and every cache of the tools
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) .venv-clients .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -10,7 +10,9 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = ROOT / "pyproject.toml"
-RUN, BUILD, DEV = (ROOT / "locks" / f"{name}.txt" for name in ("run", "build", "dev"))
+RUN, BUILD, DEV, CLIENTS = (
+    ROOT / "locks" / f"{name}.txt" for name in ("run", "build", "dev", "clients")
+)
 
 # what the lock is for; Makefile asks the same of the environment's Python
 PYTHONS = ("3.11", "3.12", "3.13")

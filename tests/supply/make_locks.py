@@ -7,11 +7,12 @@ neither pip's configuration nor, here, its own: what this machine uses for an in
 
 import argparse
 import os
+import re
 import subprocess
 import sys
 import tomllib
 
-from tests.supply.lock_files import BUILD, DEV, PROJECT, PYTHONS, ROOT, RUN
+from tests.supply.lock_files import BUILD, CLIENTS, DEV, PROJECT, PYTHONS, ROOT, RUN, pins
 
 INDEX = "https://pypi.org/simple"
 COMPILE = (
@@ -30,16 +31,30 @@ def compile_lock(arguments: list[str], requirements: str = "") -> None:
     subprocess.run(command, input=requirements, text=True, cwd=ROOT, env=environment, check=True)
 
 
+def prefer_the_developers_versions() -> None:
+    """uv keeps the versions of the lock that it renews: those of DEV, and of what only CLIENTS has its own."""
+    known = pins(DEV)
+    before = CLIENTS.read_text() if CLIENTS.exists() else ""
+    entries = re.split(r"^(?=[a-z0-9])", before, flags=re.MULTILINE)[1:]
+    own = [entry for entry in entries if entry.partition("==")[0] not in known]
+    CLIENTS.write_text(DEV.read_text() + "".join(own))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--upgrade", action="store_true", help="to the newest versions allowed")
     upgrade = ["--upgrade"] if parser.parse_args().upgrade else []
-    project, run, build, dev = (str(p.relative_to(ROOT)) for p in (PROJECT, RUN, BUILD, DEV))
+    project, run, build, dev, clients = (
+        str(p.relative_to(ROOT)) for p in (PROJECT, RUN, BUILD, DEV, CLIENTS)
+    )
     backend = "\n".join(tomllib.loads(PROJECT.read_text())["build-system"]["requires"])
     # all of it at once first; the parts then take their versions from it
     compile_lock([project, "-", "--extra", "dev", "--output-file", dev, *upgrade], backend)
     compile_lock([project, "--constraints", dev, "--output-file", run, *upgrade])
     compile_lock(["-", "--constraints", dev, "--output-file", build, *upgrade], backend)
+    prefer_the_developers_versions()
+    extras = ["--extra", "dev", "--extra", "clients"]
+    compile_lock([project, "-", *extras, "--output-file", clients], backend)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from packaging.utils import canonicalize_name
 
 from tests.supply.lock_files import (
     BUILD,
+    CLIENTS,
     DEV,
     MACHINES,
     PROJECT,
@@ -24,7 +25,7 @@ from tests.supply.lock_files import (
     statements,
 )
 
-LOCKS = (RUN, BUILD, DEV)
+LOCKS = (RUN, BUILD, DEV, CLIENTS)
 each_lock = pytest.mark.parametrize("lock", LOCKS, ids=lambda path: path.stem)
 
 
@@ -36,15 +37,16 @@ def _asked(lock: Path) -> list[Requirement]:
     """What pyproject.toml asks for that this lock must answer."""
     project = _project()
     run, build = project["project"]["dependencies"], project["build-system"]["requires"]
-    dev = project["project"]["optional-dependencies"]["dev"]
-    asked = {RUN: run, BUILD: build, DEV: [*run, *build, *dev]}[lock]
+    extras = project["project"]["optional-dependencies"]
+    dev = [*run, *build, *extras["dev"]]
+    asked = {RUN: run, BUILD: build, DEV: dev, CLIENTS: [*dev, *extras["clients"]]}[lock]
     return [Requirement(text) for text in asked]
 
 
 def _extras() -> list[Requirement]:
     """What a user may have installed besides; who imports it says by name when it is not there."""
     extras = _project()["project"]["optional-dependencies"]
-    return [Requirement(text) for name in extras.keys() - {"dev"} for text in extras[name]]
+    return [Requirement(text) for name in extras.keys() - {"dev", "clients"} for text in extras[name]]
 
 
 @each_lock

@@ -89,6 +89,17 @@ def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
     assert checkout.make("env") == ([], "")
 
 
+def test_the_tests_of_clients_have_an_environment_of_their_own(checkout: Checkout) -> None:
+    checkout.make("dev")
+    (_, packages, project), _ = checkout.make("clients")
+    assert "--require-hashes" in packages
+    assert _locks_of(packages) == {"locks/clients.txt"}
+    assert "--no-deps" in project
+    assert (checkout.folder / ".venv-clients" / "bin" / "python").exists()
+    assert checkout.make("clients") == ([], "")
+    assert checkout.make("dev") == ([], "")
+
+
 def test_uv_is_installed_as_the_lock_has_it(checkout: Checkout) -> None:
     (uv, *_), _ = checkout.make("dev")
     (path,) = _locks_of(uv)
@@ -143,12 +154,16 @@ def test_what_ci_runs_installs_packages_by_make_alone() -> None:
     ci = (ROOT / ".ci" / "run").read_text()
     assert "pip install" not in ci
     assert "make check" in ci
-    assert "make test" in ci
+    assert "make test\n" in ci
+    assert "make test-clients\n" in ci
 
 
 @pytest.mark.parametrize(
     ("target", "environment"),
-    [("demo", "env"), ("bench", "env"), ("test", "dev"), ("check", "dev"), ("lock", "dev")],
+    [
+        *(("demo", "env"), ("bench", "env"), ("test", "dev"), ("check", "dev"), ("lock", "dev")),
+        ("test-clients", "clients"),
+    ],
 )
 def test_each_target_makes_the_environment_it_needs(target: str, environment: str) -> None:
     rules = (ROOT / "Makefile").read_text().splitlines()
