@@ -85,6 +85,20 @@ def environment(folder: Path, cache_home: Path) -> dict[str, str]:
     return env | {"NO_COLOR": "1", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
 
 
+@pytest.fixture
+def empty_home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """This process as that of a user with an empty home, which is returned, and no MOCAPD_* variable."""
+    for name in (*os.environ,):
+        if name.startswith(("MOCAPD_", "RUNTIME_DIRECTORY", "STATE_DIRECTORY", "CACHE_DIRECTORY")):
+            monkeypatch.delenv(name)
+    for kind in ("cache", "config", "state", "runtime"):
+        folder = tmp_path / kind
+        folder.mkdir(mode=0o700)
+        name = "XDG_RUNTIME_DIR" if kind == "runtime" else f"XDG_{kind.upper()}_HOME"
+        monkeypatch.setenv(name, str(folder))
+    return tmp_path
+
+
 @pytest.fixture(scope="session")
 def simulated(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A scenario of small pictures, as `--capture` takes it; its film is made once for all tests."""

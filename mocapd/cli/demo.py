@@ -33,7 +33,7 @@ def demo(config: ConfigOption = None, settings: SetOption = None, vrm: VrmOption
     """
 
     def read() -> "Effective":
-        return effective_config(config, settings, capture=SCENARIO, **vrm_flags(vrm))
+        return effective_config(config, settings, None, SCENARIO, **vrm_flags(vrm))
 
     watch = watch_command(read().config)
     raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))

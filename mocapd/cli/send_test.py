@@ -46,7 +46,7 @@ def send_test_command(
         raise ConfigError(
             f"there is no output {output[:100]!r}", "--output", f"one of: {', '.join(OUTPUTS)}"
         )
-    effective = effective_config(config, settings, **vrm_flags(vrm)).config
+    effective = effective_config(config, settings, None, None, **vrm_flags(vrm)).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
     entry, section = OUTPUTS[output], effective.outputs[output]

@@ -44,12 +44,7 @@ class Listening:
 
 
 @pytest.fixture
-def listening(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Listening]:
-    (tmp_path / "run").mkdir(mode=0o700)
-    monkeypatch.delenv("RUNTIME_DIRECTORY", raising=False)
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+def listening(empty_home: Path) -> Iterator[Listening]:
     one = Listening()
     yield one
     one.socket.close()

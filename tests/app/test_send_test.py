@@ -47,10 +47,8 @@ class Command(Protocol):
 
 
 @pytest.fixture
-def code_of(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Command:
+def code_of(monkeypatch: pytest.MonkeyPatch, empty_home: Path) -> Command:
     """The command of a user with an empty home."""
-    for name in ("XDG_CACHE_HOME", "XDG_STATE_HOME", "XDG_CONFIG_HOME"):
-        monkeypatch.setenv(name, str(tmp_path))
     monkeypatch.setattr(logs, "set_up_logs", lambda _level: None)  # it is for a whole process
 
     def run(

@@ -15,13 +15,8 @@ SITE = "http://localhost:8000"
 
 
 @pytest.fixture
-def place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Place:
-    (tmp_path / "run").mkdir(mode=0o700)
-    monkeypatch.delenv("RUNTIME_DIRECTORY", raising=False)
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
-    return Place(runtime_folder(tmp_path), tmp_path, "pc")
+def place(empty_home: Path) -> Place:
+    return Place(runtime_folder(empty_home), empty_home, "pc")
 
 
 def test_it_prints_one_address_for_each_site(

@@ -19,6 +19,7 @@ from mocapd.errors import InputError, UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
+from tests.outputs.prediction.moving import distance_m, frame_at, swinging, walking
 from tests.outputs.zenoh_pair import running_sink
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -43,6 +44,24 @@ def test_the_newest_frame_wins() -> None:
         assert eventually(lambda: (body := game.poll()) is not None and body.seq == last)
         assert game.poll() is None
         assert game.wait(0.05) is None
+
+
+def test_a_game_predicts_a_motion_that_goes_on() -> None:
+    """Frames come one by one, as a game that draws at its own rate fetches them; then it asks for what is to come."""
+    with running_sink() as running, client.Client(client.Link(running.endpoint)) as game:
+        running.heard()
+        assert game.predict(0.0) is None
+        frames = [frame_at(k / 30.0, swinging, walking) for k in range(8)]
+        for frame in frames:
+            running.sink.send(frame)
+            assert eventually(
+                lambda seq=frame.seq: (body := game.predict(0.0)) is not None and body.seq == seq
+            )
+        truth = frame_at(7 / 30.0 + 0.033, swinging, walking)
+        ahead = game.predict(truth.capture_unix_ns / 1e9)
+        assert ahead is not None
+        held_m = distance_m(frames[-1], truth, "leftHand")
+        assert distance_m(ahead.frame, truth, "leftHand") < 0.3 * held_m
 
 
 def test_a_body_is_easy_to_read() -> None:

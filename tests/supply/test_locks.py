@@ -46,7 +46,9 @@ def _asked(lock: Path) -> list[Requirement]:
 def _extras() -> list[Requirement]:
     """What a user may have installed besides; who imports it says by name when it is not there."""
     extras = _project()["project"]["optional-dependencies"]
-    return [Requirement(text) for name in extras.keys() - {"dev", "clients"} for text in extras[name]]
+    return [
+        Requirement(text) for name in extras.keys() - {"dev", "clients"} for text in extras[name]
+    ]
 
 
 @each_lock

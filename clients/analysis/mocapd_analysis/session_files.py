@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.body.skeleton import PARENT_OF
+from mocapd.body.bones import PARENT_OF
 from mocapd.boundary.files import is_file
 from mocapd.errors import InputError
 from mocapd.outputs.mcap.recording_reader import RecordingReader

@@ -57,7 +57,8 @@ def replay(
     from mocapd.outputs.mcap.recording_reader import RecordingReader
     from mocapd.outputs.registry import build_sinks
 
-    effective = effective_config(config, settings, instance=instance, **vrm_flags(vrm)).config
+    flags = {"instance": instance, **vrm_flags(vrm)}
+    effective = effective_config(config, settings, None, None, **flags).config
     set_up_logs(effective.log_level)
     name = instance_name(effective.instance)
     sinks = build_sinks(_chosen(effective.outputs, outputs or ()), name)

@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mocapd.body.skeleton import NAMES, PARENTS, standard_skeleton
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import PARENTS, standard_skeleton
 from mocapd.types import Floats
 from mocapd_analysis.session import Session
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import NAMES
+from mocapd.body.bones import NAMES
 from mocapd.errors import InputError
 from mocapd_analysis.measures import measure
 from mocapd_analysis.session_files import checked_session, read_session

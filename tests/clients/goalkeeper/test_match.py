@@ -14,7 +14,8 @@ from goalkeeper.core.pitch import GOAL_LINE_Z_M, TICK_HZ, TICK_S
 from goalkeeper.core.reach import Reach, is_t_pose
 from goalkeeper.core.scoring import Score
 from goalkeeper.core.shots import RandomShooter, Shot
-from mocapd.body.skeleton import NAMES, standard_skeleton
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import standard_skeleton
 from mocapd.types import Floats
 
 REST_M = standard_skeleton(1.75).rest_m

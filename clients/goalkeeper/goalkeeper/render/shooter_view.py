@@ -8,9 +8,9 @@ from panda3d.core import NodePath
 from goalkeeper.core.limbs import LimbPose, pose_of_joints
 from goalkeeper.render.body_meshes import STRIKER
 from goalkeeper.render.body_view import BodyView
+from mocapd.body.bones import NAMES
 from mocapd.body.skeleton import (
     INDEX,
-    NAMES,
     global_from_local,
     joint_positions,
     rest_pose,

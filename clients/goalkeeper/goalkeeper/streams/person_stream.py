@@ -2,7 +2,7 @@
 
 from goalkeeper.core.limbs import LimbPose, pose_of_joints
 from goalkeeper.streams.sighting import Sighting, StreamState
-from mocapd.body.skeleton import NAMES
+from mocapd.body.bones import NAMES
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.world import World
 
