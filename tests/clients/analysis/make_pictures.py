@@ -31,8 +31,8 @@ def main(folder: Path) -> None:
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=chromium, args=GL)
         try:
-            _report(browser, sessions[0], folder / "analysis_report.png")
-            _viewer(browser, sessions, folder / "analysis_viewer.png")
+            _report(browser, sessions[0], folder / "report.png")
+            _viewer(browser, sessions, folder / "viewer.png")
         finally:
             browser.close()
 
