@@ -50,6 +50,16 @@ def interruptible(words: Sequence[str]) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def ended() -> None:
+    """The command is over, and its exit code is known: a signal that was looked after until now changes it no more.
+
+    The interpreter gives such signals their default effect while it ends, by which the process would die of them.
+    """
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+        if callable(signal.getsignal(number)):
+            signal.signal(number, signal.SIG_IGN)
+
+
 def is_service(words: Sequence[str]) -> bool:
     """Whether this command line starts something that runs until it is told to end."""
     batch = any(word.startswith("--from-folder") for word in words)

@@ -118,6 +118,27 @@ def test_who_ends_with_what_while_it_is_imported(words: str, number: int, code: 
     assert (done.returncode, done.stderr) == (code, "")
 
 
+def test_a_sigterm_while_the_interpreter_ends_changes_nothing(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    """As of a service manager that tells it to end when its recordings have ended just before."""
+    program = (
+        "import os, signal, sys\n"
+        "from mocapd.cli.main import main\n"
+        "class Last:\n"
+        "    def __del__(self, kill=os.kill, pid=os.getpid(), number=signal.SIGTERM):\n"
+        "        kill(pid, number)\n"
+        "last = Last()\n"
+        "main()\n"
+    )
+    film = write_film(tmp_path / "a.avi", 5)
+    command = [sys.executable, "-c", program, "run", f"--camera=a={film}", *QUIET]
+    done = subprocess.run(
+        command, env=env, capture_output=True, text=True, timeout=WAIT_S, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
 # Makes its stdin the terminal that it is controlled by.
 IN_A_TERMINAL = """
 import fcntl, os, sys, termios
