@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -54,14 +55,17 @@ def test_a_game_predicts_a_motion_that_goes_on() -> None:
         frames = [frame_at(k / 30.0, swinging, walking) for k in range(8)]
         for frame in frames:
             running.sink.send(frame)
-            assert eventually(
-                lambda seq=frame.seq: (body := game.predict(0.0)) is not None and body.seq == seq
-            )
+            assert eventually(partial(_has_come, game, frame.seq))
         truth = frame_at(7 / 30.0 + 0.033, swinging, walking)
         ahead = game.predict(truth.capture_unix_ns / 1e9)
         assert ahead is not None
         held_m = distance_m(frames[-1], truth, "leftHand")
         assert distance_m(ahead.frame, truth, "leftHand") < 0.3 * held_m
+
+
+def _has_come(game: client.Client, seq: int) -> bool:
+    body = game.predict(0.0)
+    return body is not None and body.seq == seq
 
 
 def test_a_body_is_easy_to_read() -> None:
