@@ -9,10 +9,10 @@ from mocapd.errors import InputError
 from mocapd.outputs import schemas, wire
 from tests.outputs.frames import small_frame, whole_frame
 
-# written out from the msgpack specification: fixmap of 11, then key and value by turns
+# written out from the msgpack specification: fixmap of 13, then key and value by turns
 GOLDEN_MSGPACK = b"".join(
     [
-        b"\x8b",
+        b"\x8d",
         b"\xa6schema\xb2mocapd.Skeleton.v1",
         b"\xa8instance\xa2pc",
         b"\xa6person\x00",
@@ -35,6 +35,8 @@ GOLDEN_MSGPACK = b"".join(
         b"\xcb\x3f\xe8\0\0\0\0\0\0\xcb\x3f\xe4\0\0\0\0\0\0",
         b"\xa1l\x94" + b"\xcb\x3f\xe0\0\0\0\0\0\0" * 4,
         b"\xa1c\xcb\x3f\xc0\0\0\0\0\0\0",
+        b"\xb0smoothing_lag_ns\x00",
+        b"\xacpredicted_ns\x00",
     ]
 )
 
