@@ -3,12 +3,10 @@
 import threading
 from dataclasses import replace
 
-from mocapd.errors import MocapdError
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.messages import StateMessage, subject
+from mocapd.outputs.sink_thread import SinkThread
 from mocapd.outputs.wire import SkeletonFrame
-
-JOIN_S = 1.0  # how long `close` waits for a send under way [s]
 
 
 class ThreadedSink:
@@ -27,22 +25,18 @@ class ThreadedSink:
         self._states: dict[tuple[str, str], StateMessage] = {}
         self._displaced = 0
         self._closed = True
-        self._thread: threading.Thread | None = None
-        self._error: MocapdError | None = None
+        self._thread = SinkThread(sink.name, self._run)
 
     def open(self) -> None:
         """Open the inner sink, in the caller's thread so that its errors arrive there."""
         self._sink.open()
         with self._changed:
             self._frame, self._displaced, self._closed = None, 0, False
-        self._error = None
-        self._thread = threading.Thread(target=self._run, name=f"output-{self.name}", daemon=True)
         self._thread.start()
 
     def send(self, frame: SkeletonFrame) -> None:
         """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
-        if self._thread is not None and not self._thread.is_alive():
-            raise self._error or RuntimeError(f"the thread of output {self.name} died, see above")
+        self._thread.check()
         with self._changed:
             if self._closed:
                 return
@@ -57,15 +51,12 @@ class ThreadedSink:
             self._changed.notify()
 
     def _run(self) -> None:
-        try:
-            while (waiting := self._taken()) is not None:
-                states, frame = waiting
-                for message in states:
-                    self._sink.tell(message)
-                if frame is not None:
-                    self._sink.send(frame)
-        except MocapdError as error:  # handed to the pipeline's thread by `send`
-            self._error = error
+        while (waiting := self._taken()) is not None:
+            states, frame = waiting
+            for message in states:
+                self._sink.tell(message)
+            if frame is not None:
+                self._sink.send(frame)
 
     def _taken(self) -> tuple[tuple[StateMessage, ...], SkeletonFrame | None] | None:
         """What waits, as soon as something does; None when it is closed."""
@@ -94,7 +85,5 @@ class ThreadedSink:
         with self._changed:
             self._closed, self._frame = True, None
             self._changed.notify()
-        if self._thread is not None:
-            self._thread.join(JOIN_S)
-            self._thread = None
+        self._thread.join()
         self._sink.close()

@@ -6,13 +6,12 @@ import threading
 import msgspec
 
 from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds, seconds
-from mocapd.errors import MocapdError
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
+from mocapd.outputs.sink_thread import SinkThread
 from mocapd.outputs.wire import SkeletonFrame
 
-JOIN_S = 1.0  # how long `close` waits for a send under way [s]
 _SILENT_NS = NS_PER_S // 4  # without a frame nothing is sent, for nothing is known
 
 
@@ -32,23 +31,18 @@ class PredictedSink:
         self._changed = threading.Condition()  # guards what follows
         self._frames: list[SkeletonFrame] = []
         self._closed = True
-        self._thread: threading.Thread | None = None
-        self._error: MocapdError | None = None
+        self._thread = SinkThread(sink.name, self._run)
 
     def open(self) -> None:
         """Open the inner sink, in the caller's thread so that its errors arrive there."""
         self._sink.open()
         with self._changed:
             self._frames, self._closed = [], False
-        self._error = None
-        name = f"output-{self.name}"
-        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
         self._thread.start()
 
     def send(self, frame: SkeletonFrame) -> None:
         """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
-        if self._thread is not None and not self._thread.is_alive():
-            raise self._error or RuntimeError(f"the thread of output {self.name} died, see above")
+        self._thread.check()
         with self._changed:
             if not self._closed:
                 self._frames.append(frame)
@@ -66,27 +60,22 @@ class PredictedSink:
         with self._changed:
             self._closed = True
             self._changed.notify()
-        if self._thread is not None:
-            self._thread.join(JOIN_S)
-            self._thread = None
+        self._thread.join()
         self._sink.close()
 
     def _run(self) -> None:
         predictor = PosePredictor()
         newest: SkeletonFrame | None = None
         due_ns = monotonic_ns()
-        try:
-            while (frames := self._came_until(due_ns)) is not None:
-                for frame in frames:
-                    predictor.take(frame)
-                    newest = frame
-                now_ns = monotonic_ns()
-                if newest is not None and (newest.joints or frames):
-                    self._send(predictor, newest, now_ns)
-                # after a pause the beat goes on from now, rather than catching up
-                due_ns = max(due_ns + self._period_ns, now_ns)
-        except MocapdError as error:  # handed to the pipeline's thread by `send`
-            self._error = error
+        while (frames := self._came_until(due_ns)) is not None:
+            for frame in frames:
+                predictor.take(frame)
+                newest = frame
+            now_ns = monotonic_ns()
+            if newest is not None and (newest.joints or frames):
+                self._send(predictor, newest, now_ns)
+            # after a pause the beat goes on from now, rather than catching up
+            due_ns = max(due_ns + self._period_ns, now_ns)
 
     def _came_until(self, due_ns: int) -> list[SkeletonFrame] | None:
         """The frames that came by then; None when it is closed."""
