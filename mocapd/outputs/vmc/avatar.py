@@ -2,46 +2,51 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.vmc.bone_names import other_side
-from mocapd.types import Floats, Ints
+from mocapd.outputs.wire import Quaternion, Vector
 
-_REFLECTED = np.array([-1.0, 1.0, 1.0])  # at the plane x = 0
+Row = tuple[float, float, float, float]
+
+_STRAIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
+_SAME_AXES: tuple[Row, Row, Row] = (
+    (1.0, 0.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0, 0.0),
+    (0.0, 0.0, 1.0, 0.0),
+)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class Avatar:
-    """Bones (B,) by VRM 1.0 name, the hips first, parents before their children; in the T-pose, axes of the world.
+    """Bones by VRM 1.0 name, the hips first, parents before their children; in the T-pose, axes of the world.
 
-    parents (B,): the nearest bone above, -1 for the hips. offsets_m (B,3): from the node directly above, in that node's
-    axes [m]; of the hips nothing is read. rest_xyzw (B,4): global rotation of the bone; from_above_xyzw (B,4): the inverse of
-    that of the node directly above, which in a file need not be a bone. hips_from_world (4,4): into the axes of the node
-    above the hips. hips_height_m: of the hips above the floor. is_straight: whether all those rotations are none.
+    parents: of each the nearest bone above, -1 for the hips. offsets_m: from the node directly above, in that node's
+    axes [m]; of the hips nothing is read. rest_xyzw: global rotation of each bone; from_above_xyzw: the inverse of
+    that of the node directly above, which in a file need not be a bone. hips_from_world: rows of the transform into the
+    axes of the node above the hips. hips_height_m: of the hips above the floor. is_straight: whether all those rotations
+    are none.
     """
 
     names: tuple[str, ...]
-    parents: Ints
-    offsets_m: Floats
-    rest_xyzw: Floats
-    from_above_xyzw: Floats
-    hips_from_world: Floats
+    parents: tuple[int, ...]
+    offsets_m: tuple[Vector, ...]
+    rest_xyzw: tuple[Quaternion, ...]
+    from_above_xyzw: tuple[Quaternion, ...]
+    hips_from_world: tuple[Row, Row, Row]
     hips_height_m: float
     is_straight: bool
 
 
 def wearer_avatar(rest: RestSkeleton) -> Avatar:
     """The wearer's own bones: straight in the T-pose, nothing between them."""
-    straight = np.tile(IDENTITY_XYZW, (len(rest.names), 1))
+    straight = (_STRAIGHT,) * len(rest.names)
     return Avatar(
         rest.names,
-        np.array(rest.parents, dtype=np.int64),
-        np.array(rest.offsets_m),
+        rest.parents,
+        rest.offsets_m,
         straight,
         straight,
-        np.eye(4),
+        _SAME_AXES,
         rest.offsets_m[0][1],
         is_straight=True,
     )
@@ -51,4 +56,10 @@ def mirrored(avatar: Avatar) -> Avatar:
     """Bones as long as those of the other side, as the person in a mirror has them; for straight bones."""
     place = {name: k for k, name in enumerate(avatar.names)}
     others = [place.get(other_side(name), k) for k, name in enumerate(avatar.names)]
-    return replace(avatar, offsets_m=avatar.offsets_m[others] * _REFLECTED)
+    return replace(avatar, offsets_m=tuple(map(reflected, (avatar.offsets_m[k] for k in others))))
+
+
+def reflected(position_m: Vector) -> Vector:
+    """At the plane x = 0."""
+    x, y, z = position_m
+    return -x, y, z

@@ -3,80 +3,103 @@
 Unity's world is left-handed with +Y up, and an avatar at rest faces +Z as a person does in ours,
 with the left hand at -X where ours is at +X: x is turned round, of positions (-x, y, z) and so of
 quaternions (x, -y, -z, w).
+
+Scalars: a frame comes after milliseconds of other work, when a call of numpy costs five times what it does in a
+loop of its own, and these forty cost more than the 22 bones.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from mocapd.geometry import rotations
+from mocapd.outputs.prediction.quaternions import inverse, multiply
 from mocapd.outputs.vmc.avatar import Avatar
-from mocapd.types import Floats
+from mocapd.outputs.wire import Quaternion, Vector
 
-_UNITY = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0, 1.0])  # of position and quaternion
-_MIRRORED_M = np.array([-1.0, 1.0, 1.0])
-_MIRRORED_XYZW = np.array([1.0, -1.0, -1.0, 1.0])
+Numbers = tuple[float, float, float, float, float, float, float]  # position [m] and quaternion xyzw
+
+_NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class Placing:
     """Where the person is turned to, and which of root and hips carries it.
 
-    R (3,3): about the vertical through the world's origin; root_xyzw, hips_xyzw (4,): the same, or none; root_share (3,):
-    by axis, 1 where the root carries the way.
+    cos, sin: of the turn about the vertical through the world's origin; root_xyzw, hips_xyzw: the same as a rotation, or
+    none; by_root: whether the root carries the way over the floor.
     """
 
-    R: Floats
-    root_xyzw: Floats
-    hips_xyzw: Floats
-    root_share: Floats
+    cos: float
+    sin: float
+    root_xyzw: Quaternion
+    hips_xyzw: Quaternion
+    by_root: bool
 
 
 def placing(turn_deg: float, yaw_deg: float, by_root: bool) -> Placing:
     """Both turns together, counter-clockwise seen from above. by_root: they and the way over the floor are the root's."""
-    heading_xyzw = rotations.exp(np.array([0.0, math.radians(turn_deg + yaw_deg), 0.0]))
-    R, none_xyzw = rotations.to_matrix(heading_xyzw), rotations.IDENTITY_XYZW
-    if by_root:
-        return Placing(R, heading_xyzw, none_xyzw, np.array([1.0, 0.0, 1.0]))
-    return Placing(R, none_xyzw, heading_xyzw, np.zeros(3))
+    heading_rad = math.radians(turn_deg + yaw_deg)
+    heading: Quaternion = (0.0, math.sin(0.5 * heading_rad), 0.0, math.cos(0.5 * heading_rad))
+    root, hips = (heading, _NONE) if by_root else (_NONE, heading)
+    return Placing(math.cos(heading_rad), math.sin(heading_rad), root, hips, by_root)
 
 
 def placed(
-    avatar: Avatar, where: Placing, hips_m: Floats, turned_xyzw: Floats, scale: float
-) -> Floats:
-    """(1 + B, 7): position [m] and quaternion of the root and of each bone, local, in Unity's axes.
+    avatar: Avatar, where: Placing, hips_m: Vector, locals_xyzw: Sequence[Quaternion], scale: float
+) -> list[Numbers]:
+    """Of the root and of each bone, local, in Unity's axes.
 
-    hips_m (3,): the person's hips in the world; turned_xyzw (B,4): global rotations of the avatar's bones relative to the
-    T-pose. scale: the avatar's size by the person's.
+    hips_m: the person's hips in the world; locals_xyzw: of the avatar's bones, as of
+    `local_rotations`.
+    scale: the avatar's size by the person's.
     """
-    at_m = where.R @ (hips_m * scale)
-    root_m = at_m * where.root_share
-    out = np.empty((1 + len(turned_xyzw), 7))
-    out[0, :3], out[0, 3:] = root_m, where.root_xyzw
-    out[1:, :3] = avatar.offsets_m
+    x, y, z = (scale * along for along in hips_m)
+    x, z = where.cos * x + where.sin * z, where.cos * z - where.sin * x
     # what the root does not carry is straight up, which its heading leaves as it is
-    out[1, :3] = avatar.hips_from_world[:3, :3] @ (at_m - root_m) + avatar.hips_from_world[:3, 3]
-    out[1:, 3:] = _local(avatar, where.hips_xyzw, turned_xyzw)
-    out *= _UNITY
-    return out
+    root, hips = ((x, 0.0, z), (0.0, y, 0.0)) if where.by_root else ((0.0, 0.0, 0.0), (x, y, z))
+    offsets = (_moved(avatar.hips_from_world, hips), *avatar.offsets_m[1:])
+    turns = (where.root_xyzw, *locals_xyzw)
+    return [
+        (-px, py, pz, qx, -qy, -qz, qw)
+        for (px, py, pz), (qx, qy, qz, qw) in zip((root, *offsets), turns, strict=True)
+    ]
 
 
-def reflected(hips_m: Floats, turned_xyzw: Floats) -> tuple[Floats, Floats]:
-    """Position and rotations at the plane x = 0; the rotations are then those of the other side's bones."""
-    return hips_m * _MIRRORED_M, turned_xyzw * _MIRRORED_XYZW
+def reflected_turn(xyzw: Quaternion) -> Quaternion:
+    """At the plane x = 0; it is then that of the other side's bone."""
+    x, y, z, w = xyzw
+    return x, -y, -z, w
 
 
-def _local(avatar: Avatar, heading_xyzw: Floats, turned_xyzw: Floats) -> Floats:
-    """Rotations (B,4) relative to the node directly above, which is turned as the bone above it is; the hips by the heading.
+def _moved(transform: Sequence[Sequence[float]], at_m: Vector) -> Vector:
+    """By three rows of a rigid transform."""
+    x, y, z = at_m
+    a, b, c = (row[0] * x + row[1] * y + row[2] * z + row[3] for row in transform)
+    return a, b, c
+
+
+def headed(where: Placing, locals_xyzw: Sequence[Quaternion]) -> list[Quaternion]:
+    """Local rotations of straight bones, the hips turned by the heading that they carry."""
+    return [multiply(where.hips_xyzw, locals_xyzw[0]), *locals_xyzw[1:]]
+
+
+def local_rotations(
+    avatar: Avatar, where: Placing, turned_xyzw: Sequence[Quaternion]
+) -> list[Quaternion]:
+    """From global rotations since the T-pose to those relative to the node directly above, which is turned as the bone
+    above it is; the hips by the heading that they carry.
 
     With D the rotation since the T-pose, a of the bone above, G those of the T-pose, n of the node above:
     (D_a G_n)^-1 (D_b G_b).
     """
-    from_above_xyzw = rotations.inverse(turned_xyzw[avatar.parents])
-    from_above_xyzw[0] = heading_xyzw
-    local_xyzw = rotations.multiply(from_above_xyzw, turned_xyzw)
+    locals_xyzw = [multiply(where.hips_xyzw, turned_xyzw[0])]
+    for parent, turn in zip(avatar.parents[1:], turned_xyzw[1:], strict=True):
+        locals_xyzw.append(multiply(inverse(turned_xyzw[parent]), turn))
     if avatar.is_straight:
-        return local_xyzw
-    local_xyzw = rotations.multiply(local_xyzw, avatar.rest_xyzw)
-    return rotations.multiply(avatar.from_above_xyzw, local_xyzw)
+        return locals_xyzw
+    return [
+        multiply(from_above, multiply(turn, rest))
+        for from_above, turn, rest in zip(
+            avatar.from_above_xyzw, locals_xyzw, avatar.rest_xyzw, strict=True
+        )
+    ]

@@ -2,15 +2,12 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mocapd.outputs.messages import RestSkeleton
-from mocapd.outputs.vmc.avatar import Avatar, mirrored, wearer_avatar
+from mocapd.outputs.vmc.avatar import Avatar, mirrored, reflected, wearer_avatar
 from mocapd.outputs.vmc.bone_names import is_leaf, other_side
-from mocapd.outputs.vmc.placing import Placing, placed, reflected
+from mocapd.outputs.vmc.placing import Placing, headed, local_rotations, placed, reflected_turn
 from mocapd.outputs.vmc.vmc_packets import Bundling, VmcPackets
-from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame
-from mocapd.types import Floats, Ints
+from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 
 LEAF_CONFIDENCE = 0.05  # below which a leaf is taken to be untracked
 MAX_LAYOUTS = 32  # kept laid out; leaves come and go
@@ -32,7 +29,7 @@ class VmcEncoder:
         self._placing, self._mirror, self._bundling = placing, mirror, bundling
         self._file_avatar = avatar
         self._body: _Body | None = None
-        self._layouts: dict[tuple[int, ...], tuple[VmcPackets, Ints]] = {}
+        self._layouts: dict[tuple[int, ...], tuple[VmcPackets, tuple[int, ...]]] = {}
         self._packets = VmcPackets((), bundling)
         self._is_posed = False
 
@@ -62,22 +59,30 @@ class VmcEncoder:
             body = self._body = _body(rest, self._file_avatar, self._mirror)
             self._layouts.clear()
         joints = [frame.joints.get(name) for name in body.sources]
-        hips_m = np.array(frame.joints[_HIPS].p)
-        turned_xyzw = _turned(joints, body.parents)
+        hips_m = frame.joints[_HIPS].p
+        # the wearer's own bones turn as the frame says already; the products are for an avatar with others
+        known = [one.l for one in joints if one is not None] if body.is_own else []
+        is_told = len(known) == len(joints)
+        turns_xyzw = known if is_told else _turned(joints, body.avatar.parents)
+        if not (_is_near(hips_m, body.scale) and all(map(_is_rotation, turns_xyzw))):
+            return False
         if self._mirror:
-            hips_m, turned_xyzw = reflected(hips_m, turned_xyzw)
-        numbers = placed(body.avatar, self._placing, hips_m, turned_xyzw, body.scale)
-        lengths = np.vecdot(turned_xyzw, turned_xyzw)
-        if not (np.abs(numbers).max() <= _MOST and np.abs(lengths - 1.0).max() <= _UNEVEN):
-            return False  # nor is NaN
+            hips_m, turns_xyzw = reflected(hips_m), [*map(reflected_turn, turns_xyzw)]
+        if is_told:
+            locals_xyzw = headed(self._placing, turns_xyzw)
+        else:
+            locals_xyzw = local_rotations(body.avatar, self._placing, turns_xyzw)
+        numbers = placed(body.avatar, self._placing, hips_m, locals_xyzw, body.scale)
         packets, rows = self._layout(
             body, tuple(k for k in body.leaves if not _is_tracked(joints[k]))
         )
-        packets.pose(numbers[rows])
+        packets.pose([numbers[k] for k in rows])
         self._packets, self._is_posed = packets, True
         return True
 
-    def _layout(self, body: "_Body", left_out: tuple[int, ...]) -> tuple[VmcPackets, Ints]:
+    def _layout(
+        self, body: "_Body", left_out: tuple[int, ...]
+    ) -> tuple[VmcPackets, tuple[int, ...]]:
         """The datagrams without these bones, and which of all numbers are in them."""
         layout = self._layouts.get(left_out)
         if layout is None:
@@ -86,19 +91,20 @@ class VmcEncoder:
             names = body.avatar.names
             sent = [k for k in range(len(names)) if k not in left_out]
             packets = VmcPackets([names[k] for k in sent], self._bundling)
-            layout = self._layouts[left_out] = packets, np.array([0, *(k + 1 for k in sent)])
+            layout = self._layouts[left_out] = packets, (0, *(k + 1 for k in sent))
         return layout
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
-    """Whose bones are sent. sources: of each bone the joint of the frame that turns it; leaves: places of those that are."""
+    """Whose bones are sent. is_own: the wearer's, mirrored perhaps; sources: of each bone the joint of the frame that
+    turns it; leaves: places of those that are."""
 
     rest: RestSkeleton
     avatar: Avatar
+    is_own: bool
     scale: float
     sources: tuple[str, ...]
-    parents: tuple[int, ...]
     leaves: tuple[int, ...]
 
 
@@ -108,9 +114,9 @@ def _body(rest: RestSkeleton, file_avatar: Avatar | None, mirror: bool) -> _Body
     return _Body(
         rest,
         avatar,
+        file_avatar is None,
         avatar.hips_height_m / own.hips_height_m,
         tuple(map(other_side, avatar.names)) if mirror else avatar.names,
-        tuple(avatar.parents.tolist()),
         tuple(k for k, name in enumerate(avatar.names) if is_leaf(name)),
     )
 
@@ -124,9 +130,20 @@ def _is_tracked(joint: Joint | None) -> bool:
     return joint is not None and joint.c >= LEAF_CONFIDENCE
 
 
-def _turned(joints: list[Joint | None], parents: tuple[int, ...]) -> Floats:
-    """Global rotations (B,4); a bone that the frame does not know is turned as the one above it."""
+def _turned(joints: list[Joint | None], parents: tuple[int, ...]) -> list[Quaternion]:
+    """Global rotations; a bone that the frame does not know is turned as the one above it."""
     rows: list[Quaternion] = []
     for joint, parent in zip(joints, parents, strict=True):
         rows.append(joint.r if joint is not None else rows[parent])
-    return np.array(rows)
+    return rows
+
+
+def _is_near(position_m: Vector, scale: float) -> bool:
+    """Not NaN either."""
+    return all(abs(scale * along_m) <= _MOST for along_m in position_m)
+
+
+def _is_rotation(xyzw: Quaternion) -> bool:
+    """Not NaN either."""
+    x, y, z, w = xyzw
+    return abs(x * x + y * y + z * z + w * w - 1.0) <= _UNEVEN

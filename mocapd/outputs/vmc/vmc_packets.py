@@ -11,7 +11,7 @@ from typing import Literal
 
 from mocapd.outputs.osc import osc_encoding as osc
 from mocapd.outputs.vmc.bone_names import unity_name
-from mocapd.types import Floats
+from mocapd.outputs.vmc.placing import Numbers
 
 Bundling = Literal["two", "one", "off"]
 
@@ -19,8 +19,8 @@ OK, OK_TYPES = "/VMC/Ext/OK", "iiii"
 TIME, TIME_TYPES = "/VMC/Ext/T", "f"
 ROOT, BONE, POSE_TYPES = "/VMC/Ext/Root/Pos", "/VMC/Ext/Bone/Pos", "sfffffff"
 
-_POSE_BYTES = 28
 _ok_numbers = struct.Struct(">4i")
+_pose_numbers = struct.Struct(">7f")
 _time_number = struct.Struct(">f")
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 
@@ -57,11 +57,10 @@ class VmcPackets:
         self._ok_at, self._time_at = numbers_at[OK], numbers_at[TIME]
         self._poses_at = [numbers_at[name] for name in ([ROOT, *bones] if bones else ())]
 
-    def pose(self, numbers: Floats) -> None:
-        """Overwrite root and bones with (1 + B, 7): positions and quaternions, in the order of `bones`."""
-        raw = numbers.astype(">f4").tobytes()
-        for k, (data, at) in enumerate(self._poses_at):
-            data[at : at + _POSE_BYTES] = raw[k * _POSE_BYTES : (k + 1) * _POSE_BYTES]
+    def pose(self, numbers: Sequence[Numbers]) -> None:
+        """Overwrite root and bones, in the order of `bones`."""
+        for (data, at), row in zip(self._poses_at, numbers, strict=True):
+            _pose_numbers.pack_into(data, at, *row)
 
     def say(self, loaded: bool, calibration: int, tracking: bool, time_s: float) -> None:
         """Overwrite OK and T; calibration: VMC's state, 3 when calibrated."""

@@ -84,13 +84,14 @@ def avatar_of_nodes(nodes: Sequence[VrmNode], bones: Mapping[str, int]) -> Avata
         raise MalformedError("a node above its hips is scaled to nothing")
     rest_xyzw = np.array([_turned([poses[node] for node in lines[name]]) for name in names])
     above_xyzw = np.array([_turned([poses[node] for node in lines[name][1:]]) for name in names])
+    world_above = np.linalg.inv(hips_above)
     return Avatar(
         names,
-        np.array(parents, dtype=np.int64),
-        np.array([poses[bones[name]][0][:3, 3] for name in names]),
-        rest_xyzw,
-        rotations.inverse(above_xyzw),
-        np.asarray(np.linalg.inv(hips_above), dtype=np.float64),
+        tuple(parents),
+        tuple(map(_vector, (poses[bones[name]][0][:3, 3] for name in names))),
+        tuple(map(_four, rest_xyzw)),
+        tuple(map(_four, rotations.inverse(above_xyzw))),
+        (_four(world_above[0]), _four(world_above[1]), _four(world_above[2])),
         float(hips_m[1]),
         is_straight=bool(min(rest_xyzw[:, 3].min(), above_xyzw[:, 3].min()) > _STRAIGHT),
     )
@@ -153,3 +154,13 @@ def _turned(line: Sequence[tuple[Floats, Floats]]) -> Floats:
     for _, turned in line:
         out = rotations.multiply(turned, out)
     return rotations.canonical(out)
+
+
+def _vector(numbers: Floats) -> Vector:
+    x, y, z = numbers.tolist()
+    return x, y, z
+
+
+def _four(numbers: Floats) -> Quaternion:
+    x, y, z, w = numbers.tolist()
+    return x, y, z, w

@@ -6,6 +6,7 @@ from typing import Any
 
 import zenoh
 
+from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.outputs import wire
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.instance import instance_name
@@ -18,6 +19,10 @@ from mocapd.outputs.zenoh.zenoh_listeners import ListenerNames
 from mocapd.outputs.zenoh.zenoh_open import open_session
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
+
+_HEARD_NS = (
+    NS_PER_S // 10
+)  # who was heard is taken to be for so long: to ask costs more than to send
 
 _log = logging.getLogger(__name__)
 
@@ -41,6 +46,7 @@ class ZenohSink:
         self._session: zenoh.Session | None = None
         self._opened = ExitStack()
         self._publishers: dict[int, zenoh.Publisher] = {}
+        self._heard_until_ns: dict[int, int] = {}  # by person
         self._sent = 0
         self._unheard = 0
 
@@ -76,9 +82,12 @@ class ZenohSink:
         publisher = self._publishers.get(frame.person)
         if publisher is None:
             publisher = self._publishers[frame.person] = self._declare(session, frame.person)
-        if not _is_heard(publisher):
-            self._unheard += 1
-            return
+        now_ns = monotonic_ns()
+        if now_ns >= self._heard_until_ns.get(frame.person, 0):
+            if not _is_heard(publisher):
+                self._unheard += 1
+                return
+            self._heard_until_ns[frame.person] = now_ns + _HEARD_NS
         publisher.put(wire.encode_json(frame) if self._json else wire.encode_msgpack(frame))
         self._sent += 1
 
@@ -112,7 +121,7 @@ class ZenohSink:
         Within about a second, whatever the clients do.
         """
         self._session = None
-        self._publishers = {}
+        self._publishers, self._heard_until_ns = {}, {}
         self._state.detach()
         close_soon(self._opened)
 

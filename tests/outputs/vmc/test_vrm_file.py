@@ -168,7 +168,7 @@ def test_thumbs_of_both_versions_are_the_same_bones(tmp_path: Path) -> None:
         avatar = read_vrm(write_vrm(tmp_path / "a.vrm", Model(nodes, version)))
         parents = {
             name: avatar.names[parent]
-            for name, parent in zip(avatar.names, avatar.parents.tolist(), strict=True)
+            for name, parent in zip(avatar.names, avatar.parents, strict=True)
         }
         assert parents["leftThumbProximal"] == "leftThumbMetacarpal"
         assert parents["leftThumbMetacarpal"] == "leftHand"
