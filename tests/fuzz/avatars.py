@@ -6,7 +6,7 @@ from random import Random
 
 import numpy as np
 
-from mocapd.outputs.vmc.placing import placed, placing
+from mocapd.outputs.vmc.placing import local_rotations, placed, placing
 from mocapd.outputs.vmc.vrm_file import read_vrm
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError
@@ -35,9 +35,9 @@ def vrms(place: Place) -> Attempt:
             whole = damaged(random, whole)
         path.write_bytes(whole)
         avatar = read_vrm(path)
-        upright = np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (len(avatar.names), 1))
         where = placing(0.0, 0.0, by_root=False)
-        pose = placed(avatar, where, np.array([0.3, 1.0, 0.2]), upright, avatar.hips_height_m)
+        upright = local_rotations(avatar, where, [(0.0, 0.0, 0.0, 1.0)] * len(avatar.names))
+        pose = placed(avatar, where, (0.3, 1.0, 0.2), upright, avatar.hips_height_m)
         if not np.abs(pose).max() < _MOST:
             raise WrongError("an avatar is taken whose pose is no number")
         return True

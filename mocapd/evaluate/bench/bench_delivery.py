@@ -50,12 +50,13 @@ Arrivals = dict[int, int]  # of each frame, by number: CLOCK_MONOTONIC [ns]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DeliveryTimes:
-    """under_way_ms: by way, of each frame that came; lost: by way, frames that did not; busy_share: of one core, that the
-    sending process took for all outputs together."""
+    """under_way_ms: by way, of each frame that came; lost: by way, frames that did not. Shares of one core:
+    busy_share, that the outputs took together; idle_share, that the same loop took without any."""
 
     under_way_ms: dict[str, Floats]
     lost: dict[str, int]
     busy_share: float
+    idle_share: float
 
 
 def deliver(seconds: float) -> DeliveryTimes:
@@ -83,6 +84,7 @@ def deliver(seconds: float) -> DeliveryTimes:
             "zenoh": _game("zenoh", zenoh_port, opened),
             "osc": _game("osc", osc_port, opened),
         }
+        _, idle_share = _send((), seconds / 4.0)
         sent_ns, busy_share = _send(sinks, seconds)
         heard = {way: _heard(game) for way, game in games.items()}
     return DeliveryTimes(
@@ -91,7 +93,8 @@ def deliver(seconds: float) -> DeliveryTimes:
             for way, arrivals in heard.items()
         },
         {way: len(sent_ns) - len(arrivals) for way, arrivals in heard.items()},
-        busy_share,
+        busy_share - idle_share,
+        idle_share,
     )
 
 
@@ -206,7 +209,10 @@ def main() -> None:
         shares = np.percentile(under_way_ms, (50.0, 95.0, 99.0)).tolist()
         rows.append((way, *(number(ms, 2) for ms in shares), str(found.lost[way])))
     _say(table(("to a game by", "median ms", "p95 ms", "p99 ms", "lost"), rows))
-    _say(f"\nall outputs at {RATE_HZ:g} Hz: {100.0 * found.busy_share:.1f} % of a core")
+    _say(
+        f"\nall outputs at {RATE_HZ:g} Hz: {100.0 * found.busy_share:.1f} % of a core,"
+        f" beside {100.0 * found.idle_share:.1f} % of the loop that hands them the frames"
+    )
 
 
 if __name__ == "__main__":

@@ -58,13 +58,15 @@ class VmcEncoder:
         if body is None or body.rest is not rest:
             body = self._body = _body(rest, self._file_avatar, self._mirror)
             self._layouts.clear()
+        if not body.is_sane:
+            return False
         joints = [frame.joints.get(name) for name in body.sources]
         hips_m = frame.joints[_HIPS].p
         # the wearer's own bones turn as the frame says already; the products are for an avatar with others
         known = [one.l for one in joints if one is not None] if body.is_own else []
         is_told = len(known) == len(joints)
         turns_xyzw = known if is_told else _turned(joints, body.avatar.parents)
-        if not (_is_near(hips_m, body.scale) and all(map(_is_rotation, turns_xyzw))):
+        if not all(map(_is_rotation, turns_xyzw)):
             return False
         if self._mirror:
             hips_m, turns_xyzw = reflected(hips_m), [*map(reflected_turn, turns_xyzw)]
@@ -73,6 +75,8 @@ class VmcEncoder:
         else:
             locals_xyzw = local_rotations(body.avatar, self._placing, turns_xyzw)
         numbers = placed(body.avatar, self._placing, hips_m, locals_xyzw, body.scale)
+        if not all(_is_near(row[:3]) for row in numbers[:2]):  # root and hips; the others stay
+            return False
         packets, rows = self._layout(
             body, tuple(k for k in body.leaves if not _is_tracked(joints[k]))
         )
@@ -97,12 +101,13 @@ class VmcEncoder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
-    """Whose bones are sent. is_own: the wearer's, mirrored perhaps; sources: of each bone the joint of the frame that
-    turns it; leaves: places of those that are."""
+    """Whose bones are sent. is_own: the wearer's, mirrored perhaps; is_sane: none is as far away as no bone is;
+    sources: of each bone the joint of the frame that turns it; leaves: places of those that are."""
 
     rest: RestSkeleton
     avatar: Avatar
     is_own: bool
+    is_sane: bool
     scale: float
     sources: tuple[str, ...]
     leaves: tuple[int, ...]
@@ -115,6 +120,7 @@ def _body(rest: RestSkeleton, file_avatar: Avatar | None, mirror: bool) -> _Body
         rest,
         avatar,
         file_avatar is None,
+        all(map(_is_near, avatar.offsets_m)),
         avatar.hips_height_m / own.hips_height_m,
         tuple(map(other_side, avatar.names)) if mirror else avatar.names,
         tuple(k for k, name in enumerate(avatar.names) if is_leaf(name)),
@@ -138,9 +144,9 @@ def _turned(joints: list[Joint | None], parents: tuple[int, ...]) -> list[Quater
     return rows
 
 
-def _is_near(position_m: Vector, scale: float) -> bool:
+def _is_near(position_m: Vector) -> bool:
     """Not NaN either."""
-    return all(abs(scale * along_m) <= _MOST for along_m in position_m)
+    return all(abs(along_m) <= _MOST for along_m in position_m)
 
 
 def _is_rotation(xyzw: Quaternion) -> bool:

@@ -119,6 +119,14 @@ def test_a_pose_that_is_none_never_reaches_a_receiver(field: str, number: float)
     assert after == before | {"/VMC/Ext/OK": [1, 3, 0, 0]}
 
 
+@pytest.mark.parametrize("number", [math.nan, math.inf, 1e300, 1e9])
+def test_bones_that_are_none_never_reach_a_receiver(number: float) -> None:
+    offsets_m = list(REST.offsets_m)
+    offsets_m[REST.names.index("leftLowerArm")] = (number, 0.0, 0.0)
+    rest = msgspec.structs.replace(REST, offsets_m=tuple(offsets_m))
+    assert told(sent(encoder(), FRAME, rest)).keys() == told(sent(encoder(), LOST)).keys()
+
+
 def test_another_wearer_has_other_bones() -> None:
     to = encoder()
     sent(to, FRAME)
