@@ -47,8 +47,8 @@ def add_to(app: typer.Typer) -> None:
 
 def evaluate_captures(
     captures: Annotated[
-        list[Path], typer.Argument(help="Folders in the capture format with a truth.npz.")
-    ],
+        list[Path] | None, typer.Argument(help="Folders in the capture format with a truth.npz.")
+    ] = None,
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: that of the config]")
     ] = None,
@@ -57,6 +57,12 @@ def evaluate_captures(
         Compare | None,
         typer.Option(
             help="Run the tracker, the method as published and its baseline, and compare."
+        ),
+    ] = None,
+    simulated: Annotated[
+        Path | None,
+        typer.Option(
+            help="A folder of clips of real motion (.npz): sessions of them are simulated, kept in the cache and scored."
         ),
     ] = None,
     prediction: Annotated[
@@ -98,10 +104,18 @@ def evaluate_captures(
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.compare import FULL
     from mocapd.evaluate.page import write_page
+    from mocapd.evaluate.simulated.recorded_set import planned, recorded
     from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 
-    cases = [open_case(capture) for capture in captures]
+    folders = list(captures or ())
+    if not folders and simulated is None:
+        raise ConfigError(
+            "no capture is given", "mocapd eval", "name one, or add --simulated CLIPS"
+        )
     with ProgressBars() as progress:
+        if simulated is not None:
+            folders += recorded(planned(simulated), effective.cache_dir, progress)
+        cases = [open_case(folder) for folder in folders]
 
         def build(known: Calibration, method: str) -> ReadyTracker:
             tracker, section = rivals.get(method, (name, sections[name]))
@@ -120,7 +134,7 @@ def evaluate_captures(
             findings = runs.compare(cases, name, setting)
     _print(findings, as_json)
     if out is not None:
-        words = _command(captures, name, compare, joints, out)
+        words = _command(captures or [], simulated, name, compare, joints, out)
         for path in write_page(out, findings, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
 
@@ -162,6 +176,7 @@ def _print(findings: "EvaluationResults", as_json: bool) -> None:
 
 def _command(
     captures: list[Path],
+    simulated: Path | None,
     name: str,
     compare: Compare | None,
     joints: Joints,
@@ -169,6 +184,7 @@ def _command(
 ) -> list[str]:
     """The command that repeats this run from the same folder."""
     words = ["mocapd", "eval", *(os.path.relpath(capture) for capture in captures)]
+    words += ["--simulated", os.path.relpath(simulated)] if simulated else []
     words += ["--tracker", name]
     words += ["--joints", joints.value] if joints is not Joints.UPPER else []
     words += ["--compare", compare.value] if compare else []

@@ -17,6 +17,12 @@ _COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], .
     ("rms_cm", "RMS [cm]", 2, lambda r: r.score.rms_cm),
     ("median_cm", "median [cm]", 2, lambda r: r.score.median_cm),
     ("p95_cm", "p95 [cm]", 2, lambda r: r.score.p95_cm),
+    ("jitter_ratio", "jitter x", 1, lambda r: r.score.jitter_ratio),
+    ("step_error_p99_cm", "step p99 [cm]", 1, lambda r: r.score.step_error_p99_cm),
+    ("step_error_max_cm", "step max [cm]", 0, lambda r: r.score.step_error_max_cm),
+    ("confident_percent", "believed [%]", 0, lambda r: 100.0 * r.score.confident_share),
+    ("confident_rms_cm", "its RMS [cm]", 1, lambda r: r.score.confident_rms_cm),
+    ("doubtful_rms_cm", "other RMS [cm]", 1, lambda r: r.score.doubtful_rms_cm),
     ("joint_angle_deg", "angle [°]", 1, lambda r: r.score.joint_angle_deg),
     ("recovery_frames", "back after [frames]", 0, lambda r: r.recovery_frames),
     ("step_ms", "step [ms]", 1, lambda r: r.step_ms),
@@ -48,7 +54,6 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
             "per_joint_rms_cm": {
                 name: _plain(rms) for name, rms in result.score.per_joint_rms_cm.items()
             },
-            "jitter_ratio": _plain(result.score.jitter_ratio),
             "jitter_mm": _plain(result.score.jitter_mm),
         }
         for result in results

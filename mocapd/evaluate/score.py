@@ -50,6 +50,7 @@ ANGLE_SETS: Mapping[str, tuple[Angle, ...]] = MappingProxyType(
     }
 )
 
+CONFIDENT = 0.4  # from this confidence on a game may believe a joint
 SKIP_S = 0.5  # ignored after the person first appears
 TOLERANCE_S = 1 / 60  # largest time difference of a match
 _GHOST_TOLERANCE_S = 1e-3
@@ -71,7 +72,9 @@ class Score:
 
     coverage: share of the frames with the person that were tracked; ghost_frames: tracked frames
     before the person came; jitter: median second difference of the joints from frame to frame,
-    absolute and as a ratio to that of the truth.
+    absolute and as a ratio to that of the truth; step_error: how far a joint moves from frame to frame beyond
+    its true motion; confident, doubtful: the joints of confidence CONFIDENT and more, and the others, by their share
+    and their errors.
     """
 
     frames: int
@@ -84,6 +87,11 @@ class Score:
     joint_angle_deg: float
     jitter_ratio: float
     jitter_mm: float
+    step_error_p99_cm: float
+    step_error_max_cm: float
+    confident_share: float
+    confident_rms_cm: float
+    doubtful_rms_cm: float
 
 
 def match(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Matches:
@@ -117,8 +125,12 @@ def score(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Score:
     tracked = len(matches.truth_rows) > 0
     nan = float("nan")
     jitter_mm = true_jitter_mm = nan
+    steps_cm = np.array([nan])
     if len(matches.truth_rows) > 3:
         jitter_mm, true_jitter_mm = 1000.0 * _jitter(b), 1000.0 * _jitter(a)
+        steps_cm = 100.0 * np.linalg.norm(np.diff(b - a, axis=0), axis=2)
+    columns = _columns(track.joint_names, joints, "the track")
+    sure = track.confidence[matches.track_rows][:, columns] >= CONFIDENT
     return Score(
         frames=len(matches.rows),
         coverage=len(matches.truth_rows) / max(len(matches.rows), 1),
@@ -133,6 +145,11 @@ def score(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Score:
         joint_angle_deg=_angle_error_deg(truth, track, matches, joints) if tracked else nan,
         jitter_ratio=jitter_mm / max(true_jitter_mm, 1e-3),
         jitter_mm=jitter_mm,
+        step_error_p99_cm=float(np.percentile(steps_cm, 99)),
+        step_error_max_cm=float(steps_cm.max()),
+        confident_share=float(sure.mean()) if tracked else nan,
+        confident_rms_cm=_rms(error_cm[sure]) if sure.any() else nan,
+        doubtful_rms_cm=_rms(error_cm[~sure]) if not sure.all() else nan,
     )
 
 

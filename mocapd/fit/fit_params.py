@@ -33,7 +33,13 @@ class FitParams:
     upper_arm_sd_rad: float = 1.2
     elbow_rest_rad: tuple[float, float, float] = (0.0, -0.77, 0.0)
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
+    collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
+
+    @property
+    def collision_information(self) -> float:
+        """Of a depth in the trunk [1/m^2]."""
+        return 1.0 / self.collision_sd_m**2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,5 +49,11 @@ class LimbSearchParams:
     uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
     arm_cloud: int = 64  # tries about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
-    arm_fits: int = 1  # of which so many are fitted
+    arm_fits: int = 2  # of which so many are fitted
+    arm_kept: int = 24  # that did best are tried again in the next frame
+    memory: float = 0.6  # share of what was seen of them before, in what is believed of them now
+    new_px: float = 10.0  # how much more must be seen of a pose that was not tried before [work px]
+    farther_px: float = (
+        5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]
+    )
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

@@ -17,13 +17,15 @@ from mocapd.body.pose_space import SIDES, PoseSpace
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.fit_params import LimbSearchParams
-from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
+from mocapd.fit.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints
 
 _LIBRARY = 2048
+_ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
+_PX = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,15 +102,18 @@ def _shortest(a: Floats, b: Floats) -> Floats:
     return rotations.canonical(np.append(np.cross(a, b), w))
 
 
-def best_arm_poses(
+def score_arm_poses(
     fitter: Fitter,
     state: MotionState,
     arm: Arm,
     views: Sequence[View],
     hypotheses: Floats,
-    keep: int,
-) -> list[MotionState]:
-    """The `keep` best of the hypotheses, as states, best first."""
+    farther: float,
+) -> Floats:
+    """How much of each hypothesis (N,3,4) is seen, less what contradicts it and what is in the trunk (N,) [work px].
+
+    farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2].
+    """
     model = fitter.model
     body = fitter.shaper(state.factors)
     corners = body.vertices[arm.corners]
@@ -117,7 +122,14 @@ def best_arm_poses(
     area = np.linalg.norm(normals, axis=1)
     normals /= area[:, None]
     samples = ArmSamples(arm.chain, points, normals, area, arm.colour, arm.link, arm.weights)
-    scores = np.zeros(len(hypotheses))
+    scores = -farther / _PX * _turned_rad2(hypotheses, hypotheses[0])
+    fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
+    depths_m2 = np.empty(len(hypotheses))
+    crowd_arms(
+        hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.torso(body),
+        fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
+    )  # fmt: skip
+    scores -= fitter.params.collision_information / _PX * depths_m2
     for view in views:
         drawing = fitter.drawings[view.index]
         base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
@@ -125,23 +137,33 @@ def best_arm_poses(
         score_arms(
             hypotheses, samples, model.parents, base.posed, drawing.projection,
             np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
-            base.zbuffer, view.ids, view.pixel_weight, scores,
+            base.zbuffer, base.ids, view.ids, view.pixel_weight, scores,
         )  # fmt: skip
-    out: list[MotionState] = []
-    for n in np.argsort(-scores, kind="stable"):
+    seen_px: Floats = _PX * scores
+    return seen_px
+
+
+def best_arm_poses(hypotheses: Floats, scores: Floats, keep: int) -> list[int]:
+    """Places of the `keep` best hypotheses (N,3,4), best first, no two alike; none below the first, the present pose."""
+    out: list[int] = []
+    for n in np.argsort(-scores, kind="stable").tolist():
         if n == 0 or len(out) == keep:
-            break  # none below the present pose is worth a try
-        local = state.local_xyzw.copy()
-        local[arm.chain[:3]] = hypotheses[n]
+            break
         # a hypothesis close to one already kept would end where that one ends
-        if any(
-            np.abs((local[arm.chain[1:3]] * kept.local_xyzw[arm.chain[1:3]]).sum(axis=1)).min()
-            > 0.985
-            for kept in out
-        ):
-            continue
-        out.append(replace(state, local_xyzw=local))
+        if not any(_is_alike(hypotheses[n], hypotheses[kept]) for kept in out):
+            out.append(n)
     return out
+
+
+def _is_alike(a_xyzw: Floats, b_xyzw: Floats) -> bool:
+    return bool(np.abs((a_xyzw[1:] * b_xyzw[1:]).sum(axis=1)).min() > _ALIKE)
+
+
+def _turned_rad2(poses_xyzw: Floats, from_xyzw: Floats) -> Floats:
+    """By how much upper arm and forearm differ: squared angles (N,), of poses (N,3,4) from one (3,4) [rad^2]."""
+    cosines = np.abs((poses_xyzw[:, 1:] * from_xyzw[1:]).sum(axis=2))
+    turned: Floats = ((2.0 * np.arccos(np.minimum(cosines, 1.0))) ** 2).sum(axis=1)
+    return turned
 
 
 def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
@@ -157,6 +179,15 @@ def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
     return out
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Hypotheses:
+    """Poses local_xyzw (N,3,4) of one arm that did well in the last frames, best first; scores (1 + N,): of the pose that is held
+    and of those, averaged over the frames [work px]."""
+
+    local_xyzw: Floats
+    scores: Floats
+
+
 class ArmSearch:
     """Tries other poses of arms that the pictures do not confirm."""
 
@@ -166,7 +197,12 @@ class ArmSearch:
         self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
         u = _halton(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
+        self._kept: dict[str, _Hypotheses] = {}
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
+
+    def reset(self) -> None:
+        """Forget what was tried before."""
+        self._kept.clear()
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
         """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
@@ -175,7 +211,7 @@ class ArmSearch:
             tries = candidates(
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
             )
-            best_arm_poses(self.fitter, state, arm, views, tries, 1)
+            score_arm_poses(self.fitter, state, arm, views, tries, 0.0)
 
     def improve(
         self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
@@ -186,6 +222,7 @@ class ArmSearch:
         """
         p = self.params
         changed = []
+        kept, self._kept = self._kept, {}
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
@@ -193,12 +230,30 @@ class ArmSearch:
                 self.fitter, fit.state, arm, views,
                 _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
             )  # fmt: skip
-            best = fit
-            for state in best_arm_poses(self.fitter, fit.state, arm, views, tries, p.arm_fits):
+            n_new = len(tries)
+            if side in kept:
+                tries = np.concatenate([tries, kept[side].local_xyzw])
+            scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px)
+            scores[1:n_new] -= p.new_px
+            if side in kept:
+                last = kept[side]
+                scores[n_new:] += p.memory * (last.scores[1:] - scores[n_new:])
+                scores[0] += p.memory * (last.scores[0] - scores[0])
+            order = best_arm_poses(tries, scores, p.arm_kept)
+            self._kept[side] = _Hypotheses(tries[order], scores[[0, *order]])
+            best, least = fit, fit.cost - p.arm_gain
+            here = fit.state.local_xyzw[arm.chain[:3]]
+            for n in order[: p.arm_fits]:
+                local = fit.state.local_xyzw.copy()
+                local[arm.chain[:3]] = tries[n]
+                state = replace(fit.state, local_xyzw=local)
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
-                if other.cost < best.cost - p.arm_gain:
-                    best = other
+                there = other.state.local_xyzw[arm.chain[:3]]
+                cost = other.cost + p.farther_px * float(_turned_rad2(there[None], here)[0])
+                if cost < least:
+                    best, least = other, cost
             if best is not fit:
+                self._kept.pop(side)
                 fit = best
                 changed.append(side)
         return fit, tuple(changed)

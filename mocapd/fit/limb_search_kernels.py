@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints
 from mocapd.body.posing_kernels import quat_matrix, quat_multiply
+from mocapd.fit.collision_kernels import ALONG, TorsoSlices, depth_in_torso
 
 Array = NDArray[np.float64]
+_EDGE_PX = 2  # by how much the rest of the body may be drawn beside where it is
 
 
 class ArmSamples(NamedTuple):
@@ -26,6 +28,93 @@ class ArmSamples(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
+def crowd_arms(
+    hypotheses: Array,
+    chain: NDArray[np.int64],
+    parents: NDArray[np.int64],
+    posed: PosedJoints,
+    torso: TorsoSlices,
+    hips: int,
+    chest: int,
+    top: int,
+    out: Array,
+) -> None:
+    """How deep each pose of an arm is in the trunk: out (N,) sum of squared depths [m^2]; see `score_arms`."""
+    rest, R, joints, quats = posed
+    half_m, low_m, high_m = torso
+    n_chain = chain.shape[0]
+    G = np.empty((n_chain, 4))
+    J = np.empty((n_chain, 3))
+    M = np.empty((n_chain, 3, 3))
+    point = np.empty(3)
+    outward = np.empty(3)
+    for n in range(hypotheses.shape[0]):
+        pose_arm(hypotheses[n], chain, parents, rest, R, joints, quats, G, J, M)
+        out[n] = 0.0
+        for a in range(ALONG.shape[0]):
+            for i in range(3):
+                point[i] = J[2, i] + ALONG[a] * (J[3, i] - J[2, i])
+            depth = depth_in_torso(
+                point, joints[hips], joints[top], R[chest], half_m, low_m, high_m, outward
+            )
+            out[n] += depth * depth
+
+
+@njit(cache=True, nogil=True)
+def pose_arm(
+    hypothesis: Array,
+    chain: NDArray[np.int64],
+    parents: NDArray[np.int64],
+    rest: Array,
+    R: Array,
+    joints: Array,
+    quats: Array,
+    G: Array,
+    J: Array,
+    M: Array,
+) -> None:
+    """Global rotations G (4,4), M (4,3,3) and places J (4,3) of an arm's joints, the hand straight."""
+    p0 = parents[chain[0]]
+    for i in range(chain.shape[0]):
+        j = chain[i]
+        if i == 0:
+            quat_multiply(quats[p0], hypothesis[0], G[0])
+            for a in range(3):
+                J[0, a] = joints[p0, a]
+                for b in range(3):
+                    J[0, a] += R[p0, a, b] * (rest[j, b] - rest[p0, b])
+        else:
+            if i < chain.shape[0] - 1:
+                quat_multiply(G[i - 1], hypothesis[i], G[i])
+            else:
+                G[i] = G[i - 1]
+            for a in range(3):
+                J[i, a] = J[i - 1, a]
+                for b in range(3):
+                    J[i, a] += M[i - 1, a, b] * (rest[j, b] - rest[chain[i - 1], b])
+        quat_matrix(G[i], M[i])
+
+
+@njit(cache=True, nogil=True)
+def colours_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
+    """Bit k of a pixel (h,w) is set where colour k is in the square of `reach` pixels around it."""
+    h, w = ids.shape
+    rows = np.zeros((h, w), np.int32)
+    out = np.zeros((h, w), np.int32)
+    for y in range(h):
+        for x in range(w):
+            k = ids[y, x]
+            if k > 0:
+                for o in range(max(0, x - reach), min(w, x + reach + 1)):
+                    rows[y, o] |= np.int32(1) << k
+    for y in range(h):
+        for o in range(max(0, y - reach), min(h, y + reach + 1)):
+            for x in range(w):
+                out[o, x] |= rows[y, x]
+    return out
+
+
+@njit(cache=True, nogil=True)
 def score_arms(
     hypotheses: Array,
     samples: ArmSamples,
@@ -35,6 +124,7 @@ def score_arms(
     offset: Array,
     scale: float,
     base_z: NDArray[np.float32],
+    base_ids: NDArray[np.uint8],
     image_ids: NDArray[np.uint8],
     pixel_weight: NDArray[np.uint8],
     scores: Array,
@@ -54,28 +144,13 @@ def score_arms(
     J = np.empty((n_chain, 3))
     M = np.empty((n_chain, 3, 3))
     A = np.empty((n_chain, 3, 4))
-    p0 = parents[chain[0]]
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
     k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
+    near_base = colours_beside(base_ids, _EDGE_PX)
     for n in range(hypotheses.shape[0]):
+        pose_arm(hypotheses[n], chain, parents, rest, R, joints, quats, G, J, M)
         for i in range(n_chain):
             j = chain[i]
-            if i == 0:
-                quat_multiply(quats[p0], hypotheses[n, 0], G[0])
-                for a in range(3):
-                    J[0, a] = joints[p0, a]
-                    for b in range(3):
-                        J[0, a] += R[p0, a, b] * (rest[j, b] - rest[p0, b])
-            else:
-                if i < n_chain - 1:
-                    quat_multiply(G[i - 1], hypotheses[n, i], G[i])
-                else:
-                    G[i] = G[i - 1]
-                for a in range(3):
-                    J[i, a] = J[i - 1, a]
-                    for b in range(3):
-                        J[i, a] += M[i - 1, a, b] * (rest[j, b] - rest[chain[i - 1], b])
-            quat_matrix(G[i], M[i])
             for a in range(3):
                 A[i, a, 3] = cam_t[a]
                 for b in range(3):
@@ -119,7 +194,11 @@ def score_arms(
             seen = image_ids[t, u]
             size = area[v] * facing / np.sqrt(X * X + Y * Y + Z * Z)
             if seen == colour[v]:
-                score += size
+                # where the rest of the body has that colour, or all but, it is not the arm that is seen
+                if not near_base[t, u] >> seen & 1:
+                    score += size
+            elif seen > 0 and seen == base_ids[t, u]:
+                score -= size  # the rest of the body is seen there, so the arm is not before it
             elif seen > 0:
                 score -= 0.5 * size
             else:

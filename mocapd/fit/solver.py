@@ -11,13 +11,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import plain
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
+from mocapd.fit.collision_kernels import TorsoSlices, push_arms_out
+from mocapd.fit.collision_term import TorsoHull, arm_chains
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
@@ -123,10 +125,20 @@ class Fitter:
             IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, image_scales, strict=True)
         ]
         self._rows = [CameraRows(model) for _ in cameras]
+        self.arms = arm_chains(model)
+        self._joints_of = PosedJoints(
+            model.rest_m,
+            np.empty((N_JOINTS, 3, 3)),
+            np.empty((N_JOINTS, 3)),
+            np.empty((N_JOINTS, 4)),
+        )
+        self._plain_arms = plain(self.arms)
+        self._hull = TorsoHull.of(model)
+        self._torso: tuple[Shaped, TorsoSlices] | None = None
         self._offsets = offsets_by_distance(params.first_radius_px)
         self._offsets_r2 = (self._offsets**2).sum(axis=1)
         p = params
-        self._prediction_sd = np.concatenate([
+        self.prediction_sd = np.concatenate([
             np.full(3, p.root_sd_m),
             model.space.by_group({
                 "hips": (p.hips_sd_rad,) * 3, "spine": (p.spine_sd_rad,) * 3,
@@ -169,6 +181,12 @@ class Fitter:
         )
         return joints, quats
 
+    def torso(self, body: Shaped) -> TorsoSlices:
+        """The trunk of a body, for collisions."""
+        if self._torso is None or self._torso[0] is not body:
+            self._torso = body, self._hull.sized(body)
+        return self._torso[1]
+
     def fit(
         self,
         prediction: MotionState,
@@ -178,18 +196,20 @@ class Fitter:
         learn_shape: bool,
         rendered: bool = False,
         fine: int | None = None,
+        looseness: Floats | float = 1.0,
     ) -> Fit:
         """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
 
         rendered: the prediction was drawn last into every view, so that the first iteration need
         not draw it again. fine: how many of the iterations, the last ones, look at all pixels
-        (None: as many as the parameters say).
+        (None: as many as the parameters say). looseness (n_pose,): by how much more, or less, than usual
+        each pose parameter may differ from the prediction.
         """
         p, m = self.params, self.model
-        state = prediction
+        state, crowded = prediction, 0.0
         n_shape = m.n_shape if learn_shape else 0
         P = m.n_pose + n_shape
-        prior = 1.0 / (self._prediction_sd**2 * max(dt_s * 30.0, 0.5))
+        prior = 1.0 / ((looseness * self.prediction_sd) ** 2 * max(dt_s * 30.0, 0.5))
         fine = p.fine_iterations if fine is None else fine
         H = np.zeros((P, P))
         coarse = [_coarse(view) for view in views]
@@ -211,8 +231,20 @@ class Fitter:
                 mine = self._rows[view.index].system(P)
                 H += mine[0]
                 b += mine[1]
+            held, pull = H.copy(), b.copy()
+            _, R, joints, _ = self._posed(state, one.body)
+            crowded = push_arms_out(
+                R,
+                joints,
+                m.parents,
+                plain(self.torso(one.body)),
+                self._plain_arms,
+                p.collision_information,
+                held,
+                pull,
+            )
             step = gauss_newton_step(
-                H, b, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
+                held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 prior, self._priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
             root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
@@ -227,8 +259,22 @@ class Fitter:
             sum((r.matched for r in rows), _NO_PIXELS),
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
-            sum(r.cost for r in rows),
+            sum(r.cost for r in rows) + crowded,
         )
+
+    def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
+        """At the frame set's own instant."""
+        posed = self._joints_of._replace(rest=body.rest)
+        forward_kinematics(
+            self.model.parents,
+            body.rest,
+            state.root_m,
+            state.local_xyzw,
+            posed.R,
+            posed.joints,
+            posed.quats,
+        )
+        return posed
 
     def _gather(self, one: _Pass, view: View) -> None:
         """The rows of one camera."""

@@ -17,7 +17,7 @@ from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
-from mocapd.sim.world import World
+from mocapd.sim.world import Performed, World
 from mocapd.types import Bytes, LabelledPicture
 
 LABEL_EVERY = 15  # frames
@@ -34,13 +34,17 @@ class _Job:
 
 
 def export_capture(
-    scenario: Scenario, directory: Path, seconds: float, progress: Progress | None = None
+    scenario: Scenario,
+    directory: Path,
+    seconds: float,
+    progress: Progress | None = None,
+    performed: Performed | None = None,
 ) -> None:
-    """Record `seconds` of the scenario into a directory, which is made if need be.
+    """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`.
 
     Every frame is there: dropped frames belong to the live source. Raises CannotCreateError.
     """
-    world = World(scenario)
+    world = World(scenario, performed)
     job = _Job(
         scenario, world, camera_renderers(world), directory, round(seconds * scenario.fps_hz)
     )

@@ -1,5 +1,6 @@
 """The simulated world as a pure function of time: ground truth that no camera has to coordinate."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,9 @@ from mocapd.geometry import rotations
 from mocapd.sim.person.motion import Motion, compile_motion, pose_at
 from mocapd.sim.scenario import CameraSpec, Light, Scenario
 from mocapd.types import Camera, Floats, Pose, Rig, Skeleton
+
+PoseAt = Callable[[float], Pose]  # of a time [s]
+Performed = Callable[[Skeleton], PoseAt]  # by a person of this skeleton
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,11 +30,12 @@ class WorldState:
 class World:
     """Everything that moves in a scenario. Holds no state: `at` of one time is always the same."""
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: Scenario, performed: Performed | None = None) -> None:
+        """performed: what the person does in place of the scenario's motion."""
         self.scenario = scenario
         self.shape = body_shape(scenario)
         self.skeleton: Skeleton = skeleton_of(self.shape)
-        self._motion: Motion = compile_motion(scenario, self.skeleton)
+        self._pose_at = performed(self.skeleton) if performed else _looped(scenario, self.skeleton)
 
     def at(self, t_s: float) -> WorldState:
         """The truth at t_s [s]; motion and lights repeat every `loop_s`."""
@@ -45,7 +50,12 @@ class World:
 
     def pose(self, t_s: float) -> Pose:
         """The pose alone."""
-        return pose_at(self._motion, t_s)
+        return self._pose_at(t_s)
+
+
+def _looped(scenario: Scenario, skeleton: Skeleton) -> PoseAt:
+    motion: Motion = compile_motion(scenario, skeleton)
+    return lambda t_s: pose_at(motion, t_s)
 
 
 def body_shape(scenario: Scenario) -> BodyShape:

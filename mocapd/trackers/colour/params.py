@@ -29,8 +29,20 @@ class Params:
     prediction_damping: float = 0.6
     velocity_memory: float = 0.0  # share of the last velocity kept
     arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
+    hidden_arm_looseness: float = (
+        0.3  # how much an arm that is not confirmed may move, of what is usual
+    )
+    hidden_arm_glide: float = (
+        0.7  # share of its velocity that such an arm keeps from frame to frame
+    )
+    # who holds still is held: the spread about the prediction is this, and so many times the last step
+    calm_m: float = 0.003
+    calm_rad: float = 0.01
+    calm_gain: float = 3.0
     fastest_rad_s: float = 15.0
     fastest_m_s: float = 4.0
+
+    blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
     # decisions
     live_match: float = 0.45  # share of rendered shirt pixels whose colour the picture has

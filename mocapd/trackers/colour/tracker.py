@@ -27,6 +27,7 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.trackers.blending import Residual, blended, later, residual
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
@@ -53,6 +54,7 @@ class _Memory:
     fit: Fit
     taught_s: float  # seconds of good tracking that the body shape was learned from
     cameras: tuple[str, ...]
+    left: Residual | None = None  # of what was shown wrongly before
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,6 +112,7 @@ class ColourTracker:
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, light and background. near: a body to be looked for where it is, before everywhere."""
         self._segmenters.reset()
+        self._arms.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
         self._near = near
@@ -176,7 +179,15 @@ class ColourTracker:
             and known.taught_s < p.shape.learning_s
             and known.fit.match > p.shape.least_match
         )
-        fit = fitter.fit(predicted, views, dt_s, p.fit.iterations, learning, rendered=True)
+        fit = fitter.fit(
+            predicted,
+            views,
+            dt_s,
+            p.fit.iterations,
+            learning,
+            rendered=True,
+            looseness=self._looseness(known.fit, last.velocity * dt_s),
+        )
         self.probe("fit")
         before = fit
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
@@ -201,9 +212,45 @@ class ColourTracker:
         for side in SIDES:
             # what is hardly seen is hardly known to move; what was changed over jumped
             trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
-            velocity[self._arm_columns[side]] *= 0.0 if side in switched else trust
+            columns = self._arm_columns[side]
+            if side in switched:
+                velocity[columns] = 0.0
+            else:
+                glide = p.hidden_arm_glide * last.velocity[columns]
+                velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
         names = tuple(self.rig.cameras[v.index].name for v in views)
-        return _Memory(frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names), views
+        left = later(known.left) if known.left is not None else None
+        if switched:
+            left = self._residual(predicted, state, known.left)
+        return _Memory(
+            frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names, left
+        ), views
+
+    def _looseness(self, fit: Fit, last_step: Floats) -> Floats:
+        """(n_pose,): what holds still is held, and so are arms that were not confirmed."""
+        p = self.params
+        length = np.linalg.norm(last_step.reshape(-1, 3), axis=1)
+        sd = p.calm_gain * length + p.calm_rad
+        sd[0] += p.calm_m - p.calm_rad
+        loose = np.minimum(np.repeat(sd, 3) / self._fitter.prediction_sd, 1.0)
+        for side in SIDES:
+            seen = min(fit.confirmed_arms[side] / p.limbs.uncertain_arm, 1.0)
+            most = p.hidden_arm_looseness + (1.0 - p.hidden_arm_looseness) * seen
+            columns = self._arm_columns[side]
+            loose[columns] = (
+                most * loose[columns] if seen >= 1.0 else np.maximum(loose[columns], 1.0) * most
+            )
+        return loose
+
+    def _residual(self, shown: MotionState, true: MotionState, left: Residual | None) -> Residual:
+        """From what would be shown now, had nothing been found, to what is true."""
+        root, local = shown.root_m, shown.local_xyzw
+        if left is not None:
+            root, local = blended(root, local, left)
+        was, _ = self._fitter.joints(replace(true, root_m=root, local_xyzw=local))
+        now, _ = self._fitter.joints(true)
+        farthest_m = float(np.linalg.norm(was - now, axis=1).max())
+        return residual(root, local, true.root_m, true.local_xyzw, farthest_m, self.params.blend_m)
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, present: dict[int, float], frames: FrameSet
@@ -252,7 +299,8 @@ class ColourTracker:
             if held is None or fit.match > held.match + p.uncertain_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
-                return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names), seen
+                left = None if known is None else self._residual(known.state, fit.state, known.left)
+                return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names, left), seen
         for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
             segmenter.memory.appearance = appearance
         return known, views
@@ -318,6 +366,9 @@ class ColourTracker:
             root, local = moved(
                 self._fitter.model, state, min(away_s, 0.1), self.params.prediction_damping
             )
+            state = replace(state, root_m=root, local_xyzw=local)
+        if known.left is not None:
+            root, local = blended(state.root_m, state.local_xyzw, known.left)
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)
         confidence = joint_confidence(known.fit, len(known.cameras), away_s)

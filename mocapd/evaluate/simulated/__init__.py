@@ -1,0 +1,1 @@
+"""Sessions that the simulator records of clips of real motion, so that no choice rests on single captures."""

@@ -1,0 +1,68 @@
+"""The planned sessions as captures on disk: recorded once, kept in the cache."""
+
+import hashlib
+import shutil
+from pathlib import Path
+
+from mocapd.assets import asset_path
+from mocapd.errors import CannotCreateError, InputError
+from mocapd.evaluate.simulated.motion_clip import performed, read_clip
+from mocapd.evaluate.simulated.session_plan import SECONDS, PlannedSession, plan
+from mocapd.session.tracker_setup import Progress
+from mocapd.sim.export import export_capture
+from mocapd.sim.film import film_key
+from mocapd.sim.scenario import load_scenario
+
+SCENES = ("living_room", "outdoor", "gym_mono")
+
+
+def planned(clips: Path) -> list[PlannedSession]:
+    """The sessions of a folder of clips. Raises InputError when there is none that can be used."""
+    paths = sorted(clips.glob("*.npz")) if clips.is_dir() else []
+    scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
+    sessions = plan([read_clip(path) for path in paths], scenes)
+    if not sessions:
+        raise InputError(
+            "has no clip of motion (*.npz) that is long enough and stays in one place",
+            str(clips),
+            "give a folder of clips of motion",
+        )
+    return sessions
+
+
+def recorded(sessions: list[PlannedSession], cache_dir: Path, progress: Progress) -> list[Path]:
+    """A folder in the capture format for each session; those that are there already are not recorded anew.
+
+    Raises CannotCreateError.
+    """
+    return [_recorded(session, cache_dir / "simulated", progress) for session in sessions]
+
+
+def _recorded(session: PlannedSession, folder: Path, progress: Progress) -> Path:
+    path = folder / f"{session.name}-{_key(session)}"
+    if path.is_dir():
+        return path
+    partial = path.with_name(f".{path.name}.partial")
+    shutil.rmtree(partial, ignore_errors=True)  # of a run that was ended
+    try:
+        partial.mkdir(parents=True)
+    except OSError as error:
+        raise CannotCreateError(
+            f"cannot be made ({error.strerror})", str(partial), "make room or set another cache_dir"
+        ) from None
+
+    def told(done: int, of: int) -> None:
+        progress(f"recording {session.name}", done, of)
+
+    export_capture(session.scenario, partial, SECONDS, told, performed(session.clip, session.where))
+    partial.rename(path)
+    return path
+
+
+def _key(session: PlannedSession) -> str:
+    """Of everything that its pictures follow from."""
+    digest = hashlib.sha256(film_key(session.scenario).encode())
+    digest.update(session.clip.hips_m.tobytes())
+    digest.update(session.clip.global_xyzw.tobytes())
+    digest.update(repr(session.where).encode())
+    return digest.hexdigest()[:12]

@@ -1,0 +1,63 @@
+"""Arms do not go through the trunk: what else would be the cheapest way to hide one that is not seen.
+
+The trunk is an elliptic cylinder whose half axes follow the wearer's surface by height, as the anisotropically scaled
+cylinder of Hecht et al. 2009 (section 3.3); elbow, forearm, wrist and hand are kept outside of it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES
+from mocapd.body.shaping import Shaped
+from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import TORSO
+from mocapd.fit.collision_kernels import SLICES, ArmChains, TorsoSlices
+from mocapd.types import Floats, Ints
+
+_BELOW_HIPS_M = 0.12  # the cylinder begins there
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TorsoHull:
+    """Which vertices make each slice of the trunk; of one body model."""
+
+    slices: tuple[Ints, ...]
+
+    @classmethod
+    def of(cls, model: BodyModel) -> "TorsoHull":
+        """Cut the trunk of the mean body."""
+        mine = np.unique(model.triangles[model.part == TORSO])
+        y_m = model.vertices_m[mine, 1]
+        low, high = _span_m(model.rest_m)
+        place = np.clip(((y_m - low) / (high - low) * SLICES).astype(int), -1, SLICES)
+        return cls(tuple(mine[place == k] for k in range(SLICES)))
+
+    def sized(self, body: Shaped) -> TorsoSlices:
+        """Half axes and middles of the slices of a wearer, about the line from the hips to the upper chest [m]."""
+        vertices, rest = body.vertices, body.rest
+        hips, top = rest[INDEX["hips"]], rest[INDEX["upperChest"]]
+        low, high = _span_m(rest)
+        out = np.empty((SLICES, 3))
+        for k, which in enumerate(self.slices):
+            x, y, z = vertices[which].T
+            along = (y.mean() - hips[1]) / (top[1] - hips[1])
+            line_z = hips[2] + along * (top[2] - hips[2])
+            out[k] = np.abs(x).max(), 0.5 * (z.max() - z.min()), 0.5 * (z.max() + z.min()) - line_z
+        return TorsoSlices(out, low - hips[1], high - hips[1])
+
+
+def _span_m(rest_m: Floats) -> tuple[float, float]:
+    """Lowest and highest y of the cylinder in the T-pose: from below the hips to below the shoulders."""
+    hips_m, shoulder_m = rest_m[INDEX["hips"], 1], rest_m[INDEX["leftUpperArm"], 1]
+    return float(hips_m - _BELOW_HIPS_M), float(shoulder_m - 0.04)
+
+
+def arm_chains(model: BodyModel) -> ArmChains:
+    """Both arms of a model."""
+    chains = [[INDEX[name] for name in model.space.parts[f"{side}_arm"].joints] for side in SIDES]
+    first = [model.space.columns(f"{side}_arm").start for side in SIDES]
+    return ArmChains(
+        np.array(chains), np.array(first), INDEX["hips"], INDEX["chest"], INDEX["upperChest"]
+    )
