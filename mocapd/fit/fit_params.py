@@ -43,6 +43,16 @@ class FitParams:
 
 
 @dataclass(frozen=True, slots=True)
+class MotionPriorParams:
+    """How much a wearer moves from one usual frame to the next: these, and so many times the step before."""
+
+    calm_m: float = 0.003
+    calm_rad: float = 0.01
+    calm_gain: float = 3.0
+    hidden_sd_rad: float = 0.06  # of an arm that no picture confirms
+
+
+@dataclass(frozen=True, slots=True)
 class LimbSearchParams:
     """When other poses of an arm are tried, and how many."""
 

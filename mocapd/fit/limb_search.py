@@ -181,8 +181,8 @@ def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Hypotheses:
-    """Poses local_xyzw (N,3,4) of one arm that did well in the last frames, best first; scores (1 + N,): of the pose that is held
-    and of those, averaged over the frames [work px]."""
+    """Poses local_xyzw (N,3,4) of one arm that did well in the last frames, best first; scores (1 + N,): of the pose that
+    is held and of those, averaged over the frames [work px]."""
 
     local_xyzw: Floats
     scores: Floats

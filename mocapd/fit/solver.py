@@ -48,7 +48,7 @@ class View:
 @dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__
 class Fit:
     """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
-    information of the evidence alone on pose and shape."""
+    information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before."""
 
     state: MotionState
     visible: Floats
@@ -56,6 +56,13 @@ class Fit:
     unexplained: Floats
     H: Floats
     cost: float
+    information: Floats
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """Of the pose (n_pose,n_pose), as the pictures and what was known before leave it."""
+        inverse: Floats = np.linalg.inv(self.information)
+        return inverse
 
     @property
     def match(self) -> float:
@@ -196,22 +203,23 @@ class Fitter:
         learn_shape: bool,
         rendered: bool = False,
         fine: int | None = None,
-        looseness: Floats | float = 1.0,
+        motion: Floats | None = None,
     ) -> Fit:
         """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
 
         rendered: the prediction was drawn last into every view, so that the first iteration need
         not draw it again. fine: how many of the iterations, the last ones, look at all pixels
-        (None: as many as the parameters say). looseness (n_pose,): by how much more, or less, than usual
-        each pose parameter may differ from the prediction.
+        (None: as many as the parameters say). motion (n_pose,n_pose): information of
+        the prediction; None for the usual, loose one.
         """
         p, m = self.params, self.model
         state, crowded = prediction, 0.0
         n_shape = m.n_shape if learn_shape else 0
         P = m.n_pose + n_shape
-        prior = 1.0 / ((looseness * self.prediction_sd) ** 2 * max(dt_s * 30.0, 0.5))
+        if motion is None:
+            motion = np.diag(1.0 / (self.prediction_sd**2 * max(dt_s * 30.0, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        H = np.zeros((P, P))
+        H = held = np.zeros((P, P))
         coarse = [_coarse(view) for view in views]
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
@@ -245,7 +253,7 @@ class Fitter:
             )
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                prior, self._priors, prediction.factors - state.factors, prediction.information,
+                motion, self._priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
             root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
             factors = state.factors
@@ -260,6 +268,7 @@ class Fitter:
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
             sum(r.cost for r in rows) + crowded,
+            held[: m.n_pose, : m.n_pose] + motion + np.diag(self._rest_information),
         )
 
     def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:

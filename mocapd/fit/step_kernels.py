@@ -38,7 +38,7 @@ def gauss_newton_step(
     """The step (P,) that solves the normal equations of all terms at the pose root (3,), local (J,4).
 
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
-    motion_information (as many as those) holds the pose to start_root, start_local; shape_offset:
+    motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
     from the factors to what is known of them, with shape_information.
     """
     rest_local, rest_information, limits, limit_information = priors
@@ -50,8 +50,10 @@ def gauss_newton_step(
     away = np.empty(n_pose)
     difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
-        A[p, p] += motion_information[p] + rest_information[p]
-        g[p] += motion_information[p] * away[p]
+        A[p, p] += rest_information[p]
+        for q in range(n_pose):
+            A[p, q] += motion_information[p, q]
+            g[p] += motion_information[p, q] * away[q]
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
         g[p] += rest_information[p] * away[p]

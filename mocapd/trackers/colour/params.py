@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.fit.fit_params import FitParams, LimbSearchParams
+from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 
 
@@ -21,6 +21,7 @@ class Params:
     """Parameters of the full tracker: its parts', and what it decides itself."""
 
     fit: FitParams = field(default_factory=FitParams)
+    motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     limbs: LimbSearchParams = field(default_factory=LimbSearchParams)
     segmentation: SegmentationParams = field(default_factory=SegmentationParams)
     shape: ShapeLearningParams = field(default_factory=ShapeLearningParams)
@@ -29,16 +30,9 @@ class Params:
     prediction_damping: float = 0.6
     velocity_memory: float = 0.0  # share of the last velocity kept
     arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
-    hidden_arm_looseness: float = (
-        0.3  # how much an arm that is not confirmed may move, of what is usual
-    )
     hidden_arm_glide: float = (
         0.7  # share of its velocity that such an arm keeps from frame to frame
     )
-    # who holds still is held: the spread about the prediction is this, and so many times the last step
-    calm_m: float = 0.003
-    calm_rad: float = 0.01
-    calm_gain: float = 3.0
     fastest_rad_s: float = 15.0
     fastest_m_s: float = 4.0
 

@@ -13,6 +13,7 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.limb_search import ArmSearch, is_uncertain
+from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
@@ -179,14 +180,13 @@ class ColourTracker:
             and known.taught_s < p.shape.learning_s
             and known.fit.match > p.shape.least_match
         )
+        confirmed = known.fit.confirmed_arms
+        motion = predicted_information(
+            known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
+            [(self._arm_columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
+        )  # fmt: skip
         fit = fitter.fit(
-            predicted,
-            views,
-            dt_s,
-            p.fit.iterations,
-            learning,
-            rendered=True,
-            looseness=self._looseness(known.fit, last.velocity * dt_s),
+            predicted, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion
         )
         self.probe("fit")
         before = fit
@@ -225,22 +225,6 @@ class ColourTracker:
         return _Memory(
             frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names, left
         ), views
-
-    def _looseness(self, fit: Fit, last_step: Floats) -> Floats:
-        """(n_pose,): what holds still is held, and so are arms that were not confirmed."""
-        p = self.params
-        length = np.linalg.norm(last_step.reshape(-1, 3), axis=1)
-        sd = p.calm_gain * length + p.calm_rad
-        sd[0] += p.calm_m - p.calm_rad
-        loose = np.minimum(np.repeat(sd, 3) / self._fitter.prediction_sd, 1.0)
-        for side in SIDES:
-            seen = min(fit.confirmed_arms[side] / p.limbs.uncertain_arm, 1.0)
-            most = p.hidden_arm_looseness + (1.0 - p.hidden_arm_looseness) * seen
-            columns = self._arm_columns[side]
-            loose[columns] = (
-                most * loose[columns] if seen >= 1.0 else np.maximum(loose[columns], 1.0) * most
-            )
-        return loose
 
     def _residual(self, shown: MotionState, true: MotionState, left: Residual | None) -> Residual:
         """From what would be shown now, had nothing been found, to what is true."""

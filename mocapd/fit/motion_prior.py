@@ -1,0 +1,42 @@
+"""What is known of the pose before a frame is looked at: what the last one left open, and how much it may have moved.
+
+The prediction step of a Kalman filter over the pose parameters. A direction that the pictures determine well is held to its
+prediction as tightly as the wearer moves calmly; one that they hardly determine (depth before one camera) stays open, and so
+is steadied over many frames rather than locked.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.fit.fit_params import MotionPriorParams
+from mocapd.types import Floats
+
+
+def predicted_information(
+    covariance: Floats,
+    last_step: Floats,
+    frames: float,
+    usual_sd: Floats,
+    limbs: Sequence[tuple[slice, float]],
+    params: MotionPriorParams,
+) -> Floats:
+    """Information (P,P) of the prediction, from the covariance (P,P) of the last fit.
+
+    last_step (P,): by how much the pose moved in the last frame; frames: how many usual frames ago that was;
+    usual_sd (P,): what holds any pose at least; limbs: the parameters of each, and how well it was confirmed, 0..1.
+    """
+    length = np.linalg.norm(last_step.reshape(-1, 3), axis=1)
+    sd = params.calm_gain * length
+    sd[0] += params.calm_m
+    sd[1:] += params.calm_rad
+    moved_sd = np.minimum(np.repeat(sd, 3), usual_sd)
+    for columns, confirmed in limbs:
+        if confirmed < 1.0:
+            least = params.hidden_sd_rad
+            moved_sd[columns] = least + confirmed * (moved_sd[columns] - least)
+    spread = covariance.copy()
+    spread[np.diag_indices(len(spread))] += moved_sd**2 * max(frames, 0.5)
+    information: Floats = np.linalg.inv(spread)
+    information[np.diag_indices(len(spread))] += 1.0 / (usual_sd**2 * max(frames, 0.5))
+    return information
