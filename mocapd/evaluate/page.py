@@ -3,10 +3,12 @@
 from pathlib import Path
 
 from mocapd.errors import CannotCreateError
-from mocapd.evaluate.report import comparison_tables, roc_table, score_table
+from mocapd.evaluate.reliability import reliability
+from mocapd.evaluate.report import comparison_tables, reliability_table, roc_table, score_table
 from mocapd.evaluate.runs import EvaluationResults
 
 PAGE = "evaluation.md"
+RELIABILITY_PLOT = "images/eval_confidence.png"
 SHOULDER_PLOT = "images/eval_shoulder.png"
 ROC_PLOT = "images/eval_roc.png"
 
@@ -29,7 +31,19 @@ frames with a person before there was one. *Angle*: mean error of the angles bet
 neck, shoulders and elbows, or at the joints scored. *Back after*: frames from a lamp going out until
 the RMS error of a frame is under 6 cm for good; 0: it never left; `-`: steady light. *Step*: median
 time of the tracker for one frame set, on the machine that ran this and beside whatever else ran there
-(`mocapd bench` is the measure of speed).
+(`mocapd bench` is the measure of speed). *Jitter*: median second difference from frame to frame, as a
+ratio to that of the truth. *Step* p99, max: how far a joint moves from frame to frame beyond its true
+motion. *Believed*: the joints of confidence 0.4 and more.
+"""
+
+_RELIABILITY = """
+## What a confidence is worth
+
+All captures of the table above together, by the confidence that each joint had in each frame:
+
+{table}
+
+![Errors over confidence]({plot})
 """
 
 _COMPARISON = """
@@ -81,6 +95,7 @@ each colour as the camera sees it, and it knows the background.
 
 def page(findings: EvaluationResults, command: str) -> str:
     """The page as Markdown."""
+    believed = reliability(findings.results, findings.joints)
     parts = [
         _HEAD.format(
             command=command,
@@ -89,6 +104,7 @@ def page(findings: EvaluationResults, command: str) -> str:
             joints=findings.joints,
         )
     ]
+    parts.append(_RELIABILITY.format(table=reliability_table(believed), plot=RELIABILITY_PLOT))
     if findings.comparison:
         rms, median, coverage = comparison_tables(findings.comparison)
         parts += [_COMPARISON.format(rms=rms, median=median, coverage=coverage)]
@@ -102,10 +118,10 @@ def write_page(directory: Path, findings: EvaluationResults, command: str) -> li
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.compare import shoulder_angles
-    from mocapd.evaluate.plots import roc_plot, save, shoulder_plot
+    from mocapd.evaluate.plots import reliability_plot, roc_plot, save, shoulder_plot
 
     path = directory / PAGE
-    written = [path]
+    written = [path, directory / RELIABILITY_PLOT]
     try:
         directory.mkdir(parents=True, exist_ok=True)
         path.write_text(page(findings, command), encoding="utf-8")
@@ -113,6 +129,7 @@ def write_page(directory: Path, findings: EvaluationResults, command: str) -> li
         raise CannotCreateError(
             f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
         ) from None
+    save(reliability_plot(reliability(findings.results, findings.joints)), written[-1])
     if findings.comparison:
         written.append(directory / SHOULDER_PLOT)
         save(shoulder_plot(shoulder_angles(findings.comparison)), written[-1])

@@ -5,10 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from mocapd.errors import CannotCreateError
 from mocapd.evaluate.compare import BASELINE, FULL, ShoulderAngles
+from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability
 from mocapd.evaluate.roc import Roc
 
 _DPI = 110
@@ -32,6 +34,23 @@ def shoulder_plot(captures: Sequence[ShoulderAngles]) -> Figure:
         panel.grid(alpha=0.3)
     panels[0].legend(loc="upper right", ncols=3, fontsize=9)
     panels[-1].set_xlabel("time [s]")
+    return figure
+
+
+def reliability_plot(of: Reliability) -> Figure:
+    """RMS error, and share of joints that are near, over the confidence they had."""
+    figure = Figure(figsize=(10.0, 3.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    middle = (np.arange(TENTHS) + 0.5) / TENTHS
+    left.bar(middle, of.rms_cm, width=0.085, color="tab:red")
+    left.set_ylabel("RMS error [cm]")
+    right.bar(middle, 100.0 * of.near, width=0.085, color="tab:blue")
+    right.set_ylabel(f"within {NEAR_CM:g} cm [%]")
+    right.axhline(95.0, color="0.4", linewidth=0.9, linestyle="--")
+    for panel in (left, right):
+        panel.set_xlabel("confidence")
+        panel.set_xlim(0.0, 1.0)
+        panel.grid(axis="y", alpha=0.3)
     return figure
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.evaluate.capture_eval import CaptureResult
 from mocapd.evaluate.compare import METHODS, Comparison
+from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability, near_from
 from mocapd.evaluate.roc import Roc, correct_at
 from mocapd.evaluate.tables import number, table
 
@@ -85,6 +86,22 @@ def roc_table(roc: Roc) -> str:
         for rate in FALSE_RATES
     ]
     return table(["false positives", "step 1 alone [%]", "pose-assisted [%]"], rows)
+
+
+def reliability_table(of: Reliability) -> str:
+    """One row a tenth of confidence, highest first; the last column is of all joints from there upwards."""
+    rows = []
+    for tenth in range(TENTHS - 1, -1, -1):
+        row = [
+            f"{tenth / TENTHS:.1f} to {(tenth + 1) / TENTHS:.1f}",
+            number(100.0 * of.count[tenth] / max(of.count.sum(), 1), 1),
+            number(float(of.rms_cm[tenth]), 2),
+            number(100.0 * float(of.near[tenth]), 1),
+            number(100.0 * near_from(of, tenth), 1),
+        ]
+        rows.append(row)
+    near = f"within {NEAR_CM:g} cm [%]"
+    return table(["confidence", "joints [%]", "RMS [cm]", near, "and above [%]"], rows)
 
 
 def roc_json(roc: Roc) -> dict[str, Any]:

@@ -35,6 +35,8 @@ class FitParams:
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
+    rest_carried: float = 1.0
+    trained_spread: float = 0.0
 
     @property
     def collision_information(self) -> float:

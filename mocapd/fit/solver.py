@@ -17,6 +17,7 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.arm_motion import load_arm_motion
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.collision_kernels import TorsoSlices, push_arms_out
 from mocapd.fit.collision_term import TorsoHull, arm_chains
@@ -154,7 +155,7 @@ class Fitter:
             }, p.arm_sd_rad),
         ])  # fmt: skip
         # where a joint is drawn to when nothing is seen of it
-        self._rest_information = np.concatenate([
+        self._rest_information = np.diag(np.concatenate([
             np.zeros(3),
             1.0 / model.space.by_group({
                 "hips": (1e3, 1e3, 1e3), "spine": (0.5, 0.5, 0.4),
@@ -163,7 +164,7 @@ class Fitter:
                 # an elbow bends about y, twists about x, and hardly about z
                 "leftLowerArm": p.elbow_sd_rad, "rightLowerArm": p.elbow_sd_rad,
             }, 1.0) ** 2,
-        ])  # fmt: skip
+        ]))  # fmt: skip
         rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
         for side, mirror in (("left", 1.0), ("right", -1.0)):
             for bone, (x, y, z) in (
@@ -172,6 +173,15 @@ class Fitter:
             ):
                 vector = np.array([x, mirror * y, mirror * z])
                 rest[INDEX[side + bone]] = rotations.exp(vector)
+        if p.trained_spread > 0.0:
+            known = load_arm_motion()
+            for side, arm in (("left", known), ("right", known.mirrored())):
+                chain = [INDEX[side + b] for b in ("Shoulder", "UpperArm", "LowerArm")]
+                rest[chain] = arm.mean_xyzw
+                columns = model.space.columns(f"{side}_arm")
+                self._rest_information[columns, columns] = np.linalg.inv(
+                    arm.covariance_rad2 * p.trained_spread**2
+                )
         self._priors = plain(
             PosePriors(
                 rest, self._rest_information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2
@@ -268,7 +278,7 @@ class Fitter:
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
             sum(r.cost for r in rows) + crowded,
-            held[: m.n_pose, : m.n_pose] + motion + np.diag(self._rest_information),
+            held[: m.n_pose, : m.n_pose] + motion + p.rest_carried * self._rest_information,
         )
 
     def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
@@ -313,6 +323,6 @@ class Fitter:
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence says of the shape factors when the pose is free: Schur complement (n_shape,n_shape)."""
         n = self.model.n_pose
-        Hpp = H[:n, :n] + np.diag(self._rest_information + 1e-3)
+        Hpp = H[:n, :n] + self._rest_information + 1e-3 * np.eye(n)
         Hps = H[:n, n:]
         return H[n:, n:] - Hps.T @ np.linalg.solve(Hpp, Hps)

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class PosePriors(NamedTuple):
-    """What holds a pose beside the evidence: rest_information (P,) to rest_local (J,4), and
+    """What holds a pose beside the evidence: rest_information (P,P) to rest_local (J,4), and
     limit_information to within the joint limits."""
 
     rest_local: Array
@@ -50,13 +50,13 @@ def gauss_newton_step(
     away = np.empty(n_pose)
     difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
-        A[p, p] += rest_information[p]
         for q in range(n_pose):
-            A[p, q] += motion_information[p, q]
+            A[p, q] += motion_information[p, q] + rest_information[p, q]
             g[p] += motion_information[p, q] * away[q]
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
-        g[p] += rest_information[p] * away[p]
+        for q in range(n_pose):
+            g[p] += rest_information[p, q] * away[q]
     G = joint_of_group.shape[0]
     excess = np.zeros((G, 3))
     slope = np.zeros((G, 3, 3))

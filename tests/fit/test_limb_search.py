@@ -18,6 +18,7 @@ from mocapd.fit.limb_search import (
     best_arm_poses,
     candidates,
     is_uncertain,
+    score_arm_poses,
 )
 from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
 from mocapd.fit.motion_state import MotionState
@@ -119,7 +120,8 @@ def test_the_library_fills_the_joint_limits(side: str) -> None:
 
 
 def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
-    """Area of the samples seen where the picture has their colour, less half of what it denies."""
+    """Area of the samples seen where the picture has their colour and the rest of the body explains it not, less half
+    of what the picture denies, and all of it where the rest of the body is seen."""
     arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     nearest = base.zbuffer.copy()
@@ -146,8 +148,11 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
         if seen_from[2] > nearest[y, x] + 0.02:
             continue
         have = view.ids[y, x]
+        beside = base.ids[max(y - 2, 0) : y + 3, max(x - 2, 0) : x + 3]
         if have == arm.colour[s]:
-            score += facing
+            score += 0.0 if (beside == have).any() else facing
+        elif have and have == base.ids[y, x]:
+            score -= facing
         elif have:
             score -= 0.5 * facing
         else:
@@ -170,7 +175,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
         ),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
-        base.zbuffer, view.ids, view.pixel_weight, out,
+        base.zbuffer, base.ids, view.ids, view.pixel_weight, out,
     )  # fmt: skip
     return out
 
@@ -205,17 +210,40 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
     tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
-    best = best_arm_poses(by, wrong, arm, views, tries, 3)
+    seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0)
+    best = best_arm_poses(tries, seen_px, 3)
     assert 1 <= len(best) <= 3
+    assert (seen_px[best] > seen_px[0]).all()
     hand = arm_joints(by, truth, "left")[2]
-    off = [float(np.linalg.norm(arm_joints(by, s, "left")[2] - hand)) for s in best]
-    assert min(off) < 0.25
-    assert min(off) < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
-    for state in best:  # nothing else was moved
-        same = np.delete(state.local_xyzw - wrong.local_xyzw, arm.chain[:3], axis=0)
-        assert not same.any()
-    at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)
-    assert best_arm_poses(by, truth, arm, views, at_truth[:1], 3) == []
+    found = [arm_joints(by, with_arm(wrong, "left", tries[n]), "left")[2] for n in best]
+    off = np.linalg.norm(np.array(found) - hand, axis=1)
+    assert off.min() < 0.25
+    assert off.min() < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
+    at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)[:1]
+    assert best_arm_poses(at_truth, score_arm_poses(by, truth, arm, views, at_truth, 0.0), 3) == []
+
+
+def test_a_pose_farther_away_must_be_seen_more() -> None:
+    by, truth = fitter(2), standing("goalpost", "side_low")
+    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    tries = candidates(by, truth, arm, views, NO_CLOUD, arm_library(MODEL.space, 50, "left"))
+    freely, held = (score_arm_poses(by, truth, arm, views, tries, px) for px in (0.0, 10.0))
+    np.testing.assert_allclose(held[0], freely[0])
+    angle_rad = 2.0 * np.arccos(np.minimum(np.abs((tries[:, 1:] * tries[0, 1:]).sum(axis=2)), 1.0))
+    np.testing.assert_allclose(freely - held, 10.0 * (angle_rad**2).sum(axis=1), atol=1e-6)
+
+
+def test_an_arm_in_the_trunk_is_worth_less() -> None:
+    """What no picture shows, behind the body, must be possible all the same."""
+    by, truth = fitter(1), standing("hanging", "hanging")
+    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    through = standing("hand_on_belly", "hanging").local_xyzw[arm.chain[:3]].copy()
+    through[1] = rotations.multiply(rotations.exp(np.array([0.0, 0.6, 0.0])), through[1])
+    tries = np.stack([truth.local_xyzw[arm.chain[:3]], through])
+    stiff = score_arm_poses(by, truth, arm, views, tries, 0.0)
+    soft_params = replace(by.params, collision_sd_m=10.0)
+    soft = Fitter(MODEL, [d.camera for d in by.drawings], [FACTOR], soft_params)
+    assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0)[1] - 1.0
 
 
 # --- the search ------------------------------------------------------------------------------
