@@ -19,6 +19,8 @@ from mocapd.types import Floats
 
 _BONES = ("Shoulder", "UpperArm", "LowerArm")
 _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])  # of a rotation, at x = 0
+# what clips of other bodies do not tell better [rad]: a collar hardly moves in them, twist is uncertain
+_FLOOR_RAD = np.repeat([0.2, 0.1, 0.1], 3)
 _ROUNDS = 20  # of the mean, which settles in a few
 _LAGS_S = (0.1, 0.2, 0.4)  # over which velocity is forgotten
 
@@ -27,9 +29,7 @@ def arms_of(clip: MotionClip) -> list[Floats]:
     """Local rotations (F,3,4) of collar, upper arm and forearm: the left arm's, and the right one's mirrored."""
     skeleton = standard_skeleton(1.75)
     local = np.array([local_from_global(skeleton, frame) for frame in clip.global_xyzw])
-    left, right = (
-        local[:, [INDEX[side + bone] for bone in _BONES]] for side in ("left", "right")
-    )
+    left, right = (local[:, [INDEX[side + bone] for bone in _BONES]] for side in ("left", "right"))
     return [left, rotations.canonical(right * _MIRROR)]
 
 
@@ -66,7 +66,9 @@ def forgetting_s(arms: list[tuple[Floats, float]]) -> float:
                 same += float((v[:-lag] * v[:-lag]).mean())
                 together += float((v[lag:] * v[:-lag]).mean())
         kept.append(max(together / same, 1e-3))
-    return float(np.mean([-lag_s / np.log(share) for lag_s, share in zip(_LAGS_S, kept, strict=True)]))
+    return float(
+        np.mean([-lag_s / np.log(share) for lag_s, share in zip(_LAGS_S, kept, strict=True)])
+    )
 
 
 def main() -> int:
@@ -83,7 +85,7 @@ def main() -> int:
     weight = np.concatenate([np.full(len(p), 1.0 / (len(p) * len(arms))) for p, _ in arms])
     mean = np.array([mean_rotation(samples[:, place], weight) for place in range(3)])
     away = np.concatenate([_from(mean[place], samples[:, place]) for place in range(3)], axis=1)
-    covariance = (away * weight[:, None]).T @ away
+    covariance = (away * weight[:, None]).T @ away + np.diag(_FLOOR_RAD**2)
     speed = np.concatenate([_per_frame(poses, rate_hz) for poses, rate_hz in arms])
     glide_s = forgetting_s(arms)
     about = (

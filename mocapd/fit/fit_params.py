@@ -35,7 +35,8 @@ class FitParams:
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
-    rest_carried: float = 1.0
+    tilt_sd_rad: float = 100.0
+    rest_carried: float = 0.0
     trained_spread: float = 0.0
 
     @property
@@ -51,6 +52,8 @@ class MotionPriorParams:
     calm_m: float = 0.003
     calm_rad: float = 0.01
     calm_gain: float = 3.0
+    trunk_share: float = 1.0
+    arm_share: float = 1.0
     hidden_sd_rad: float = 0.06  # of an arm that no picture confirms
 
 

@@ -30,7 +30,10 @@ def predicted_information(
     sd = params.calm_gain * length
     sd[0] += params.calm_m
     sd[1:] += params.calm_rad
-    moved_sd = np.minimum(np.repeat(sd, 3), usual_sd)
+    most = usual_sd.copy()
+    most[:9] *= params.trunk_share
+    most[9:] *= params.arm_share
+    moved_sd = np.minimum(np.repeat(sd, 3), most)
     for columns, confirmed in limbs:
         if confirmed < 1.0:
             least = params.hidden_sd_rad

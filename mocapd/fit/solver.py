@@ -184,7 +184,8 @@ class Fitter:
                 )
         self._priors = plain(
             PosePriors(
-                rest, self._rest_information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2
+                rest, self._rest_information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2,
+                1.0 / p.tilt_sd_rad**2,
             )
         )
 

@@ -13,13 +13,14 @@ Array = NDArray[np.float64]
 
 
 class PosePriors(NamedTuple):
-    """What holds a pose beside the evidence: rest_information (P,P) to rest_local (J,4), and
-    limit_information to within the joint limits."""
+    """What holds a pose beside the evidence: rest_information (P,P) to rest_local (J,4), limit_information to within the
+    joint limits, and tilt_information the hips upright."""
 
     rest_local: Array
     rest_information: Array
     limits: JointLimits
     limit_information: float
+    tilt_information: float
 
 
 @njit(cache=True, nogil=True)
@@ -41,7 +42,7 @@ def gauss_newton_step(
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
     from the factors to what is known of them, with shape_information.
     """
-    rest_local, rest_information, limits, limit_information = priors
+    rest_local, rest_information, limits, limit_information, tilt_information = priors
     _, joint_of_group, share_of_joint, _, _ = limits
     n_pose = motion_information.shape[0]
     P = b.shape[0]
@@ -57,6 +58,12 @@ def gauss_newton_step(
     for p in range(n_pose):
         for q in range(n_pose):
             g[p] += rest_information[p, q] * away[q]
+    # by which rotation vector, in the world, the hips lean: of Y over to where they point up
+    x, y, z, w = local[0, 0], local[0, 1], local[0, 2], local[0, 3]
+    A[3, 3] += tilt_information
+    A[5, 5] += tilt_information
+    g[3] -= tilt_information * 2.0 * (y * z + w * x)
+    g[5] += tilt_information * 2.0 * (x * y - w * z)
     G = joint_of_group.shape[0]
     excess = np.zeros((G, 3))
     slope = np.zeros((G, 3, 3))

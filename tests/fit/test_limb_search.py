@@ -237,8 +237,8 @@ def test_an_arm_in_the_trunk_is_worth_less() -> None:
     """What no picture shows, behind the body, must be possible all the same."""
     by, truth = fitter(1), standing("hanging", "hanging")
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
-    through = standing("hand_on_belly", "hanging").local_xyzw[arm.chain[:3]].copy()
-    through[1] = rotations.multiply(rotations.exp(np.array([0.0, 0.6, 0.0])), through[1])
+    through = truth.local_xyzw[arm.chain[:3]].copy()
+    through[1:] = rotations.exp(np.array([[0.0, 0.0, -1.35], [0.0, 0.0, -0.9]]))
     tries = np.stack([truth.local_xyzw[arm.chain[:3]], through])
     stiff = score_arm_poses(by, truth, arm, views, tries, 0.0)
     soft_params = replace(by.params, collision_sd_m=10.0)

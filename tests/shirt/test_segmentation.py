@@ -6,6 +6,7 @@ import pytest
 from mocapd.body.arrays import plain
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation import bare_skin
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     FAR,
@@ -51,6 +52,9 @@ def affine() -> Singles:
     start = looks.fresh(np.eye(3))
     mean, covariance = looks.gaussians(start, MODEL_MEAN, MODEL_COVARIANCE, 0.04, 0.015, 0.25)
     return looks.whitening(mean, covariance)
+
+
+NO_SKIN = bare_skin.whitening(np.zeros(4), 0.04, 0.015, 0.25)
 
 
 # --- classification --------------------------------------------------------------------------
@@ -149,8 +153,8 @@ def test_classification_equals_the_naive_twin(seed: int) -> None:
     ]
     ids, pixel_weight = np.empty((h, w), np.uint8), np.empty((h, w), np.uint8)
     classify(
-        picture, *at, distance, affine(), plain(LearnedPixels(mean, age, *counts)),
-        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.25, 0.5)), ids, pixel_weight,
+        picture, *at, distance, affine(), NO_SKIN, plain(LearnedPixels(mean, age, *counts)),
+        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.2, 0.3, 0.25, 0.5)), ids, pixel_weight,
     )  # fmt: skip
     costs, background = naive_classify(
         picture, at, distance, 0.05, 3.0, mean, age, (counts[0], counts[1]), (1.5, 1.2)
@@ -178,8 +182,8 @@ def test_the_prior_tells_two_patches_of_one_look_apart() -> None:
         np.zeros((20, 40, 3), np.float32), np.zeros((20, 40), np.uint8), no_count, no_count
     )
     classify(
-        picture, 0, 0, distance, affine(), plain(learned),
-        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.25, 0.5)), got, pixel_weight,
+        picture, 0, 0, distance, affine(), NO_SKIN, plain(learned),
+        plain(ClassifierWeights(0.05, 3.0, TOLERANCE, 1.5, 1.5, 0.3, 0.25, 0.5)), got, pixel_weight,
     )  # fmt: skip
     assert (got[6:14, 5:9] == 6).mean() > 0.9
     assert not got[:, 26:].any()

@@ -14,6 +14,7 @@ from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.white_balance import remember_illumination
 from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation import bare_skin
 from mocapd.shirt.segmentation.appearance import Appearance
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
@@ -39,6 +40,7 @@ _ALL_CERTAIN = np.ones(10, np.int64)
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
 _NEW_LOOKS = 90
+_SKIN_EVERY = 3  # looks
 _WHITE_BALANCE_EVERY = 4  # looks; between them the learned means alone follow the light
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
@@ -54,6 +56,7 @@ class Memory:
     body: Ids  # where the body was last, widened: not background
     shirt_count: NDArray[np.float32]
     other_count: NDArray[np.float32]
+    skin: Floats = field(default_factory=lambda: np.zeros(4))  # see `bare_skin.statistics`
     usual: float = 0.0  # share of the rendered shirt that is usually classified
     looks: int = 0
 
@@ -185,10 +188,11 @@ class CameraSegmenter:
         )
         weights = ClassifierWeights(
             float(prior), p.threshold, p.background_tolerance, p.background_penalty,
-            p.other_penalty, p.soft_unclassified, p.soft_unknown,
+            p.other_penalty, p.skin_penalty, p.soft_unclassified, p.soft_unknown,
         )  # fmt: skip
         classify(
             self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance),
+            bare_skin.whitening(memory.skin, p.cloth_sd, p.noise_sd, p.shading_sd),
             plain(learned), plain(weights), ids, pixel_weight,
         )  # fmt: skip
         return ids, pixel_weight
@@ -204,11 +208,19 @@ class CameraSegmenter:
         return out
 
     def learn(
-        self, final: Ids, ids: Ids, pixel_weight: Ids, roi: Roi, dt_s: float, sure: bool
+        self,
+        final: Ids,
+        ids: Ids,
+        pixel_weight: Ids,
+        roi: Roi,
+        dt_s: float,
+        sure: bool,
+        face: bare_skin.Disc | None = None,
     ) -> None:
         """Follow the light from the id map of the final pose (paper section 5.2, step 5).
 
-        sure: the pose agrees well enough to tell shirt from other things.
+        sure: the pose agrees well enough to tell shirt from other things. face: where it is,
+        if it is seen.
         """
         p, memory = self.params, self.memory
         sums = np.zeros((10, 4))
@@ -224,6 +236,9 @@ class CameraSegmenter:
                 self.picture, roi[0], roi[1], memory.body, final, ids, pixel_weight,
                 memory.shirt_count, memory.other_count,
             )  # fmt: skip
+        if sure and face is not None and memory.looks % _SKIN_EVERY == 0:
+            seen = bare_skin.statistics(self.picture, final, roi[:2], face, W)
+            memory.skin = bare_skin.learned(memory.skin, seen, _SKIN_EVERY * dt_s, p.skin_memory_s)
         if memory.looks % 8 == 0:
             keep = np.float32(np.exp(-8 * dt_s / p.count_memory_s))
             memory.shirt_count *= keep

@@ -27,14 +27,15 @@ class ClassifierWeights(NamedTuple):
     """prior: standard deviations per work px away from a colour's place; threshold [standard
     deviations]. tolerance: largest channel difference to the background, 0..1; a pixel that looks
     like it pays background_penalty, one whose colour is rather seen on other things than on the
-    shirt up to other_penalty. soft_unclassified, soft_unknown: pixel_weight 0..1 of an unclassified
-    pixel before a background that is known and that is not."""
+    shirt up to other_penalty; skin must be nearer than a colour by skin_penalty. soft_unclassified,
+    soft_unknown: pixel_weight 0..1 of an unclassified pixel before a background that is known and that is not."""
 
     prior: float
     threshold: float
     tolerance: float
     background_penalty: float
     other_penalty: float
+    skin_penalty: float
     soft_unclassified: float
     soft_unknown: float
 
@@ -131,6 +132,7 @@ def classify(
     y0: int,
     distance: NDArray[np.uint8],
     affine: NDArray[np.float32],
+    skin: NDArray[np.float32],
     learned: LearnedPixels,
     weights: ClassifierWeights,
     ids: NDArray[np.uint8],
@@ -139,20 +141,21 @@ def classify(
     """Fill ids and pixel_weight (h,w) of the region at x0, y0 of picture (H,W,3) BGR.
 
     distance (h4,w4,10): of `colour_distances`. affine (10,3,4): whitened distance of colour k is
-    |A (b,g,r,1)|. pixel_weight: how firmly an unclassified pixel denies the shirt, 255 where background
-    is seen, and out of reach of every colour.
+    |A (b,g,r,1)|; skin (3,4): of bare skin, which is none of them. pixel_weight: how firmly an unclassified
+    pixel denies the shirt, 255 where background is seen, and out of reach of every colour.
     """
     mean, age, shirt_count, other_count = learned
     h, w = ids.shape
     h4, w4, _ = distance.shape
     sure = np.uint8(255)
-    prior, threshold, tolerance, behind_, elsewhere_, soft_, unknown_ = weights
+    prior, threshold, tolerance, behind_, elsewhere_, barer_, soft_, unknown_ = weights
     soft, unknown = np.uint8(255 * soft_), np.uint8(255 * unknown_)
     tol = np.float32(tolerance * 255.0)
     step = np.float32(prior)
     top = np.float32(threshold)
     behind = np.float32(behind_)
     elsewhere = np.float32(elsewhere_)
+    barer = np.float32(barer_)
     # a cell's pixels side by side, so that the compiler makes vector instructions of the loops
     b, g, r = (
         np.empty(_LANES, np.float32),
@@ -223,6 +226,10 @@ def classify(
                         cost = best[n] + elsewhere * other / (
                             other + shirt_count[bin_] + np.float32(8.0)
                         )
-                        if cost >= limit[n]:
+                        p = skin[0, 0] * b[n] + skin[0, 1] * g[n] + skin[0, 2] * r[n] + skin[0, 3]
+                        q = skin[1, 0] * b[n] + skin[1, 1] * g[n] + skin[1, 2] * r[n] + skin[1, 3]
+                        s = skin[2, 0] * b[n] + skin[2, 1] * g[n] + skin[2, 2] * r[n] + skin[2, 3]
+                        bare = np.sqrt(p * p + q * q + s * s)
+                        if cost >= limit[n] or bare + barer < best[n]:
                             k = 0
                     ids[y, x] = k

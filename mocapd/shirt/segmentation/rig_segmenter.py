@@ -12,6 +12,7 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.segmentation.bare_skin import face_disc
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.types import Floats, Frame, FrameSet, Ints
@@ -85,7 +86,10 @@ class RigSegmenter:
             else:
                 final = drawing.last(view.roi)[0]
             segmenter.mark_body(final, view.roi)
-            segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure)
+            face = face_disc(
+                segmenter.camera, drawing.posed, self._fitter.model.stature_m, segmenter.image_scale
+            )
+            segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
         """Follow the background, in all of the picture when nobody is known."""

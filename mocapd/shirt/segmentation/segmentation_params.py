@@ -20,6 +20,8 @@ class SegmentationParams:
     shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
     background_penalty: float = 1.5  # added where static background is seen [standard deviations]
     other_penalty: float = 1.5  # added where the colour is rather seen on other things
+    skin_penalty: float = 0.3  # by how much skin must be nearer than a colour of the shirt
+    skin_memory_s: float = 1.0  # time constant of the colour of the skin
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
     background_jump: float = 0.25  # share of the background that changes at once when a lamp does
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
