@@ -20,7 +20,7 @@ from mocapd.types import Floats
 _BONES = ("Shoulder", "UpperArm", "LowerArm")
 _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])  # of a rotation, at x = 0
 # what clips of other bodies do not tell better [rad]: a collar hardly moves in them, twist is uncertain
-_FLOOR_RAD = np.repeat([0.2, 0.1, 0.1], 3)
+_FLOOR_RAD = np.array([0.2, 0.2, 0.2, 0.2, 0.2, 0.2, 0.4, 0.25, 0.25])
 _ROUNDS = 20  # of the mean, which settles in a few
 _LAGS_S = (0.1, 0.2, 0.4)  # over which velocity is forgotten
 

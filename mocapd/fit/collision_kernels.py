@@ -75,7 +75,8 @@ def depth_in_torso(
     outward[0] -= along * ax
     outward[1] -= along * ay
     outward[2] -= along * az
-    return size * (1.0 - rho)
+    depth: float = size * (1.0 - rho)
+    return depth
 
 
 @njit(cache=True, nogil=True)

@@ -35,9 +35,8 @@ class FitParams:
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
-    tilt_sd_rad: float = 100.0
-    rest_carried: float = 0.0
-    trained_spread: float = 0.0
+    narrow_rad: float = 0.26  # between the views, under which cameras count as one
+    tilt_sd_rad: float = 0.25  # of the hips, before such cameras
 
     @property
     def collision_information(self) -> float:
@@ -52,8 +51,6 @@ class MotionPriorParams:
     calm_m: float = 0.003
     calm_rad: float = 0.01
     calm_gain: float = 3.0
-    trunk_share: float = 1.0
-    arm_share: float = 1.0
     hidden_sd_rad: float = 0.06  # of an arm that no picture confirms
 
 
@@ -71,4 +68,8 @@ class LimbSearchParams:
     farther_px: float = (
         5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]
     )
+    # what a pose costs that arms seldom have, by its squared Mahalanobis distance: of what is seen of it [work px], and
+    # in the cost of its fit
+    unusual_px: float = 1.4
+    unusual_cost: float = 1.0
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

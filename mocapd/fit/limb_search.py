@@ -19,6 +19,7 @@ from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints
@@ -197,6 +198,7 @@ class ArmSearch:
         self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
         u = _halton(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
+        self._usual = arm_motions()
         self._kept: dict[str, _Hypotheses] = {}
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
 
@@ -234,6 +236,7 @@ class ArmSearch:
             if side in kept:
                 tries = np.concatenate([tries, kept[side].local_xyzw])
             scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px)
+            scores -= p.unusual_px * unusualness(tries, self._usual[side])
             scores[1:n_new] -= p.new_px
             if side in kept:
                 last = kept[side]
@@ -241,8 +244,9 @@ class ArmSearch:
                 scores[0] += p.memory * (last.scores[0] - scores[0])
             order = best_arm_poses(tries, scores, p.arm_kept)
             self._kept[side] = _Hypotheses(tries[order], scores[[0, *order]])
-            best, least = fit, fit.cost - p.arm_gain
             here = fit.state.local_xyzw[arm.chain[:3]]
+            unusual = p.unusual_cost * float(unusualness(here[None], self._usual[side])[0])
+            best, least = fit, fit.cost + unusual - p.arm_gain
             for n in order[: p.arm_fits]:
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
@@ -250,6 +254,7 @@ class ArmSearch:
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
                 there = other.state.local_xyzw[arm.chain[:3]]
                 cost = other.cost + p.farther_px * float(_turned_rad2(there[None], here)[0])
+                cost += p.unusual_cost * float(unusualness(there[None], self._usual[side])[0])
                 if cost < least:
                     best, least = other, cost
             if best is not fit:

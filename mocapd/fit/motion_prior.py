@@ -30,16 +30,13 @@ def predicted_information(
     sd = params.calm_gain * length
     sd[0] += params.calm_m
     sd[1:] += params.calm_rad
-    most = usual_sd.copy()
-    most[:9] *= params.trunk_share
-    most[9:] *= params.arm_share
-    moved_sd = np.minimum(np.repeat(sd, 3), most)
+    moved_sd = np.minimum(np.repeat(sd, 3), usual_sd)
     for columns, confirmed in limbs:
         if confirmed < 1.0:
             least = params.hidden_sd_rad
             moved_sd[columns] = least + confirmed * (moved_sd[columns] - least)
     spread = covariance.copy()
     spread[np.diag_indices(len(spread))] += moved_sd**2 * max(frames, 0.5)
-    information: Floats = np.linalg.inv(spread)
+    information = np.asarray(np.linalg.inv(spread), dtype=np.float64)
     information[np.diag_indices(len(spread))] += 1.0 / (usual_sd**2 * max(frames, 0.5))
     return information

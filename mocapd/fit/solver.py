@@ -16,8 +16,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
-from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.arm_motion import load_arm_motion
+from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.collision_kernels import TorsoSlices, push_arms_out
 from mocapd.fit.collision_term import TorsoHull, arm_chains
@@ -25,9 +24,8 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
-from mocapd.fit.step_kernels import PosePriors, gauss_newton_step
-from mocapd.geometry import rotations
-from mocapd.geometry.rotations import IDENTITY_XYZW
+from mocapd.fit.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.step_kernels import gauss_newton_step
 from mocapd.types import Camera, Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
@@ -62,8 +60,7 @@ class Fit:
     @cached_property
     def covariance(self) -> Floats:
         """Of the pose (n_pose,n_pose), as the pictures and what was known before leave it."""
-        inverse: Floats = np.linalg.inv(self.information)
-        return inverse
+        return np.asarray(np.linalg.inv(self.information), dtype=np.float64)
 
     @property
     def match(self) -> float:
@@ -154,40 +151,7 @@ class Fitter:
                 "leftUpperArm": (p.arm_sd_rad,) * 3, "rightUpperArm": (p.arm_sd_rad,) * 3,
             }, p.arm_sd_rad),
         ])  # fmt: skip
-        # where a joint is drawn to when nothing is seen of it
-        self._rest_information = np.diag(np.concatenate([
-            np.zeros(3),
-            1.0 / model.space.by_group({
-                "hips": (1e3, 1e3, 1e3), "spine": (0.5, 0.5, 0.4),
-                "leftShoulder": (0.2, 0.2, 0.2), "rightShoulder": (0.2, 0.2, 0.2),
-                "leftUpperArm": (p.upper_arm_sd_rad,) * 3, "rightUpperArm": (p.upper_arm_sd_rad,) * 3,
-                # an elbow bends about y, twists about x, and hardly about z
-                "leftLowerArm": p.elbow_sd_rad, "rightLowerArm": p.elbow_sd_rad,
-            }, 1.0) ** 2,
-        ]))  # fmt: skip
-        rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
-        for side, mirror in (("left", 1.0), ("right", -1.0)):
-            for bone, (x, y, z) in (
-                ("UpperArm", p.upper_arm_rest_rad),
-                ("LowerArm", p.elbow_rest_rad),
-            ):
-                vector = np.array([x, mirror * y, mirror * z])
-                rest[INDEX[side + bone]] = rotations.exp(vector)
-        if p.trained_spread > 0.0:
-            known = load_arm_motion()
-            for side, arm in (("left", known), ("right", known.mirrored())):
-                chain = [INDEX[side + b] for b in ("Shoulder", "UpperArm", "LowerArm")]
-                rest[chain] = arm.mean_xyzw
-                columns = model.space.columns(f"{side}_arm")
-                self._rest_information[columns, columns] = np.linalg.inv(
-                    arm.covariance_rad2 * p.trained_spread**2
-                )
-        self._priors = plain(
-            PosePriors(
-                rest, self._rest_information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2,
-                1.0 / p.tilt_sd_rad**2,
-            )
-        )
+        self._wide, self._narrow = plain(wide_prior(model, p)), plain(narrow_prior(model, p))
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:
         """Joint centres (J,3) and global rotations (J,4) of a state."""
@@ -230,6 +194,7 @@ class Fitter:
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(dt_s * 30.0, 0.5)))
         fine = p.fine_iterations if fine is None else fine
+        priors = self._narrow if self._is_narrow(prediction, views) else self._wide
         H = held = np.zeros((P, P))
         coarse = [_coarse(view) for view in views]
         for iteration in range(iterations):
@@ -264,7 +229,7 @@ class Fitter:
             )
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, self._priors, prediction.factors - state.factors, prediction.information,
+                motion, priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
             root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
             factors = state.factors
@@ -279,8 +244,17 @@ class Fitter:
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
             sum(r.cost for r in rows) + crowded,
-            held[: m.n_pose, : m.n_pose] + motion + p.rest_carried * self._rest_information,
+            held[: m.n_pose, : m.n_pose] + motion,
         )
+
+    def _is_narrow(self, prediction: MotionState, views: Sequence[View]) -> bool:
+        """Whether all cameras see the body from about the same side."""
+        if not views:
+            return False
+        cameras = [self.drawings[view.index].camera for view in views]
+        rays = np.array([prediction.root_m + c.R.T @ c.t_m for c in cameras])
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        return bool((rays @ rays.T).min() > np.cos(self.params.narrow_rad))
 
     def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
         """At the frame set's own instant."""
@@ -324,6 +298,6 @@ class Fitter:
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence says of the shape factors when the pose is free: Schur complement (n_shape,n_shape)."""
         n = self.model.n_pose
-        Hpp = H[:n, :n] + self._rest_information + 1e-3 * np.eye(n)
+        Hpp = H[:n, :n] + self._wide[1] + 1e-3 * np.eye(n)
         Hps = H[:n, n:]
         return H[n:, n:] - Hps.T @ np.linalg.solve(Hpp, Hps)

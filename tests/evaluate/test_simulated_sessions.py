@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,9 +42,10 @@ def walking(far_m: float = 0.5) -> dict[str, object]:
     }  # fmt: skip
 
 
-def clip_file(folder: Path, name: str = "walk", **fields: object) -> Path:
+def clip_file(folder: Path, name: str = "walk", **fields: Any) -> Path:
     path = folder / f"{name}.npz"
-    np.savez(path, allow_pickle=False, **{**walking(), **fields})
+    arrays: dict[str, Any] = {**walking(), **fields}
+    np.savez(path, **arrays)
     return path
 
 
@@ -105,7 +107,7 @@ def test_where_a_clip_stays_in_one_place_is_found(tmp_path: Path) -> None:
         ({"global_quats": np.full((FRAMES, 3, 4), np.nan)}, "no clip of a humanoid"),
     ],
 )
-def test_what_is_no_clip_is_named(tmp_path: Path, broken: Mapping[str, object], said: str) -> None:
+def test_what_is_no_clip_is_named(tmp_path: Path, broken: Mapping[str, Any], said: str) -> None:
     path = clip_file(tmp_path, **broken)
     with pytest.raises(InputError, match=said) as told:
         read_clip(path)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import plain
 from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaper
@@ -33,7 +34,7 @@ def depth_and_rows(root: Floats, local: Floats, torso: TorsoSlices = TORSO) -> t
     R, joints, quats = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3)), np.empty((N_JOINTS, 4))
     forward_kinematics(MODEL.parents, BODY.rest, root, local, R, joints, quats)
     H, b = np.zeros((MODEL.n_pose, MODEL.n_pose)), np.zeros(MODEL.n_pose)
-    cost = push_arms_out(R, joints, MODEL.parents, tuple(torso), tuple(ARMS), 1.0, H, b)
+    cost = push_arms_out(R, joints, MODEL.parents, plain(torso), plain(ARMS), 1.0, H, b)
     return cost, b
 
 
@@ -78,8 +79,8 @@ def test_a_step_leads_out() -> None:
         )
         forward_kinematics(MODEL.parents, BODY.rest, root, local, R, joints, quats)
         H, b = np.eye(MODEL.n_pose) * 0.01, np.zeros(MODEL.n_pose)
-        push_arms_out(R, joints, MODEL.parents, tuple(TORSO), tuple(ARMS), 1.0, H, b)
-        root, local = stepped(MODEL, root, local, np.linalg.solve(H, b))
+        push_arms_out(R, joints, MODEL.parents, plain(TORSO), plain(ARMS), 1.0, H, b)
+        root, local = stepped(MODEL, root, local, np.asarray(np.linalg.solve(H, b), dtype=np.float64))
     assert depth_and_rows(root, local)[0] < 0.1 * before
 
 

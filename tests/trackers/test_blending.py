@@ -24,14 +24,16 @@ def shown(way: Residual | None, root: Floats, local: Floats) -> list[tuple[Float
 def test_it_goes_there_in_equal_steps_no_longer_than_allowed() -> None:
     wrong = AT_REST.copy()
     wrong[ARM] = rotations.exp(np.array([0.0, 0.0, 1.0]))
-    steps = shown(residual(np.zeros(3), wrong, np.zeros(3), AT_REST, 0.28, 0.07), np.zeros(3), AT_REST)
+    steps = shown(
+        residual(np.zeros(3), wrong, np.zeros(3), AT_REST, 0.28, 0.07), np.zeros(3), AT_REST
+    )
     angles = [rotations.angle_rad(local[ARM], AT_REST[ARM]) for _, local in steps]
     np.testing.assert_allclose(angles, [0.75, 0.5, 0.25], atol=1e-9)
 
 
 def test_the_body_moves_on_meanwhile() -> None:
     way = residual(np.array([0.2, 0.0, 0.0]), AT_REST, np.zeros(3), AT_REST, 0.2, 0.1)
-    (root, _), = shown(way, np.array([0.0, 1.0, 0.0]), AT_REST)
+    ((root, _),) = shown(way, np.array([0.0, 1.0, 0.0]), AT_REST)
     np.testing.assert_allclose(root, [0.1, 1.0, 0.0])
 
 

@@ -92,4 +92,5 @@ def whitening(sums: Floats, cloth_sd: float, noise_sd: float, shading_sd: float)
             cloth_sd, noise_sd, shading_sd, mean, covariance,
         )  # fmt: skip
         kernels.whitening(mean, covariance, out)
-    return out[0]
+    affine: Singles = out[0]
+    return affine

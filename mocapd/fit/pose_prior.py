@@ -1,0 +1,77 @@
+"""What holds a pose beside the pictures: joint limits, where arms usually are, upright hips.
+
+Cameras whose views cross see every direction, and all that they leave open is a hidden arm: a loose pull to everyday
+motion will do, and a firmer one would bend arms that are seen. One camera, or two side by side, hardly see along
+their views: there a body's shape and cloth mislead more than people's habits do, so these count in full.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from mocapd.body.arrays import plain
+from mocapd.body.model import BodyModel
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.arm_motion import ArmMotion, load_arm_motion
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.step_kernels import PosePriors
+from mocapd.geometry import rotations
+from mocapd.geometry.rotations import IDENTITY_XYZW
+from mocapd.types import Floats
+
+_BONES = ("Shoulder", "UpperArm", "LowerArm")
+_SPINE_SD_RAD = (0.5, 0.5, 0.4)
+_COLLAR_SD_RAD = (0.2, 0.2, 0.2)
+_FREE = 1e3
+
+
+def arm_motions() -> Mapping[str, ArmMotion]:
+    """Where the arm of each side is when nobody looks."""
+    left = load_arm_motion()
+    return {"left": left, "right": left.mirrored()}
+
+
+def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
+    """For cameras whose views cross."""
+    rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        for bone, (x, y, z) in (
+            ("UpperArm", p.upper_arm_rest_rad),
+            ("LowerArm", p.elbow_rest_rad),
+        ):
+            rest[INDEX[side + bone]] = rotations.exp(np.array([x, mirror * y, mirror * z]))
+    upper, elbow = (p.upper_arm_sd_rad,) * 3, p.elbow_sd_rad
+    sd = model.space.by_group({
+        "hips": (_FREE,) * 3, "spine": _SPINE_SD_RAD,
+        "leftShoulder": _COLLAR_SD_RAD, "rightShoulder": _COLLAR_SD_RAD,
+        # an elbow bends about y, twists about x, and hardly about z
+        "leftUpperArm": upper, "rightUpperArm": upper, "leftLowerArm": elbow, "rightLowerArm": elbow,
+    }, 1.0)  # fmt: skip
+    information = np.diag(np.concatenate([np.zeros(3), 1.0 / sd**2]))
+    return _priors(model, p, rest, information, 0.0)
+
+
+def narrow_prior(model: BodyModel, p: FitParams) -> PosePriors:
+    """For cameras that hardly see along their views."""
+    wide = wide_prior(model, p)
+    rest, information = wide.rest_local.copy(), wide.rest_information.copy()
+    for side, arm in arm_motions().items():
+        rest[[INDEX[side + bone] for bone in _BONES]] = arm.mean_xyzw
+        columns = model.space.columns(f"{side}_arm")
+        information[columns, columns] = np.linalg.inv(arm.covariance_rad2)
+    return _priors(model, p, rest, information, 1.0 / p.tilt_sd_rad**2)
+
+
+def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:
+    """Squared Mahalanobis distances (N,) of poses (N,3,4) of an arm from where it usually is."""
+    away = rotations.log(rotations.multiply(poses_xyzw, rotations.inverse(arm.mean_xyzw)))
+    away = away.reshape(len(poses_xyzw), -1)
+    information = np.linalg.inv(arm.covariance_rad2)
+    squared: Floats = np.einsum("ni,ij,nj->n", away, information, away)
+    return squared
+
+
+def _priors(
+    model: BodyModel, p: FitParams, rest: Floats, information: Floats, tilt: float
+) -> PosePriors:
+    return PosePriors(rest, information, plain(model.space.limits), 1.0 / p.limit_sd_rad**2, tilt)
