@@ -9,7 +9,9 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Tracking
 
-STRAYS_M_S = 0.5  # of a person's joints, along an axis, from a pose that is told without evidence
+# How fast joints leave a pose that is told without evidence, along an axis: of 25 clips of everyday motion and sport
+# the hips 0.3, elbows 0.4, hands 0.6
+STRAYS_M_S = 0.4
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
 
 

@@ -73,7 +73,7 @@ def test_the_last_pose_coasts_and_fades_and_then_nobody_is_known() -> None:
     assert confidences == sorted(set(confidences), reverse=True)
     assert confidences[-1] < 0.1
     assert uncertainties_m == sorted(set(uncertainties_m))
-    assert uncertainties_m[-1] > 0.1  # half a second later a hand may be anywhere near
+    assert uncertainties_m[-1] > 0.1  # almost half a second later a hand may be anywhere near
     nobody = found[coasting:]
     assert len(nobody) == 5  # at once, then once a second
     assert nobody[0][0] - last_ns <= 650 * MS

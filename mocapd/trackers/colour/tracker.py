@@ -12,7 +12,7 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.joint_uncertainty import joint_uncertainty_m
+from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.limb_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
@@ -357,8 +357,9 @@ class ColourTracker:
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)
         confidence = joint_confidence(known.fit, len(known.cameras), away_s)
+        model = self._fitter.model
         uncertainty_m = joint_uncertainty_m(
-            self._fitter.model, joints, globals_, known.fit.covariance
+            model, joints, globals_, pose_covariance(model, known.fit.H)
         )
         body = BodyState(
             t_ns=frames.t_ns,
