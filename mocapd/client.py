@@ -12,6 +12,7 @@ towards +X; rotations xyzw.
 import asyncio
 import atexit
 import json
+import math
 import time
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import ExitStack
@@ -39,13 +40,16 @@ _KEPT = 8  # frames that wait for a game, so that `predict` sees how the person 
 class JointPose:
     """One bone: position in the world [m], rotation relative to the T-pose and to its parent bone.
 
-    `confidence` 0..1 is near 0 for a joint that no camera sees.
+    `confidence` 0..1 is near 0 for a joint that no camera sees. `uncertainty_m`: one standard deviation of the
+    position, the root mean square over x, y and z [m]; inf where it is unknown, so that a weight of 1 / uncertainty_m**2
+    is 0 there.
     """
 
     position_m: tuple[float, float, float]
     rotation_xyzw: tuple[float, float, float, float]
     local_rotation_xyzw: tuple[float, float, float, float]
     confidence: float
+    uncertainty_m: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +94,9 @@ class Body:
     def __getitem__(self, name: str) -> JointPose:
         """Raises KeyError for a bone that the frame has not, as every bone while not tracked."""
         joint = self.frame.joints[name]
-        return JointPose(joint.p, joint.r, joint.l, joint.c)
+        return JointPose(
+            joint.p, joint.r, joint.l, joint.c, math.inf if joint.u is None else joint.u
+        )
 
     def __contains__(self, name: object) -> bool:
         return name in self.frame.joints

@@ -13,7 +13,7 @@ Quaternions are xyzw with w >= 0. Arrays are read-only by convention after const
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -119,7 +119,8 @@ class BodyState:
 
     joints_m (J,3) [m, world]; confidence (J,) in 0..1, near 0 for a joint without evidence;
     `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: how much smoothing delays the pose of a
-    person who moves, about.
+    person who moves, about; uncertainty_m (J,): one standard deviation of each joint's place, the root mean square
+    over the world's axes [m], inf where nothing is known of it; left out: the tracker tells none.
     """
 
     t_ns: int
@@ -130,3 +131,8 @@ class BodyState:
     confidence: Floats
     cameras: tuple[str, ...] = ()
     smoothing_lag_ns: int = 0
+    uncertainty_m: Floats = field(default_factory=lambda: np.empty(0))
+
+    def __post_init__(self) -> None:
+        if len(self.uncertainty_m) == 0:
+            object.__setattr__(self, "uncertainty_m", np.full(len(self.confidence), np.inf))

@@ -50,7 +50,7 @@ def told(messages: list[OscMessage]) -> list[str]:
             if count == 0:
                 lines.append(f"{seq:6d}  nobody there")
         elif message.address == LEFT_HAND:
-            x_m, y_m, z_m, *_, confidence = message.params
+            x_m, y_m, z_m, *_, confidence = message.params[:12]  # within v1 more may follow
             if not all(map(math.isfinite, (x_m, y_m, z_m))):
                 lines.append(f"{seq:6d}  ignored: the position of the left hand is no number")
                 continue

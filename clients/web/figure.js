@@ -56,13 +56,14 @@ export class Figure {
     });
   }
 
-  // The joints of one frame; those that are missing are not drawn. Nobody there: nothing is.
+  // The joints of one frame; those that are missing, or that the tracker knows nothing of, are not drawn. Nobody there:
+  // nothing is.
   show(joints) {
     this.group.visible = joints.size > 0;
     const turn = new THREE.Quaternion();
     for (const [name, part] of this.parts) {
-      const joint = joints.get(name);
-      const from = joints.get(part.parent);
+      const joint = known(joints, name);
+      const from = known(joints, part.parent);
       part.ball.visible = joint !== undefined;
       if (part.limb) part.limb.visible = joint !== undefined && from !== undefined;
       for (const end of part.ends) end.visible = joint !== undefined;
@@ -94,6 +95,11 @@ export class Figure {
     this.group.add(mesh);
     return mesh;
   }
+}
+
+function known(joints, name) {
+  const joint = joints.get(name);
+  return joint?.c > 0 ? joint : undefined;
 }
 
 // A cylinder of height 1 along its own +Y, from one point to the other.

@@ -9,7 +9,7 @@ from mocapd.geometry import rotations
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.trackers.base import Track
 from mocapd.trackers.canned.section import CannedSection
-from mocapd.trackers.canned.tracker import canned_pose
+from mocapd.trackers.canned.tracker import UNCERTAINTY_M, canned_pose
 from mocapd.types import BodyState, Floats, FrameSet, Pose, Tracking
 
 LOOP = CannedSection(loop_s=4.0, waves=6, sway_m=0.25)  # to the left in its first second
@@ -28,7 +28,15 @@ def waving_person(shape: BodyShape, since_start_ns: int, now_ns: int) -> BodySam
     pose = Pose(canned.root_m, global_from_local(skeleton, local_xyzw))
     joints_m = joint_positions(skeleton, pose)
     known = np.ones(len(skeleton.names))
-    body = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, known)
+    body = BodyState(
+        now_ns,
+        Tracking.LIVE,
+        "canned",
+        pose,
+        joints_m,
+        known,
+        uncertainty_m=UNCERTAINTY_M * known,
+    )
     return BodySample(Track(body, shape, quality=1.0), skeleton, FrameSet(now_ns, {}))
 
 

@@ -21,7 +21,8 @@ class SampledMotion:
     """F frames of J joints in the world of mocapd, rate_hz apart from time 0.
 
     skeleton: names, parents and T-pose of the recording; joints_m (F,J,3) [m]; global_xyzw (F,J,4): relative to the
-    T-pose; confidence (F,J) 0..1; gap (F,): nobody was tracked: the pose is carried over from before to after.
+    T-pose; confidence (F,J) 0..1; gap (F,): nobody was tracked: the pose is carried over from before to after;
+    uncertainty_m (F,J): one standard deviation of each joint's place [m], inf where it is unknown.
     """
 
     rate_hz: float
@@ -30,6 +31,7 @@ class SampledMotion:
     global_xyzw: Floats
     confidence: Floats
     gap: Bytes
+    uncertainty_m: Floats
 
     @property
     def times_s(self) -> Floats:
@@ -71,6 +73,7 @@ class Samples:
     joints_m: Floats
     global_xyzw: Floats
     confidence: Floats
+    uncertainty_m: Floats
 
 
 def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMotion:
@@ -102,6 +105,8 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
     )
     confidence = mixed(samples.confidence)
     confidence[is_apart] = 0.0
+    at_worst = np.maximum(samples.uncertainty_m[before], samples.uncertainty_m[after])
+    at_worst[is_apart] = np.inf
     return SampledMotion(
         rate_hz,
         skeleton,
@@ -109,6 +114,7 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
         turned,
         confidence,
         is_apart.astype(np.uint8),
+        at_worst,
     )
 
 

@@ -1,11 +1,16 @@
 """From the tracker's body to the frame that is sent; on the latency path."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
+
+import numpy as np
 
 from mocapd.body.skeleton import local_from_global
 from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame
 from mocapd.types import BodyState, Floats, Skeleton, Tracking
+
+_DIGITS = 4  # of an uncertainty in metres: what is beyond says nothing
 
 
 def skeleton_frame(
@@ -48,8 +53,13 @@ def _joints(body: BodyState, skeleton: Skeleton) -> dict[str, Joint]:
         _rows(body.pose.quats_xyzw, 4),
         _rows(local_xyzw, 4),
         body.confidence.tolist(),
+        map(_finite, np.round(body.uncertainty_m, _DIGITS).tolist()),
     )
     return dict(zip(skeleton.names, joints, strict=True))
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None
 
 
 def _rows(array: Floats, n: int) -> Iterator[tuple[Any, ...]]:

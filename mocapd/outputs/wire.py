@@ -32,8 +32,8 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-class Joint(msgspec.Struct, frozen=True, gc=False):
-    """One bone. Keys are single letters because they are sent once per bone and frame."""
+class Joint(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
+    """One bone. Keys are single letters because they are sent once per bone and frame; `u` is absent where it is None."""
 
     p: Annotated[Vector, Meta(description="position of the joint in the world [m], x y z")]
     r: Annotated[
@@ -43,6 +43,13 @@ class Joint(msgspec.Struct, frozen=True, gc=False):
         Quaternion, Meta(description="rotation relative to the parent bone, x y z w, w >= 0")
     ]
     c: Annotated[float, Meta(description="confidence 0..1, near 0 where there is no evidence")]
+    u: Annotated[
+        float | None,
+        Meta(
+            description="one standard deviation of the position, root mean square over x, y and z [m]; absent or null where"
+            " it is unknown"
+        ),
+    ] = None
 
 
 class SkeletonFrame(msgspec.Struct, frozen=True):

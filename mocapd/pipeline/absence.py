@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.clock import NS_PER_S, nanoseconds, seconds
-from mocapd.trackers.tracking_state import faded
+from mocapd.trackers.tracking_state import faded, grown
 from mocapd.types import BodyState, Tracking
 
 COASTING_EVERY_NS = NS_PER_S // 10
@@ -77,13 +77,14 @@ class Absence:
         """The last pose, believed less and less; None when it is too old, or there was none."""
         if last.tracking is Tracking.LOST or t_ns - self._evidence_ns > self._coast_ns:
             return None
-        fading = faded(seconds(t_ns - last.t_ns))
+        away_s = seconds(t_ns - last.t_ns)
         return replace(
             last,
             t_ns=t_ns,
             tracking=Tracking.COASTING,
-            confidence=last.confidence * fading,
+            confidence=last.confidence * faded(away_s),
             cameras=(),
+            uncertainty_m=grown(last.uncertainty_m, away_s),
         )
 
     def _patience_ns(self) -> int:

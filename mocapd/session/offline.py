@@ -3,7 +3,7 @@
 import os
 import tempfile
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,8 @@ class RecordedTrack:
     """F frames of J joints; frames in which nobody was tracked are absent.
 
     times_s (F,): since the capture's start [s]; joints_m (F,J,3) [m, world]; global_xyzw (F,J,4):
-    rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,).
+    rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,); uncertainty_m (F,J): as in BodyState,
+    inf where it is unknown, and everywhere when left out.
     """
 
     times_s: Floats
@@ -31,6 +32,11 @@ class RecordedTrack:
     global_xyzw: Floats
     confidence: Floats
     tracker: NDArray[np.str_]
+    uncertainty_m: Floats = field(default_factory=lambda: np.empty((0, 0)))
+
+    def __post_init__(self) -> None:
+        if self.uncertainty_m.size == 0:
+            object.__setattr__(self, "uncertainty_m", np.full(self.confidence.shape, np.inf))
 
 
 def track_all(
@@ -38,7 +44,7 @@ def track_all(
 ) -> RecordedTrack:
     """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done."""
     names = skeleton_of(shape).names
-    times, joints, quats, confidence, by = [], [], [], [], []
+    times, joints, quats, confidence, by, uncertainty = [], [], [], [], [], []
     for done, one in enumerate(frames, start=1):
         track = tracker.step(one, shape)
         body, shape = track.body, track.shape
@@ -48,6 +54,7 @@ def track_all(
             quats.append(body.pose.quats_xyzw)
             confidence.append(body.confidence)
             by.append(body.tracker)
+            uncertainty.append(body.uncertainty_m)
         on_frame(done)
     n, j = len(times), len(names)
     return RecordedTrack(
@@ -57,6 +64,7 @@ def track_all(
         np.array(quats).reshape(n, j, 4),
         np.array(confidence).reshape(n, j),
         np.array(by, dtype=np.str_),
+        np.array(uncertainty).reshape(n, j),
     )
 
 
@@ -89,6 +97,7 @@ def write_track(path: Path, track: RecordedTrack) -> None:
                 global_quats=track.global_xyzw,
                 confidence=track.confidence,
                 tracker=track.tracker,
+                uncertainty=track.uncertainty_m,
             )
     except OSError as error:
         raise CannotCreateError(

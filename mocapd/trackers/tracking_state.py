@@ -3,16 +3,27 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
-from mocapd.types import Tracking
+from mocapd.types import Floats, Tracking
 
+# How fast joints leave a pose that is told without evidence, along an axis: of 25 clips of everyday motion and sport
+# the hips 0.3, elbows 0.4, hands 0.6
+STRAYS_M_S = 0.4
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
 
 
 def faded(away_s: float) -> float:
     """How much is left of a confidence without evidence since `away_s` [s]."""
     return math.exp(-away_s / FADE_S)
+
+
+def grown(uncertainty_m: Floats, away_s: float) -> Floats:
+    """What uncertainties (J,) [m] have become without evidence since `away_s` [s]."""
+    grown_m: Floats = np.hypot(uncertainty_m, STRAYS_M_S * away_s)
+    return grown_m
 
 
 @dataclass(frozen=True, slots=True)

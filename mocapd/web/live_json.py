@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from math import isfinite
 
 import numpy as np
 
@@ -40,13 +41,16 @@ def _camera_json(camera: Camera) -> dict[str, object]:
 
 
 def body_json(body: BodyState) -> dict[str, object]:
-    """The body now; joints_m [m, world] is null when it is lost."""
+    """The body now; joints_m [m, world] is null when it is lost, an uncertainty_m [m] where it is unknown."""
     return {
         "kind": "body",
         "tracking": body.tracking.value,
         "tracker": body.tracker,
         "joints_m": np.round(body.joints_m, 3).tolist() if body.joints_m is not None else None,
         "confidence": np.round(body.confidence, 2).tolist(),
+        "uncertainty_m": [
+            round(sd_m, 3) if isfinite(sd_m) else None for sd_m in body.uncertainty_m.tolist()
+        ],
     }
 
 

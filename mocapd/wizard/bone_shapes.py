@@ -1,26 +1,47 @@
-"""The tracked body as lines over a camera's picture."""
+"""The tracked body as lines over a camera's picture, and how far off it may be as a halo around them."""
 
 import numpy as np
 
-from mocapd.geometry.camera_model import project
-from mocapd.types import BodyState, Camera, Skeleton
+from mocapd.geometry.camera_model import project, to_camera
+from mocapd.types import BodyState, Camera, Floats, Skeleton
 from mocapd.wizard.step import Shape
 
-SURE = 0.35  # a joint of less confidence is drawn as a guess
+SURE = 0.35  # a joint of less confidence is drawn as a guess, one of none not at all
+_SHOWN = 0.005  # as the page of the live view, which has two digits of a confidence
+_WIDEST_M = 0.3  # of a halo: what is less certain is not known better for being drawn wider
 
 
 def bone_shapes(camera: Camera, body: BodyState, skeleton: Skeleton) -> tuple[Shape, ...]:
-    """A line for each bone in pixels of the camera's frame; nothing without a pose, and no bone of
-    which an end is behind the camera."""
+    """A line for each bone in pixels of the camera's frame, above halos of one standard deviation; nothing without a
+    pose, and no bone of which an end is behind the camera or has no confidence at all."""
     if body.joints_m is None:
         return ()
     at_px = project(camera, body.joints_m)
     # lists: this is drawn over every picture of the live view, and numpy is slow at single numbers
-    seen: list[bool] = np.asarray(np.isfinite(at_px).all(axis=1)).tolist()
+    drawn: list[bool] = (np.isfinite(at_px).all(axis=1) & (body.confidence > _SHOWN)).tolist()
     points = [(x, y) for x, y in at_px.tolist()]
-    sure: list[bool] = (body.confidence >= SURE).tolist()
-    return tuple(
-        Shape("line", (points[parent], points[child]), "bone" if sure[child] else "hint")
+    styles = ["bone" if sure else "hint" for sure in (body.confidence >= SURE).tolist()]
+    bones = [
+        (parent, child)
         for child, parent in enumerate(skeleton.parents.tolist())
-        if parent >= 0 and seen[parent] and seen[child]
+        if parent >= 0 and drawn[parent] and drawn[child]
+    ]
+    radii_px: list[float] = _radii_px(camera, body.joints_m, body.uncertainty_m).tolist()
+    halos = []
+    for style in ("hint", "bone"):
+        ends = [end for bone in bones if styles[bone[1]] == style for end in bone]
+        if any(radii_px[end] for end in ends):
+            at = tuple(points[end] for end in ends)
+            halos.append(Shape("halo", at, style, radii_px=tuple(radii_px[end] for end in ends)))
+    lines = (
+        Shape("line", (points[parent], points[child]), styles[child]) for parent, child in bones
     )
+    return (*halos, *lines)
+
+
+def _radii_px(camera: Camera, joints_m: Floats, uncertainty_m: Floats) -> Floats:
+    """(J,) of the uncertainty at the joint's distance; 0 where it is unknown."""
+    known_m = np.where(np.isfinite(uncertainty_m), np.minimum(uncertainty_m, _WIDEST_M), 0.0)
+    depth_m = np.maximum(to_camera(camera, joints_m)[:, 2], 1e-3)
+    radii: Floats = known_m * camera.K[0, 0] / depth_m
+    return radii

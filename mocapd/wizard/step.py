@@ -49,16 +49,18 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Something to draw over a camera's picture: kind `points`, `line`, `polygon` or `text`.
+    """Something to draw over a camera's picture: kind `points`, `line`, `polygon`, `text` or `halo`.
 
     at_px: x, y pairs in pixels of the camera's whole frame; style: a class of `page/style.css`
-    (`good`, `bad`, `hint`, `bone`, `cell-0`..`cell-3`); text: for `text`, at the first point.
+    (`good`, `bad`, `hint`, `bone`, `cell-0`..`cell-3`); text: for `text`, at the first point;
+    radii_px: for `halo`, soft bands between each two points, how wide on either side of each point.
     """
 
     kind: str
     at_px: tuple[tuple[float, float], ...]
     style: str = "good"
     text: str = ""
+    radii_px: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -137,6 +137,22 @@ def test_an_asymmetric_pose_is_drawn_where_it_is(page: Page, site: str, daemon: 
     assert left_y > right_y + 0.2
 
 
+def test_joints_of_which_nothing_is_known_are_not_drawn(
+    page: Page, site: str, daemon: AnyDaemon
+) -> None:
+    frame = whole_frame()
+    assert frame.joints["hips"].c == 0.0
+    daemon.say(rest_text(), frame_text())
+    page.goto(f"{site}/#mocapd={daemon.address}")
+    state(page, "live")
+    page.wait_for_function(PLACES, timeout=WAIT_MS)
+    drawn = page.evaluate("""async () => {
+        const { figure } = await import(new URL("main.js", location).href);
+        return ["hips", "spine"].map((name) => figure.positionOf(name) !== null);
+    }""")
+    assert drawn == [False, True]
+
+
 def test_what_is_wrong_with_a_message_is_said_and_survived(
     page: Page, site: str, daemon: AnyDaemon
 ) -> None:

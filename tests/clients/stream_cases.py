@@ -69,7 +69,7 @@ def joint(
     name: str = "hips", *, types: str = JOINT_TYPES, more: tuple[osc.Argument, ...] = ()
 ) -> bytes:
     """A joint in the T-pose, a metre above the floor."""
-    numbers = (0.0, 1.0, 0.0, *(0.0, 0.0, 0.0, 1.0) * 2, 1.0)
+    numbers = (0.0, 1.0, 0.0, *(0.0, 0.0, 0.0, 1.0) * 2, 1.0, 0.01)
     return osc.message(JOINT + name, types, *numbers, *more)
 
 

@@ -73,7 +73,7 @@ def run(tracker: Stepping, sets: Sequence[FrameSet]) -> list[Track]:
 
 def copied(body: BodyState) -> BodyState:
     """With arrays of its own."""
-    out = replace(body, confidence=body.confidence.copy())
+    out = replace(body, confidence=body.confidence.copy(), uncertainty_m=body.uncertainty_m.copy())
     if body.pose is None or body.joints_m is None:
         return out
     pose = replace(
@@ -86,6 +86,7 @@ def assert_same(one: BodyState, other: BodyState) -> None:
     assert (one.t_ns, one.tracking, one.tracker) == (other.t_ns, other.tracking, other.tracker)
     assert one.cameras == other.cameras
     assert np.array_equal(one.confidence, other.confidence)
+    assert np.array_equal(one.uncertainty_m, other.uncertainty_m)
     if one.pose is None or other.pose is None:
         assert one.pose is other.pose
         return
@@ -104,12 +105,15 @@ def assert_well_formed(tracker: Stepping, track: Track, frames: FrameSet) -> Non
     assert set(body.cameras) <= set(frames.frames)
     assert body.confidence.shape == (n,)
     assert ((body.confidence >= 0.0) & (body.confidence <= 1.0)).all()
+    assert body.uncertainty_m.shape == (n,)
+    assert (body.uncertainty_m > 0.0).all()
     assert 0.0 <= track.quality <= 1.0
     if body.tracking is Tracking.LOST:
         assert track.quality == 0.0
         assert body.pose is None
         assert body.joints_m is None
         assert not body.confidence.any()
+        assert np.isinf(body.uncertainty_m).all()
         return
     assert body.pose is not None
     assert body.joints_m is not None

@@ -103,6 +103,14 @@ def test_csv_by_the_standard_library(tmp_path: Path) -> None:
     assert np.abs(np.array(turned) - motion.global_xyzw).max() < 1e-5
 
 
+def test_csv_has_an_uncertainty_only_where_one_is_known(tmp_path: Path) -> None:
+    _, path = exported(tmp_path, "csv")
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {float(row["leftHand_uncertainty_m"]) for row in rows} == {0.1001}
+    assert {row["leftFoot_uncertainty_m"] for row in rows} == {""}
+
+
 def test_trc_as_its_tables_say(tmp_path: Path) -> None:
     """Read by hand: the format has no library that is kept."""
     motion, path = exported(tmp_path, "trc")

@@ -44,6 +44,8 @@ def test_a_gap_is_said_and_carried_over(tmp_path: Path) -> None:
     assert len(found.motion.joints_m) == 180
     assert found.motion.gap.nonzero()[0].tolist() == list(range(60, 120))
     assert (found.motion.confidence[60:120] == 0).all()
+    assert np.isinf(found.motion.uncertainty_m[60:120]).all()
+    assert np.isfinite(found.motion.uncertainty_m[:60, 0]).all()
     assert np.isfinite(found.motion.joints_m).all()
 
 

@@ -36,7 +36,16 @@ def body() -> tuple[BodyState, Skeleton]:
     pose = Pose(np.array(HIPS_M), global_from_local(skeleton, local_xyzw))
     joints_m = joint_positions(skeleton, pose)
     confidence = np.ones(len(skeleton.names))
-    state = BodyState(CAPTURE_NS, Tracking.LIVE, "canned", pose, joints_m, confidence, ())
+    state = BodyState(
+        CAPTURE_NS,
+        Tracking.LIVE,
+        "canned",
+        pose,
+        joints_m,
+        confidence,
+        (),
+        uncertainty_m=np.linspace(0.01, 0.031, len(skeleton.names)),
+    )
     return state, skeleton
 
 

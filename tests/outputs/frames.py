@@ -3,7 +3,7 @@
 import os
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from itertools import count
 
@@ -13,7 +13,7 @@ from mocapd.body.skeleton import INDEX, joint_positions, rest_pose, standard_ske
 from mocapd.geometry import rotations
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame
-from mocapd.types import BodyState, Pose, Skeleton, Tracking
+from mocapd.types import BodyState, Floats, Pose, Skeleton, Tracking
 
 CAPTURE_NS = 5_000_000_123
 UNIX_OFFSET_NS = 1_700_000_000_000_000_000
@@ -66,8 +66,15 @@ def left_hand_up() -> tuple[BodyState, Skeleton]:
         joint_positions(skeleton, pose),
         confidence,
         ("left", "right"),
+        uncertainty_m=uncertainties_m(skeleton.names),
     )
     return body, skeleton
+
+
+def uncertainties_m(names: Sequence[str]) -> Floats:
+    """Another of each joint, in tenths of a millimetre as it is sent; of the shins and below nothing is known."""
+    below = [name.endswith(("LowerLeg", "Foot", "Toes")) for name in names]
+    return np.where(below, np.inf, 0.0101 + 0.01 * np.arange(len(names)))
 
 
 def whole_frame(seq: int = 0, person: int = 0) -> SkeletonFrame:

@@ -15,7 +15,7 @@ from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.types import BodyState, Pose, Rig, Tracking
 from tests.geometry.rigs import ring
-from tests.outputs.frames import CAPTURE_NS, UNIX_OFFSET_NS
+from tests.outputs.frames import CAPTURE_NS, UNIX_OFFSET_NS, uncertainties_m
 
 HZ = 60.0
 LATENCY_NS = 25_000_000
@@ -56,6 +56,7 @@ def moving_body(t_s: float) -> BodyState:
         joint_positions(SKELETON, pose),
         np.linspace(0.0, 1.0, len(SKELETON.names)),
         ("cam0", "cam1"),
+        uncertainty_m=uncertainties_m(SKELETON.names),
     )
 
 

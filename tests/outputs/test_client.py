@@ -1,6 +1,7 @@
 """The client as a game uses it: newest wins, blocking and asyncio, restarts, clear errors."""
 
 import asyncio
+import math
 import os
 import subprocess
 import sys
@@ -78,6 +79,8 @@ def test_a_body_is_easy_to_read() -> None:
     assert body["leftHand"].rotation_xyzw == frame.joints["leftHand"].r
     assert body["leftHand"].local_rotation_xyzw == frame.joints["leftHand"].l
     assert body["leftHand"].confidence == frame.joints["leftHand"].c
+    assert body["leftHand"].uncertainty_m == frame.joints["leftHand"].u
+    assert body["leftFoot"].uncertainty_m == math.inf  # unknown: it weighs nothing
     assert list(body) == list(body.joints) == list(frame.joints)
     assert body.latency_s == pytest.approx(1 / 64)
     with pytest.raises(KeyError):

@@ -60,6 +60,13 @@ def test_times_and_names_are_carried_on() -> None:
     assert [joint.c for joint in frame.joints.values()] == pytest.approx(np.linspace(0, 1, 22))
 
 
+def test_an_uncertainty_is_in_tenths_of_a_millimetre_and_absent_where_nothing_is_known() -> None:
+    joints = whole_frame().joints
+    assert joints["hips"].u == 0.0101
+    assert joints["leftHand"].u == 0.1001
+    assert joints["leftFoot"].u is None
+
+
 def test_lost_has_no_joints() -> None:
     body, skeleton = left_hand_up()
     lost = BodyState(CAPTURE_NS, Tracking.LOST, "colour", None, None, np.zeros(22))

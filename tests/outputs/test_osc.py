@@ -16,6 +16,7 @@ from tests.outputs.frames import small_frame, whole_frame
 
 ONE, HALF, QUARTER = b"\x3f\x80\0\0", b"\x3f\x00\0\0", b"\x3e\x80\0\0"
 ZERO = b"\0\0\0\0"
+UNKNOWN = b"\xbf\x80\0\0"  # -1, of an uncertainty
 
 ANY_TEXT = st.text(st.characters())  # also NUL and lone surrogates
 
@@ -33,20 +34,22 @@ GOLDEN_FRAME = b"".join(
 )
 GOLDEN_HIPS = b"".join(
     [
-        b"/mocapd/v1/joint/hips\0\0\0,ffffffffffff\0\0\0",
+        b"/mocapd/v1/joint/hips\0\0\0,fffffffffffff\0\0",
         QUARTER + ONE + b"\xbf\x00\0\0",
         ZERO * 3 + ONE,
         ZERO * 3 + ONE,
         ONE,
+        UNKNOWN,
     ]
 )
 GOLDEN_ARM = b"".join(
     [
-        b"/mocapd/v1/joint/leftUpperArm\0\0\0,ffffffffffff\0\0\0",
+        b"/mocapd/v1/joint/leftUpperArm\0\0\0,fffffffffffff\0\0",
         HALF + b"\x3f\xc0\0\0" + b"\xbf\x00\0\0",
         ZERO * 2 + b"\x3f\x40\0\0" + b"\x3f\x20\0\0",
         HALF * 4,
         b"\x3e\x00\0\0",
+        UNKNOWN,
     ]
 )
 GOLDEN_BUNDLE = b"#bundle\0\0\0\0\0\0\0\0\x01" + b"".join(
@@ -87,7 +90,8 @@ def test_an_independent_decoder_reads_the_whole_body() -> None:
         seen |= {m.address.removeprefix("/mocapd/v1/joint/"): m.params for m in joints}
     assert list(seen) == list(frame.joints)
     for name, joint in frame.joints.items():
-        assert seen[name] == pytest.approx([*joint.p, *joint.r, *joint.l, joint.c], abs=1e-6)
+        u = -1.0 if joint.u is None else joint.u
+        assert seen[name] == pytest.approx([*joint.p, *joint.r, *joint.l, joint.c, u], abs=1e-6)
 
 
 def test_the_body_takes_two_datagrams_of_about_the_same_size() -> None:
@@ -141,7 +145,7 @@ def test_whatever_a_frame_says_it_fits_its_datagrams(
     messages = [decoded(datagram) for datagram in datagrams]
     assert sum(len(each) - 1 for each in messages) == len(joints)
     assert all(each[0].params[4] == len(joints) for each in messages)
-    assert all(each[-1].params[-1] == joint.c for each in messages if len(each) > 1)
+    assert all(each[-1].params[11] == joint.c for each in messages if len(each) > 1)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """A recording gives back what was recorded, whatever happened to the file."""
 
 import logging
+import math
 import os
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from mcap.writer import Writer
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.geometry import rotations
 from mocapd.outputs import wire
+from mocapd.outputs.mcap.packed_frame import PACKED, decode_packed, encode_packed, pack, unpack
 from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
@@ -45,8 +47,49 @@ def test_frames_come_back_within_a_tenth_of_a_millimetre(tmp_path: Path) -> None
             np.array([joint.l for joint in after.joints.values()]),
         )
         assert max(turned.max(), local.max()) < 2e-4
+        assert [joint.u for joint in after.joints.values()] == [
+            joint.u for joint in before.joints.values()
+        ]
         same = msgspec.structs.replace(after, joints=before.joints)
         assert same == before
+
+
+def test_a_recording_of_before_there_were_uncertainties_has_none() -> None:
+    packed = pack(whole_frame(), rest().names)
+    assert packed is not None
+    older = msgspec.msgpack.decode(encode_packed(packed))
+    del older["u"]
+    read = unpack(
+        decode_packed(msgspec.msgpack.encode(older), f"application/msgpack;{PACKED}"), rest()
+    )
+    assert [joint.u for joint in read.joints.values()] == [None] * len(rest().names)
+
+
+def test_strange_uncertainties_do_not_spoil_a_packed_frame() -> None:
+    frame = whole_frame()
+    for said, kept in (
+        (None, None),
+        (math.nan, None),
+        (math.inf, None),
+        (-1.0, 0.0),
+        (1e9, 6.5534),
+    ):
+        joints = {
+            name: msgspec.structs.replace(joint, u=said if name == "head" else joint.u)
+            for name, joint in frame.joints.items()
+        }
+        packed = pack(msgspec.structs.replace(frame, joints=joints), rest().names)
+        assert packed is not None
+        read = unpack(packed, rest()).joints
+        assert read["head"].u == kept
+        assert read["hips"].u == frame.joints["hips"].u
+
+
+def test_uncertainties_that_are_cut_short_are_damage() -> None:
+    packed = pack(whole_frame(), rest().names)
+    assert packed is not None
+    with pytest.raises(InputError, match="as many joints"):
+        unpack(msgspec.structs.replace(packed, u=packed.u[:-1]), rest())
 
 
 def test_exactly_the_published_bytes_on_demand(tmp_path: Path) -> None:

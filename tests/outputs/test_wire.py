@@ -69,6 +69,36 @@ def test_fields_of_later_additions_are_skipped() -> None:
     assert wire.decode(msgspec.json.encode(later), wire.JSON) == small_frame()
 
 
+def test_a_joint_says_how_uncertain_it_is_or_nothing_at_all() -> None:
+    sent = msgspec.msgpack.decode(wire.encode_msgpack(whole_frame()))["joints"]
+    assert sent["leftHand"]["u"] == 0.1001
+    assert "u" not in sent["leftFoot"]
+    older = msgspec.msgpack.decode(GOLDEN_MSGPACK)
+    assert wire.decode(msgspec.msgpack.encode(older)).joints["hips"].u is None
+    older["joints"]["hips"]["u"] = None
+    assert wire.decode(msgspec.json.encode(older), wire.JSON).joints["hips"].u is None
+
+
+class _OlderJoint(msgspec.Struct):
+    """As clients of before know it."""
+
+    p: tuple[float, float, float]
+    c: float
+
+
+def test_a_client_of_before_there_were_uncertainties_reads_frames_that_have_them() -> None:
+    class OlderFrame(msgspec.Struct):
+        joints: dict[str, _OlderJoint]
+
+    frame = whole_frame()
+    for read in (
+        msgspec.msgpack.decode(wire.encode_msgpack(frame), type=OlderFrame),
+        msgspec.json.decode(wire.encode_json(frame), type=OlderFrame),
+    ):
+        assert read.joints["leftHand"].p == frame.joints["leftHand"].p
+        assert read.joints["leftHand"].c == frame.joints["leftHand"].c
+
+
 def test_any_cut_is_a_named_error() -> None:
     for length in range(len(GOLDEN_MSGPACK)):
         with pytest.raises(InputError, match=r"no mocapd\.Skeleton\.v1"):

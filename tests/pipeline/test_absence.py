@@ -61,7 +61,7 @@ def test_the_last_pose_coasts_and_fades_and_then_nobody_is_known() -> None:
     assert 3 <= coasting <= 5
     assert states == [Tracking.COASTING] * coasting + [Tracking.LOST] * (len(states) - coasting)
     assert last.joints_m is not None
-    confidences = [1.0]
+    confidences, uncertainties_m = [1.0], [float(last.uncertainty_m.max())]
     for now_ns, body in found[:coasting]:
         assert body.t_ns - last.t_ns <= 500 * MS
         assert body.t_ns == now_ns - DELAY_NS
@@ -69,13 +69,17 @@ def test_the_last_pose_coasts_and_fades_and_then_nobody_is_known() -> None:
         assert np.array_equal(body.joints_m, last.joints_m)
         assert body.cameras == ()
         confidences.append(float(body.confidence.max()))
+        uncertainties_m.append(float(body.uncertainty_m.min()))
     assert confidences == sorted(set(confidences), reverse=True)
     assert confidences[-1] < 0.1
+    assert uncertainties_m == sorted(set(uncertainties_m))
+    assert uncertainties_m[-1] > 0.1  # almost half a second later a hand may be anywhere near
     nobody = found[coasting:]
     assert len(nobody) == 5  # at once, then once a second
     assert nobody[0][0] - last_ns <= 650 * MS
     assert all(b[0] - a[0] == LOST_EVERY_NS for a, b in pairwise(nobody))
     assert all(body.joints_m is None and not body.confidence.any() for _, body in nobody)
+    assert all(np.isinf(body.uncertainty_m).all() for _, body in nobody)
 
 
 def test_frames_that_still_come_at_their_rate_are_never_missed() -> None:

@@ -30,6 +30,8 @@ def test_scene_body_and_figures(host: TinyHost, server: WebServer) -> None:
         assert len(shown["corners_m"]) == 4
     assert len(body["joints_m"]) == len(scene["parents"]) == len(scene["joints"])
     assert body["tracking"] == "live"
+    uncertainty_m = dict(zip(scene["joints"], body["uncertainty_m"], strict=True))
+    assert (uncertainty_m["leftHand"], uncertainty_m["leftFoot"]) == (0.02, None)
     assert figures["latency_ms"]["median"] > 0
     assert figures["spread_ms"]["median"] is None  # nobody measured it yet
     assert figures["cameras"][1]["state"] == "lost"

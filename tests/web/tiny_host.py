@@ -6,7 +6,7 @@ from types import MappingProxyType
 import numpy as np
 
 from mocapd.body.shape import mean_shape
-from mocapd.body.skeleton import joint_positions, standard_skeleton
+from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
@@ -29,6 +29,11 @@ from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring
 
+BELOW_THE_HIPS = [
+    INDEX[side + bone]
+    for side in ("left", "right")
+    for bone in ("UpperLeg", "LowerLeg", "Foot", "Toes")
+]  # as of a tracker of the upper body
 OVERLAY = Shape("text", ((10.0, 40.0),), "hint", "seen")
 
 
@@ -130,8 +135,20 @@ class TinyHost:
         pose = canned_pose(self.skeleton, CannedSection(), now_ns)
         joints_m = joint_positions(self.skeleton, pose)
         confidence = np.ones(len(joints_m))
-        confidence[-4:] = 0.1
-        state = BodyState(now_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)
+        confidence[INDEX["rightHand"]] = 0.1
+        confidence[BELOW_THE_HIPS] = 0.0
+        uncertainty_m = np.full(len(joints_m), 0.02)
+        uncertainty_m[INDEX["rightHand"]] = 0.12
+        uncertainty_m[BELOW_THE_HIPS] = np.inf
+        state = BodyState(
+            now_ns,
+            Tracking.LIVE,
+            "canned",
+            pose,
+            joints_m,
+            confidence,
+            uncertainty_m=uncertainty_m,
+        )
         return BodySample(Track(state, mean_shape(1.75)), self.skeleton, FrameSet(now_ns, {}))
 
     def snapshot(self) -> Snapshot | None:

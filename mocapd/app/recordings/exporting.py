@@ -1,5 +1,6 @@
 """From a recording to motion at a constant rate, for `mocapd export`."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +58,9 @@ def _samples(frames: list[SkeletonFrame]) -> Samples:
         np.array([[one.p for one in each] for each in joints]).reshape(*shape, 3),
         np.array([[one.r for one in each] for each in joints]).reshape(*shape, 4),
         np.array([[one.c for one in each] for each in joints]).reshape(shape),
+        np.array(
+            [[math.inf if one.u is None else one.u for one in each] for each in joints]
+        ).reshape(shape),
     )
 
 

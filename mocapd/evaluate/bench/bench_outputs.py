@@ -47,7 +47,16 @@ def moving_frames(count: int) -> list[SkeletonFrame]:
         t_ns = round(seq / RATE_HZ * NS_PER_S)
         joints_m = joint_positions(skeleton, pose)
         sure = np.ones(len(skeleton.names))
-        body = BodyState(t_ns, Tracking.LIVE, "canned", pose, joints_m, sure, ("left", "right"))
+        body = BodyState(
+            t_ns,
+            Tracking.LIVE,
+            "canned",
+            pose,
+            joints_m,
+            sure,
+            ("left", "right"),
+            uncertainty_m=0.01 * sure,
+        )
         frames.append(
             skeleton_frame(
                 body,

@@ -2,24 +2,31 @@
 
 The columns are a time [s] since the first frame; whether it is a gap, 1 where nobody was tracked; and of each bone,
 after its name and an underscore, PARTS: its joint in the world [m], its rotation relative to the T-pose, its confidence
-0..1. +Y up, a person at rest faces +Z.
+0..1, and one standard deviation of its place [m], empty where that is unknown. +Y up, a person at rest faces +Z.
 """
 
 import csv
 import io
+import math
 
 import numpy as np
 
 from mocapd.exports.sampled_motion import SampledMotion
 
-PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "confidence")
+PARTS = ("x", "y", "z", "qx", "qy", "qz", "qw", "confidence", "uncertainty_m")
 
 
 def csv_text(motion: SampledMotion) -> str:
     """The whole file."""
     names = motion.skeleton.names
     numbers = np.concatenate(
-        [motion.joints_m, motion.global_xyzw, motion.confidence[..., None]], axis=2
+        [
+            motion.joints_m,
+            motion.global_xyzw,
+            motion.confidence[..., None],
+            motion.uncertainty_m[..., None],
+        ],
+        axis=2,
     ).reshape(len(motion.joints_m), -1)
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
@@ -27,5 +34,9 @@ def csv_text(motion: SampledMotion) -> str:
     for time_s, gap, row in zip(
         motion.times_s.tolist(), motion.gap.tolist(), numbers.tolist(), strict=True
     ):
-        table.writerow([f"{time_s:.6f}", gap, *(f"{number:.6f}" for number in row)])
+        table.writerow([f"{time_s:.6f}", gap, *(_cell(number) for number in row)])
     return text.getvalue()
+
+
+def _cell(number: float) -> str:
+    return f"{number:.6f}" if math.isfinite(number) else ""

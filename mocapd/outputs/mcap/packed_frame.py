@@ -2,8 +2,8 @@
 
 Published frames take up to 460 MB an hour at 60 Hz however they are compressed, as their numbers are noise from the
 ninth digit on. Here positions are on a grid of 15 micrometres and rotations of 0.003 degrees, far below what any
-tracker knows; the rotations relative to the parents follow from the others. Bytes of equal weight lie side by
-side, as the upper ones repeat and compress.
+tracker knows, and uncertainties in tenths of a millimetre; the rotations relative to the parents follow from the
+others. Bytes of equal weight lie side by side, as the upper ones repeat and compress.
 """
 
 from typing import Annotated
@@ -22,6 +22,8 @@ from mocapd.types import Bytes, Floats, Ints, Skeleton
 PACKED = "mocapd.PackedSkeleton.v1"
 GRID_M = 2.0**-16
 FARTHEST_M = 2.0**23 * GRID_M  # 128 m from the origin: 24 bits
+_SD_STEPS_PER_M = 10_000.0
+_SD_UNKNOWN = 65535
 _TURN_STEPS = 32767.0 * np.sqrt(2.0)  # the three smaller components are below sqrt(1/2)
 _OTHERS = np.array(
     [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
@@ -62,6 +64,13 @@ class PackedFrame(msgspec.Struct, frozen=True):
         int, Meta(description="as in mocapd.Skeleton.v1, and so the next")
     ] = 0
     predicted_ns: int = 0
+    u: Annotated[
+        bytes,
+        Meta(
+            description="uncertainty of each joint's position / 0.1 mm, whole, 65535: unknown: the lower bytes of all joints,"
+            " then the upper; empty: all are unknown"
+        ),
+    ] = b""
     schema: Annotated[str, Meta(description=f"always `{PACKED}`")] = PACKED
 
 
@@ -95,6 +104,7 @@ def pack(frame: SkeletonFrame, names: tuple[str, ...]) -> PackedFrame | None:
         np.rint(np.clip(confidence, 0.0, 1.0) * 255).astype(np.uint8).tobytes(),
         frame.smoothing_lag_ns,
         frame.predicted_ns,
+        _packed_uncertainties([joint.u for joint in joints.values()]),
     )
 
 
@@ -108,18 +118,20 @@ def unpack(packed: PackedFrame, rest: RestSkeleton) -> SkeletonFrame:
         positions_m = _whole(packed.p, 3) * GRID_M
         quats_xyzw = _quats(np.frombuffer(packed.k, dtype=np.uint8), _whole(packed.r, 2))
         confidence = np.frombuffer(packed.c, dtype=np.uint8) / 255.0
+        uncertainties_m = _uncertainties_m(packed.u, n)
         local_xyzw = local_from_global(
             Skeleton(rest.names, np.array(rest.parents, dtype=np.int64), np.zeros((n, 3))),
             quats_xyzw,
         )
         joints = {
-            name: Joint(tuple(p), tuple(r), tuple(turn), c)
-            for name, p, r, turn, c in zip(
+            name: Joint(tuple(p), tuple(r), tuple(turn), c, u)
+            for name, p, r, turn, c, u in zip(
                 rest.names,
                 positions_m.tolist(),
                 quats_xyzw.tolist(),
                 local_xyzw.tolist(),
                 confidence.tolist(),
+                uncertainties_m,
                 strict=True,
             )
         }
@@ -172,6 +184,26 @@ def _whole(planes: bytes, n_bytes: int) -> Ints:
     half = 1 << (8 * n_bytes - 1)
     numbers: Ints = ((unsigned + half) % (2 * half) - half).T
     return numbers
+
+
+def _packed_uncertainties(uncertainties_m: list[float | None]) -> bytes:
+    if all(one is None for one in uncertainties_m):
+        return b""
+    steps = np.array([np.nan if one is None else one for one in uncertainties_m]) * _SD_STEPS_PER_M
+    whole = np.where(
+        np.isfinite(steps), np.clip(np.rint(steps), 0, _SD_UNKNOWN - 1), _SD_UNKNOWN
+    ).astype("<u2")
+    return whole.view(np.uint8).reshape(-1, 2).T.tobytes()
+
+
+def _uncertainties_m(planes: bytes, n: int) -> list[float | None]:
+    """Of n joints; recordings of before there were any have none."""
+    if not planes:
+        return [None] * n
+    if len(planes) != 2 * n:
+        raise _other_skeleton()
+    whole = np.ascontiguousarray(np.frombuffer(planes, dtype=np.uint8).reshape(2, n).T).view("<u2")
+    return [None if one == _SD_UNKNOWN else one / _SD_STEPS_PER_M for one in whole[:, 0].tolist()]
 
 
 def _quats(largest: Bytes, others: Ints) -> Floats:

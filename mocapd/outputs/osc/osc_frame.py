@@ -28,14 +28,19 @@ FRAME_ARGUMENTS = (
     ("instance", "s", "name of the sending daemon"),
 )
 JOINT = "/mocapd/v1/joint/"
-JOINT_TYPES = "f" * 12
+JOINT_TYPES = "f" * 13
 JOINT_ARGUMENTS = (
     ("px py pz", "fff", "position in the world [m]"),
     ("rx ry rz rw", "ffff", "global rotation relative to the T-pose, w >= 0"),
     ("lx ly lz lw", "ffff", "rotation relative to the parent bone, w >= 0"),
     ("c", "f", "confidence 0..1"),
+    (
+        "u",
+        "f",
+        "one standard deviation of the position, root mean square over x, y and z [m]; -1: unknown",
+    ),
 )
-# UTF-8 that is sent of each string [bytes]; with a joint, at most 808 of a datagram's 1472
+# UTF-8 that is sent of each string [bytes]; with a joint, at most 812 of a datagram's 1472
 MAX_TRACKING_BYTES = 32
 MAX_TRACKER_BYTES = 64
 MAX_CAMERAS_BYTES = 200
@@ -43,7 +48,8 @@ MAX_INSTANCE_BYTES = 256  # 64 characters
 MAX_JOINT_BYTES = 64
 
 _frame_numbers = struct.Struct(">iiiiiIIf")  # the arguments before the strings
-_joint_numbers = struct.Struct(">12f")
+_joint_numbers = struct.Struct(">13f")
+_UNKNOWN = -1.0  # no infinity: not every receiver survives one
 
 Shape = tuple[str, str, tuple[str, ...], str, tuple[str, ...]]
 
@@ -96,7 +102,8 @@ class FrameBundles:
             )
             # not strict: each bundle takes its own share of the joints, in order
             for offset, joint in zip(joints_at, joints, strict=False):
-                _joint_numbers.pack_into(data, offset, *joint.p, *joint.r, *joint.l, joint.c)
+                u = _UNKNOWN if joint.u is None else joint.u
+                _joint_numbers.pack_into(data, offset, *joint.p, *joint.r, *joint.l, joint.c, u)
         return [data for data, _, _ in self._bundles]
 
 

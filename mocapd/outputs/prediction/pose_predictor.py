@@ -114,7 +114,8 @@ class PosePredictor:
                 local = r if parent is None else joint.l
                 start, (x, y, z) = joint.p, _sum(name, moves)
             p = (start[0] + x, start[1] + y, start[2] + z)
-            found[name] = Joint(p, quaternions.canonical(r), quaternions.canonical(local), joint.c)
+            r, local = quaternions.canonical(r), quaternions.canonical(local)
+            found[name] = Joint(p, r, local, joint.c, joint.u)
         return found
 
 

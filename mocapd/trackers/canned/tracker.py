@@ -10,6 +10,8 @@ from mocapd.trackers.base import Probe, Track, lost_body, unprobed
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.types import BodyState, FrameSet, Pose, Skeleton, Tracking
 
+UNCERTAINTY_M = 0.01  # such as clients get of trackers that look
+
 
 class CannedTracker:
     """Live whenever there is a frame, whatever it shows: the pose is a pure function of its time."""
@@ -38,6 +40,7 @@ class CannedTracker:
             joints_m,
             np.ones(len(skeleton.names)),
             tuple(frames.frames),
+            uncertainty_m=np.full(len(skeleton.names), UNCERTAINTY_M),
         )
         return Track(body, shape, quality=1.0)
 

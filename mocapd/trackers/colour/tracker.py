@@ -12,6 +12,7 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.limb_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
@@ -32,7 +33,7 @@ from mocapd.trackers.blending import Residual, blended, later, residual
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import (
     BodyState,
     Floats,
@@ -356,6 +357,10 @@ class ColourTracker:
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)
         confidence = joint_confidence(known.fit, len(known.cameras), away_s)
+        model = self._fitter.model
+        uncertainty_m = joint_uncertainty_m(
+            model, joints, globals_, pose_covariance(model, known.fit.H)
+        )
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
@@ -364,6 +369,7 @@ class ColourTracker:
             joints_m=joints,
             confidence=confidence,
             cameras=known.cameras if away_s == 0.0 else (),
+            uncertainty_m=grown(uncertainty_m, away_s),
         )
         return Track(
             body,

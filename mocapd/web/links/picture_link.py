@@ -117,5 +117,6 @@ def shapes_json(shapes: Iterable[Shape]) -> list[dict[str, object]]:
             "style": shape.style,
             "text": shape.text,
         }
+        | ({"radii_px": [round(radius, 1) for radius in shape.radii_px]} if shape.radii_px else {})
         for shape in shapes
     ]

@@ -1,4 +1,6 @@
-// Shapes over a picture: points, lines, polygons and texts, in pixels of the camera's whole frame.
+// Shapes over a picture: points, lines, polygons, texts and halos, in pixels of the camera's whole frame.
+
+import { drawHalo } from "./halo.js";
 
 const STYLES = ["good", "bad", "hint", "bone", "cell-0", "cell-1", "cell-2", "cell-3"];
 const POINT_RADIUS = 3.5; // CSS px, as all below
@@ -18,11 +20,17 @@ export function drawShapes(context, shapes, colours, scale, unit) {
   for (const shape of shapes) {
     const colour = colours[shape.style] ?? colours.good;
     const at = shape.at_px.map(([x, y]) => [(x + 0.5) * scale, (y + 0.5) * scale]);
-    if (at.length > 0) KINDS[shape.kind]?.(context, at, colour, unit, shape);
+    if (at.length > 0) KINDS[shape.kind]?.(context, at, colour, unit, shape, scale);
   }
 }
 
-const KINDS = { points: drawPoints, line: drawLine, polygon: drawPolygon, text: drawText };
+const KINDS = {
+  points: drawPoints,
+  line: drawLine,
+  polygon: drawPolygon,
+  text: drawText,
+  halo: drawBands,
+};
 
 function drawPoints(context, at, colour, unit) {
   for (const [x, y] of at) {
@@ -64,6 +72,13 @@ function drawText(context, at, colour, unit, shape) {
   context.strokeText(shape.text, left, bottom);
   context.fillStyle = colour;
   context.fillText(shape.text, left, bottom);
+}
+
+/** Two points of each band, one after the other. */
+function drawBands(context, at, colour, unit, shape, scale) {
+  const ends = at.map(([x, y], i) => [x, y, shape.radii_px[i] * scale]);
+  const bands = ends.flatMap((end, i) => (i % 2 === 0 ? [[end, ends[i + 1]]] : []));
+  drawHalo(context, bands, colour);
 }
 
 function path(context, at) {

@@ -1,13 +1,17 @@
 // The body in 3D on the floor of the play area, with the cameras. World: +Y up, metres.
 // Turned by dragging (mouse, pen, one finger) and by the arrow keys; nearer by wheel, two fingers, + and -.
 
+import { drawHalo } from "./halo.js";
+
 const FLOOR_M = 2; // half of the grid
 const LOOK_AT_M = [0, 0.9, 0];
 const FIELD_OF_VIEW = 0.75; // rad
 const KEY_TURN = 0.12; // rad
 const NEAREST_M = 1.5;
 const FARTHEST_M = 20;
-const SURE = 0.35; // as wizard/bone_shapes.py: joints of less confidence are drawn as guesses
+// as wizard/bone_shapes.py
+const SURE = 0.35; // joints of less confidence are drawn as guesses, those of none not at all
+const WIDEST_M = 0.3; // of a halo: what is less certain is not known better for being drawn wider
 
 export class StickFigure {
   constructor(root) {
@@ -174,31 +178,48 @@ function drawCamera(pen, camera, colour) {
 }
 
 function drawBody(pen, body, parents, colour) {
-  const sure = body.tracking === "live" ? colour("shape-bone") : colour("shape-hint");
-  body.joints_m.forEach((joint, i) => {
-    const parent = parents[i];
-    line(pen, [joint[0], 0, joint[2]], [joint[0], 0, joint[2]], colour("line"), 6); // its shadow
-    if (parent === undefined || parent < 0) return;
-    const known = body.confidence[i] >= SURE;
-    line(pen, body.joints_m[parent], joint, known ? sure : colour("shape-hint"), known ? 5 : 2.5);
+  const [bone, hint] = [colour("shape-bone"), colour("shape-hint")];
+  const sure = body.tracking === "live" ? bone : hint;
+  const isKnown = (i) => body.confidence[i] > 0;
+  const lookOf = (i) => (body.confidence[i] >= SURE ? sure : hint);
+  const bones = parents.flatMap((parent, i) => (parent >= 0 && isKnown(i) && isKnown(parent) ? [[parent, i]] : []));
+  body.joints_m.forEach(([x, , z], i) => {
+    if (isKnown(i)) line(pen, [x, 0, z], [x, 0, z], colour("line"), 6); // its shadow
   });
-  const head = body.joints_m[parents.length > 5 ? 5 : 0]; // VRM order: the head is the sixth
-  const at = pen.see([head[0], head[1] + 0.09, head[2]]);
-  if (!at) return;
-  pen.context.strokeStyle = sure;
+  for (const look of new Set([hint, sure])) {
+    const ends = bones.filter(([, i]) => lookOf(i) === look).map((both) => both.map((i) => blurred(pen, body, i)));
+    drawHalo(pen.context, ends.filter(([from, to]) => from && to), look);
+  }
+  for (const [parent, i] of bones) {
+    const guessed = body.confidence[i] < SURE;
+    line(pen, body.joints_m[parent], body.joints_m[i], lookOf(i), guessed ? 2.5 : 5, guessed ? [4, 7] : []);
+  }
+  const top = parents.length > 5 ? 5 : 0; // VRM order: the head is the sixth
+  const [x, y, z] = body.joints_m[top];
+  const at = pen.see([x, y + 0.09, z]);
+  if (!at || !isKnown(top)) return;
+  pen.context.strokeStyle = lookOf(top);
   pen.context.lineWidth = 4 * pen.unit;
   pen.context.beginPath();
   pen.context.arc(at[0], at[1], 0.1 * at[2], 0, 2 * Math.PI);
   pen.context.stroke();
 }
 
-function line(pen, from, to, colour, width) {
+/** A joint on the canvas, with its uncertainty as a radius there; null before the eye's near plane. */
+function blurred(pen, body, i) {
+  const at = pen.see(body.joints_m[i]);
+  return at && [at[0], at[1], Math.min(body.uncertainty_m[i] ?? 0, WIDEST_M) * at[2]];
+}
+
+function line(pen, from, to, colour, width, dashes = []) {
   const [a, b] = [pen.see(from), pen.see(to)];
   if (!a || !b) return;
   pen.context.strokeStyle = colour;
   pen.context.lineWidth = width * pen.unit;
+  pen.context.setLineDash(dashes.map((length) => length * pen.unit));
   pen.context.beginPath();
   pen.context.moveTo(a[0], a[1]);
   pen.context.lineTo(b[0], b[1]);
   pen.context.stroke();
+  pen.context.setLineDash([]);
 }

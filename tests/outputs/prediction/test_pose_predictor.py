@@ -10,7 +10,7 @@ import pytest
 from mocapd.body.bones import PARENT_OF
 from mocapd.outputs.prediction.pose_predictor import MOST_AHEAD_S, PosePredictor
 from mocapd.outputs.wire import Joint, SkeletonFrame
-from tests.outputs.frames import small_frame
+from tests.outputs.frames import small_frame, whole_frame
 from tests.outputs.prediction.moving import UNIX_NS, distance_m, frame_at, swinging, walking
 
 AHEAD_S = 0.033
@@ -177,6 +177,13 @@ def test_numbers_that_are_none_stay_in_their_frame(number: float) -> None:
     truth = frame_at(11 / 30.0 + AHEAD_S, swinging, walking)
     for hand in HANDS:
         assert distance_m(found, truth, hand) < distance_m(frames[-1], truth, hand)
+
+
+def test_each_joint_keeps_how_certain_it_is() -> None:
+    frame = whole_frame()
+    found = there(told([frame]), after(frame, 0.03))
+    for name, joint in frame.joints.items():
+        assert (found.joints[name].c, found.joints[name].u) == (joint.c, joint.u)
 
 
 def test_two_bones_are_enough() -> None:

@@ -1,0 +1,79 @@
+"""How far each joint may be from where it is told: what one frame's pictures leave open of the pose, at the joints."""
+
+from functools import cache
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import PoseSpace
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.joint_uncertainty_kernels import (
+    add_unmodelled_turns,
+    joint_jacobian,
+    place_variances,
+)
+from mocapd.types import Floats
+
+_NECK_SD_RAD = 0.3  # people nod and look about, and a shirt does not tell
+# Of the evidence's information: as measured on recordings with known truth, errors of a pixel last and are shared
+_WITNESSED = 0.5
+_LEAST_M = 0.005  # nobody's joints are known better: proportions, and where in the flesh a joint is
+
+
+def pose_covariance(model: BodyModel, H: Floats) -> Floats:
+    """Of a pose step (n_pose,n_pose), from the information H (P,P) of one frame's evidence, the pose's first.
+
+    Not the covariance that a fit begins its next prediction with, which counts the frames before as witnesses of
+    their own: folds, proportions and lenses are as wrong in each of them, and an arm that is hidden is not better
+    known for having been guessed before. Where a picture tells nothing any usual pose is possible.
+    """
+    n = model.n_pose
+    information = _WITNESSED * H[:n, :n]
+    information[np.diag_indices(n)] += _usual_information(model.space)
+    return np.asarray(np.linalg.inv(information), dtype=np.float64)
+
+
+def joint_uncertainty_m(
+    model: BodyModel, joints_m: Floats, global_xyzw: Floats, covariance: Floats
+) -> Floats:
+    """One standard deviation of each joint's place (J,) [m]: the root mean square over the world's axes.
+
+    So the covariance of a joint has the trace of this squared times the identity, and the distance from its true
+    place is sqrt(3) times this, root mean square. joints_m (J,3), global_xyzw (J,4): a posed body of the model;
+    covariance (n_pose,n_pose): of its pose step. Joints below bones that the model's pose space does not move are
+    inf, but for the head, whose neck turns only so far.
+    """
+    jacobian = joint_jacobian_m(model, joints_m, global_xyzw)
+    variances = np.empty(N_JOINTS)
+    place_variances(jacobian, covariance, variances)
+    add_unmodelled_turns(model.parents, model.group_of_joint, _turn_sd(), joints_m, variances)
+    uncertainty_m: Floats = np.sqrt(np.maximum(variances, 0.0) / 3.0 + _LEAST_M**2)
+    return uncertainty_m
+
+
+def joint_jacobian_m(model: BodyModel, joints_m: Floats, global_xyzw: Floats) -> Floats:
+    """Derivative (J,3,n_pose) of the joint centres by a pose step: metres per metre and per radian."""
+    out = np.empty((N_JOINTS, 3, model.n_pose))
+    joint_jacobian(
+        model.parents, model.group_of_joint, model.share_of_joint, global_xyzw, joints_m, out
+    )
+    return out
+
+
+@cache
+def _usual_information(space: PoseSpace) -> Floats:
+    """(n_pose,) of people who stand somewhere in the play area, in poses as people take them."""
+    collar = (0.2, 0.2, 0.2)
+    sd_rad = space.by_group(
+        {"spine": (0.4, 0.4, 0.4), "leftShoulder": collar, "rightShoulder": collar}, 1.0
+    )
+    information: Floats = 1.0 / np.concatenate([np.ones(3), sd_rad]) ** 2
+    return information
+
+
+@cache
+def _turn_sd() -> Floats:
+    """(J,) of bones without parameters, about each axis [rad]."""
+    sd = np.full(N_JOINTS, np.inf)
+    sd[INDEX["neck"]] = _NECK_SD_RAD
+    return sd
