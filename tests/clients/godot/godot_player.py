@@ -45,5 +45,6 @@ def play(streams: dict[str, Stream], folder: Path) -> dict[str, Any]:
     assert run.returncode == 0, said
     assert "SCRIPT ERROR" not in said, said
     assert "Parse Error" not in said, said
-    played: dict[str, Any] = json.loads((folder / "played.json").read_text())
+    # not strict: Godot 3 leaves control characters in names, which come with changed bytes too
+    played: dict[str, Any] = json.loads((folder / "played.json").read_text(), strict=False)
     return played

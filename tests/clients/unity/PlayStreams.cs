@@ -45,17 +45,13 @@ namespace Mocapd.Tests
             Console.WriteLine("{" + string.Join(",", told) + "}");
         }
 
-        public static string Json(string text) => "\"" + string.Concat(text.Select(Escaped)) + "\"";
+        public static string Json(string text) => "\"" + text.Replace("\\", "\\\\").Replace("\"", "\\\"") + "\"";
 
         public static string Json(bool value) => value ? "true" : "false";
 
         public static string Json(float x, float y, float z) => "[" + Json(x) + "," + Json(y) + "," + Json(z) + "]";
 
         public static string Json(float value) => value.ToString("R", CultureInfo.InvariantCulture);
-
-        // Names come with changed bytes too: JSON has no control characters.
-        private static string Escaped(char one) =>
-            one < ' ' || one == '"' || one == '\\' ? "\\u" + ((int)one).ToString("x4", CultureInfo.InvariantCulture) : one.ToString();
 
         public static bool Eventually(Func<bool> holds)
         {

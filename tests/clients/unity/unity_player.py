@@ -39,7 +39,8 @@ def play(streams: dict[str, Stream], folder: Path) -> dict[str, Any]:
     (folder / "streams.txt").write_text("\n".join(lines) + "\n")
     port = free_port(socket.SOCK_DGRAM)
     command = ["mono", "--debug", str(program), str(folder / "streams.txt"), str(port)]
-    played: dict[str, Any] = json.loads(_run(command, folder))
+    # not strict: the player leaves control characters in names, which come with changed bytes too
+    played: dict[str, Any] = json.loads(_run(command, folder), strict=False)
     return played
 
 
