@@ -50,7 +50,7 @@ class MotionPriorParams:
 
     calm_m: float = 0.003
     calm_rad: float = 0.01
-    calm_gain: float = 3.0
+    calm_gain: float = 2.0
     hidden_sd_rad: float = 0.06  # of an arm that no picture confirms
 
 
@@ -62,9 +62,6 @@ class LimbSearchParams:
     arm_cloud: int = 64  # tries about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
     arm_fits: int = 2  # of which so many are fitted
-    arm_kept: int = 24  # that did best are tried again in the next frame
-    memory: float = 0.6  # share of what was seen of them before, in what is believed of them now
-    new_px: float = 10.0  # how much more must be seen of a pose that was not tried before [work px]
     farther_px: float = (
         5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]
     )

@@ -180,17 +180,8 @@ def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
     return out
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Hypotheses:
-    """Poses local_xyzw (N,3,4) of one arm that did well in the last frames, best first; scores (1 + N,): of the pose that
-    is held and of those, averaged over the frames [work px]."""
-
-    local_xyzw: Floats
-    scores: Floats
-
-
 class ArmSearch:
-    """Tries other poses of arms that the pictures do not confirm."""
+    """Tries other poses of arms that the pictures do not confirm"""
 
     def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
         self.fitter, self.params = fitter, params
@@ -199,12 +190,7 @@ class ArmSearch:
         u = _halton(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
         self._usual = arm_motions()
-        self._kept: dict[str, _Hypotheses] = {}
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
-
-    def reset(self) -> None:
-        """Forget what was tried before."""
-        self._kept.clear()
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
         """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
@@ -224,7 +210,6 @@ class ArmSearch:
         """
         p = self.params
         changed = []
-        kept, self._kept = self._kept, {}
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
@@ -232,36 +217,30 @@ class ArmSearch:
                 self.fitter, fit.state, arm, views,
                 _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
             )  # fmt: skip
-            n_new = len(tries)
-            if side in kept:
-                tries = np.concatenate([tries, kept[side].local_xyzw])
             scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px)
             scores -= p.unusual_px * unusualness(tries, self._usual[side])
-            scores[1:n_new] -= p.new_px
-            if side in kept:
-                last = kept[side]
-                scores[n_new:] += p.memory * (last.scores[1:] - scores[n_new:])
-                scores[0] += p.memory * (last.scores[0] - scores[0])
-            order = best_arm_poses(tries, scores, p.arm_kept)
-            self._kept[side] = _Hypotheses(tries[order], scores[[0, *order]])
-            here = fit.state.local_xyzw[arm.chain[:3]]
-            unusual = p.unusual_cost * float(unusualness(here[None], self._usual[side])[0])
-            best, least = fit, fit.cost + unusual - p.arm_gain
-            for n in order[: p.arm_fits]:
+            here = tries[0]
+            best, least = fit, fit.cost + self._price(side, here, here) - p.arm_gain
+            for n in best_arm_poses(tries, scores, p.arm_fits):
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
                 state = replace(fit.state, local_xyzw=local)
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
                 there = other.state.local_xyzw[arm.chain[:3]]
-                cost = other.cost + p.farther_px * float(_turned_rad2(there[None], here)[0])
-                cost += p.unusual_cost * float(unusualness(there[None], self._usual[side])[0])
+                cost = other.cost + self._price(side, there, here)
                 if cost < least:
                     best, least = other, cost
             if best is not fit:
-                self._kept.pop(side)
                 fit = best
                 changed.append(side)
         return fit, tuple(changed)
+
+    def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
+        """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""
+        p = self.params
+        unusual = float(unusualness(there_xyzw[None], self._usual[side])[0])
+        turned_rad2 = float(_turned_rad2(there_xyzw[None], here_xyzw)[0])
+        return p.unusual_cost * unusual + p.farther_px * turned_rad2
 
 
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:

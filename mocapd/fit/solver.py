@@ -131,12 +131,6 @@ class Fitter:
         ]
         self._rows = [CameraRows(model) for _ in cameras]
         self.arms = arm_chains(model)
-        self._joints_of = PosedJoints(
-            model.rest_m,
-            np.empty((N_JOINTS, 3, 3)),
-            np.empty((N_JOINTS, 3)),
-            np.empty((N_JOINTS, 4)),
-        )
         self._plain_arms = plain(self.arms)
         self._hull = TorsoHull.of(model)
         self._torso: tuple[Shaped, TorsoSlices] | None = None
@@ -165,9 +159,10 @@ class Fitter:
 
     def torso(self, body: Shaped) -> TorsoSlices:
         """The trunk of a body, for collisions."""
-        if self._torso is None or self._torso[0] is not body:
-            self._torso = body, self._hull.sized(body)
-        return self._torso[1]
+        known = self._torso
+        if known is None or known[0] is not body:
+            known = self._torso = body, self._hull.sized(body)
+        return known[1]
 
     def fit(
         self,
@@ -258,15 +253,10 @@ class Fitter:
 
     def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
         """At the frame set's own instant."""
-        posed = self._joints_of._replace(rest=body.rest)
+        R, joints = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3))
+        posed = PosedJoints(body.rest, R, joints, np.empty((N_JOINTS, 4)))
         forward_kinematics(
-            self.model.parents,
-            body.rest,
-            state.root_m,
-            state.local_xyzw,
-            posed.R,
-            posed.joints,
-            posed.quats,
+            self.model.parents, body.rest, state.root_m, state.local_xyzw, R, joints, posed.quats
         )
         return posed
 

@@ -80,7 +80,9 @@ def test_a_step_leads_out() -> None:
         forward_kinematics(MODEL.parents, BODY.rest, root, local, R, joints, quats)
         H, b = np.eye(MODEL.n_pose) * 0.01, np.zeros(MODEL.n_pose)
         push_arms_out(R, joints, MODEL.parents, plain(TORSO), plain(ARMS), 1.0, H, b)
-        root, local = stepped(MODEL, root, local, np.asarray(np.linalg.solve(H, b), dtype=np.float64))
+        root, local = stepped(
+            MODEL, root, local, np.asarray(np.linalg.solve(H, b), dtype=np.float64)
+        )
     assert depth_and_rows(root, local)[0] < 0.1 * before
 
 

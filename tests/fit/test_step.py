@@ -6,8 +6,12 @@ import numpy as np
 
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import View
 from mocapd.geometry import rotations
 from tests.fit.synthetic import fitter, standing
+
+_NO_PIXEL = np.zeros((120, 160), np.uint8)
+NOTHING_SEEN = View(0, (80, 60, 240, 180), _NO_PIXEL, _NO_PIXEL, 0.0)  # nor denied
 
 
 def leaning(pitch_rad: float, roll_rad: float, yaw_rad: float) -> MotionState:
@@ -23,11 +27,11 @@ def lean_rad(state: MotionState) -> float:
     return float(np.arccos(np.clip(up[1], -1.0, 1.0)))
 
 
-def test_nobody_seen_stands_up_slowly_and_does_not_turn() -> None:
+def test_before_one_camera_a_body_of_which_nothing_is_seen_stands_up_slowly() -> None:
     by = fitter(1, FitParams(tilt_sd_rad=0.25))
     for yaw_rad in (0.0, 1.2, -2.5):
         before = leaning(0.3, -0.2, yaw_rad)
-        after = by.fit(before, [], 1 / 30, 1, learn_shape=False).state
+        after = by.fit(before, [NOTHING_SEEN], 1 / 30, 1, learn_shape=False).state
         assert lean_rad(after) < lean_rad(before) - 0.01
         turned = rotations.log(
             rotations.multiply(after.local_xyzw[0], rotations.inverse(before.local_xyzw[0]))

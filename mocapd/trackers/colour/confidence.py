@@ -1,4 +1,4 @@
-"""How far each joint may be believed: from the share of the shirt around it that the pictures confirm."""
+"""How far each joint may be believed: how much of the shirt around it the pictures confirm, and how well they place it."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from mocapd.trackers.tracking_state import FADE_S
 from mocapd.types import Floats
 
 _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
-_ONE_CAMERA = 0.7  # one view knows directions, not depth
+_HALF_M = 0.05  # an uncertainty that halves it; so chosen that errors fall from each tenth to the next (docs/evaluation.md)
 _BELOW = 0.5  # what the shirt tells of head and legs
 
 _UPPER_TORSO = tuple(patch for patch in TORSO_PATCHES if "UPPER" in patch.name)
@@ -49,10 +49,14 @@ def _patches_of_joints() -> Floats:
 _PATCHES = _patches_of_joints()
 
 
-def joint_confidence(fit: Fit | None, n_cameras: int, away_s: float) -> Floats:
-    """(J,) in 0..1: confirmed share times how much of it is seen, fading while there is no evidence.
+def joint_confidence(
+    fit: Fit | None, n_cameras: int, uncertainty_m: Floats, away_s: float
+) -> Floats:
+    """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
+    there is no evidence.
 
-    A hidden arm is near 0, whatever pose the prior gives it. away_s: since the last evidence [s].
+    A hidden arm is near 0, whatever pose the prior gives it; what one camera sees loses by its depth. uncertainty_m (J,):
+    one standard deviation of each place; away_s: since the last evidence [s].
     """
     if fit is None:
         return np.zeros(N_JOINTS)
@@ -61,8 +65,7 @@ def joint_confidence(fit: Fit | None, n_cameras: int, away_s: float) -> Floats:
     share = matched / np.maximum(asked, 1.0)
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
     out = np.minimum(1.25 * share, 1.0) * enough
+    out /= 1.0 + (uncertainty_m / _HALF_M) ** 2
     for name, source in _FOLLOWS.items():
         out[INDEX[name]] = _BELOW * out[INDEX[source]]
-    if n_cameras < 2:
-        out *= _ONE_CAMERA
     return np.asarray(out * np.exp(-away_s / FADE_S))

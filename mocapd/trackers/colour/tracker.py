@@ -114,7 +114,6 @@ class ColourTracker:
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, light and background. near: a body to be looked for where it is, before everywhere."""
         self._segmenters.reset()
-        self._arms.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
         self._near = near
@@ -356,11 +355,11 @@ class ColourTracker:
             root, local = blended(state.root_m, state.local_xyzw, known.left)
             state = replace(state, root_m=root, local_xyzw=local)
         joints, globals_ = self._fitter.joints(state)
-        confidence = joint_confidence(known.fit, len(known.cameras), away_s)
         model = self._fitter.model
         uncertainty_m = joint_uncertainty_m(
             model, joints, globals_, pose_covariance(model, known.fit.H)
         )
+        confidence = joint_confidence(known.fit, len(known.cameras), uncertainty_m, away_s)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
