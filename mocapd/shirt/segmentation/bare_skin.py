@@ -24,7 +24,8 @@ _SEEN_PX = 30.0  # before it is believed
 _RED = (0.36, 0.62)  # share of red, and of green, of skin in white-balanced light
 _GREEN = (0.22, 0.36)
 _DARK = 0.08  # brightness below which shares mean nothing, 0..1
-_NOWHERE = 1e4  # standard deviations
+NOWHERE: Singles = np.zeros((3, 4), np.float32)  # an affine that no pixel is near to
+NOWHERE[0, 3] = 1e4
 
 
 def face_disc(
@@ -83,14 +84,14 @@ def learned(sums: Floats, seen: Floats, dt_s: float, memory_s: float) -> Floats:
 
 def whitening(sums: Floats, cloth_sd: float, noise_sd: float, shading_sd: float) -> Singles:
     """affine (3,4) for `classify`, of skin; far from every pixel while it is not known."""
-    out = np.zeros((1, 3, 4), np.float32)
-    out[0, 0, 3] = _NOWHERE
-    if sums[0] >= _SEEN_PX:
-        mean, covariance = np.empty((1, 3)), np.empty((1, 3, 3))
-        kernels.gaussians(
-            np.eye(3), np.zeros((1, 4)), 1.0, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)),
-            cloth_sd, noise_sd, shading_sd, mean, covariance,
-        )  # fmt: skip
-        kernels.whitening(mean, covariance, out)
+    if sums[0] < _SEEN_PX:
+        return NOWHERE
+    mean, covariance = np.empty((1, 3)), np.empty((1, 3, 3))
+    kernels.gaussians(
+        np.eye(3), np.zeros((1, 4)), 1.0, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)),
+        cloth_sd, noise_sd, shading_sd, mean, covariance,
+    )  # fmt: skip
+    out = np.empty((1, 3, 4), np.float32)
+    kernels.whitening(mean, covariance, out)
     affine: Singles = out[0]
     return affine

@@ -30,7 +30,7 @@ from mocapd.shirt.segmentation.segmentation_kernels import (
     count_colours,
 )
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
-from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.types import Bytes, Camera, Floats, Ints, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background
 
@@ -57,6 +57,7 @@ class Memory:
     shirt_count: NDArray[np.float32]
     other_count: NDArray[np.float32]
     skin: Floats = field(default_factory=lambda: np.zeros(4))  # see `bare_skin.statistics`
+    skin_affine: Singles = field(default_factory=lambda: bare_skin.NOWHERE)
     usual: float = 0.0  # share of the rendered shirt that is usually classified
     looks: int = 0
 
@@ -192,7 +193,7 @@ class CameraSegmenter:
         )  # fmt: skip
         classify(
             self.picture, roi[0], roi[1], distance, looks.whitening(mean, covariance),
-            bare_skin.whitening(memory.skin, p.cloth_sd, p.noise_sd, p.shading_sd),
+            memory.skin_affine,
             plain(learned), plain(weights), ids, pixel_weight,
         )  # fmt: skip
         return ids, pixel_weight
@@ -236,13 +237,21 @@ class CameraSegmenter:
                 self.picture, roi[0], roi[1], memory.body, final, ids, pixel_weight,
                 memory.shirt_count, memory.other_count,
             )  # fmt: skip
-        if sure and face is not None and memory.looks % _SKIN_EVERY == 0:
+        if sure and face is not None:
             seen = bare_skin.statistics(self.picture, final, roi[:2], face, W)
             memory.skin = bare_skin.learned(memory.skin, seen, _SKIN_EVERY * dt_s, p.skin_memory_s)
+            memory.skin_affine = bare_skin.whitening(
+                memory.skin, p.cloth_sd, p.noise_sd, p.shading_sd
+            )
         if memory.looks % 8 == 0:
             keep = np.float32(np.exp(-8 * dt_s / p.count_memory_s))
             memory.shirt_count *= keep
             memory.other_count *= keep
+
+    @property
+    def is_due_for_skin(self) -> bool:
+        """Whether a face is to be looked at in this frame."""
+        return self.memory.looks % _SKIN_EVERY == 0
 
     def mark_body(self, final: Ids | None, roi: Roi) -> None:
         """Where the body is now, so that it is not learned as background; None: nobody is known."""

@@ -86,9 +86,14 @@ class RigSegmenter:
             else:
                 final = drawing.last(view.roi)[0]
             segmenter.mark_body(final, view.roi)
-            face = face_disc(
-                segmenter.camera, drawing.posed, self._fitter.model.stature_m, segmenter.image_scale
-            )
+            face = None
+            if sure and segmenter.is_due_for_skin:
+                face = face_disc(
+                    segmenter.camera,
+                    drawing.posed,
+                    self._fitter.model.stature_m,
+                    segmenter.image_scale,
+                )
             segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
