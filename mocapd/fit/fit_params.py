@@ -13,7 +13,7 @@ class FitParams:
 
     # alignment
     iterations: int = 4
-    first_radius_px: int = 20  # search radius of the first and the last iteration [work px]
+    first_radius_px: int = 14  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
     fine_iterations: int = (
         2  # the last ones, at all work pixels; the others at every second each way
