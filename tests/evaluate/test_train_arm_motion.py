@@ -55,6 +55,6 @@ def test_mean_and_spread_of_clips_are_written(tmp_path: Path) -> None:
     assert rotations.angle_rad(upper, rotations.exp(HANGING)) < 0.05
     sd = np.sqrt(np.diag(trained["covariance_rad2"]))
     # of a sine, and what is added for what clips do not tell
-    assert abs(sd[3] - np.sqrt(0.5 * (0.09 + 0.25) / 2 + 0.01)) < 0.03
-    assert sd[4] < 0.15
-    assert sd[6:].max() < 0.15  # the elbow is stiff
+    assert abs(sd[3] - np.sqrt(0.5 * (0.09 + 0.25) / 2 + 0.04)) < 0.02
+    assert sd[4] < 0.25
+    assert sd[7:].max() < 0.3  # the elbow is stiff, its twist is not believed
