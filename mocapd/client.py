@@ -26,7 +26,7 @@ from mocapd.outputs import wire
 from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
+from mocapd.outputs.zenoh.zenoh_calls import hold_session, zenoh_call
 from mocapd.outputs.zenoh.zenoh_client_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
@@ -152,6 +152,7 @@ class Client:
             self._subscriber = self._opened.enter_context(
                 self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(_KEPT))
             )
+            hold_session(self._session, self._subscriber, owner=self)
         self._rest_key = link.rest_key
         self._predictor: PosePredictor | None = None  # from the first `predict` on
         # a thread left waiting in Zenoh would abort the interpreter's exit
@@ -327,6 +328,7 @@ def _attempt(link: Link) -> zenoh.Session:
     )
     try:
         session = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
+        hold_session(session)
     except zenoh.ZError as error:
         raise UnavailableError(
             f"no mocapd at {link.endpoint}",

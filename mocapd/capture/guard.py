@@ -6,7 +6,6 @@ out.
 """
 
 import threading
-from types import TracebackType
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
@@ -42,12 +41,7 @@ class GuardedCapture:
         self._inside.acquire()
         return self._capture
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._inside.release()
         if self._closing:  # asked for while we were inside
             self._release_if_free()

@@ -2,7 +2,6 @@
 
 import gc
 import threading
-from types import TracebackType
 
 from mocapd.clock import NS_PER_S
 
@@ -34,12 +33,7 @@ class IdleCollection:
             gc.disable()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with self._lock:
             IdleCollection._inside -= 1
             if not IdleCollection._inside:

@@ -28,7 +28,6 @@ from tests.wizard.wearer import FPS_HZ, SimulatedWearer, wearer
 
 pytestmark = pytest.mark.kernels
 
-PATIENT = BodyObservationParams(patience_s=600.0)  # with a busy machine
 ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "LowerArm", "Hand")]
 
 
@@ -86,7 +85,7 @@ def measured(
         known = calibration_of(replace(draft, factors=None)).assuming(1.75)
         return ReadyTracker(build_colour_tracker(known, database), known_shape(known))
 
-    step = BodyStep(context, make, PATIENT)
+    step = BodyStep(context, make)
     step.enter()
     do(step, "stature", {"m": m})
     do(step, "measure", {})

@@ -21,6 +21,7 @@ from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.evaluate.bench.bench_outputs import RATE_HZ, STATURE_M, moving_frames
 from mocapd.evaluate.bench.bench_subscriber import Subscriber
+from mocapd.evaluate.bench.free_port import free_port
 from mocapd.evaluate.tables import number, table
 from mocapd.outputs.base import Sink
 from mocapd.outputs.from_skeleton import rest_skeleton
@@ -65,7 +66,7 @@ def deliver(seconds: float) -> DeliveryTimes:
         silent = [
             opened.enter_context(_bound()) for _ in range(2)
         ]  # never read: the system drops what is too much
-        zenoh_port, osc_port = _free_ports()
+        zenoh_port, osc_port = free_port(socket.SOCK_STREAM), free_port(socket.SOCK_DGRAM)
         sinks = build_sinks(
             {
                 "zenoh": ZenohSection(port=zenoh_port),
@@ -184,13 +185,6 @@ def _bound(port: int = 0) -> socket.socket:
 
 def _address(one: socket.socket) -> str:
     return f"127.0.0.1:{one.getsockname()[1]}"
-
-
-def _free_ports() -> tuple[int, int]:
-    """One of TCP, one of UDP, that nobody has at this moment."""
-    with socket.socket() as tcp, _bound() as udp:
-        tcp.bind(("127.0.0.1", 0))
-        return tcp.getsockname()[1], udp.getsockname()[1]
 
 
 def main() -> None:

@@ -20,6 +20,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns, seconds
 from mocapd.errors import UnavailableError
 from mocapd.evaluate.bench.bench_step import BYTES_PER_MB
 from mocapd.evaluate.bench.bench_subscriber import Heard, Subscriber
+from mocapd.evaluate.bench.free_port import free_port
 from mocapd.outputs.messages import Health
 from mocapd.types import Floats
 
@@ -87,7 +88,7 @@ def bench_live(
         runtime_dir = Path(opened.enter_context(tempfile.TemporaryDirectory()))
         osc = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         osc.bind(("127.0.0.1", 0))  # somebody listens; what is not read the system discards
-        endpoint = f"127.0.0.1:{_free_port()}"
+        endpoint = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
         started_ns = monotonic_ns()
         daemon = opened.enter_context(
             _running([
@@ -201,9 +202,3 @@ def _watch(process: psutil.Process, daemon: subprocess.Popen[bytes], duration_s:
 def _cpu_s(process: psutil.Process) -> float:
     times = process.cpu_times()
     return float(times.user + times.system)
-
-
-def _free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as one:
-        one.bind(("127.0.0.1", 0))
-        return int(one.getsockname()[1])

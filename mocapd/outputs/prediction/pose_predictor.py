@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import msgspec
 
 from mocapd.body.bones import NAMES, PARENT_OF
-from mocapd.outputs.prediction import quaternions
-from mocapd.outputs.prediction.quaternions import Quaternion, Vector
+from mocapd.outputs import quaternions
 from mocapd.outputs.prediction.trend import WINDOW_S, step_shares
-from mocapd.outputs.wire import Joint, SkeletonFrame
+from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 
 MOST_AHEAD_S = 0.1  # farther than that nobody can tell [s]
 

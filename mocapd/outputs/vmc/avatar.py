@@ -3,12 +3,12 @@
 from dataclasses import dataclass, replace
 
 from mocapd.outputs.messages import RestSkeleton
+from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.vmc.bone_names import other_side
 from mocapd.outputs.wire import Quaternion, Vector
 
 Row = tuple[float, float, float, float]
 
-_STRAIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
 _SAME_AXES: tuple[Row, Row, Row] = (
     (1.0, 0.0, 0.0, 0.0),
     (0.0, 1.0, 0.0, 0.0),
@@ -39,7 +39,7 @@ class Avatar:
 
 def wearer_avatar(rest: RestSkeleton) -> Avatar:
     """The wearer's own bones: straight in the T-pose, nothing between them."""
-    straight = (_STRAIGHT,) * len(rest.names)
+    straight = (IDENTITY_XYZW,) * len(rest.names)
     return Avatar(
         rest.names,
         rest.parents,

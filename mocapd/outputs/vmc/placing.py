@@ -12,13 +12,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mocapd.outputs.prediction.quaternions import inverse, multiply
+from mocapd.outputs.quaternions import IDENTITY_XYZW, inverse, multiply
 from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.outputs.wire import Quaternion, Vector
 
 Numbers = tuple[float, float, float, float, float, float, float]  # position [m] and quaternion xyzw
-
-_NONE: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +38,7 @@ def placing(turn_deg: float, yaw_deg: float, by_root: bool) -> Placing:
     """Both turns together, counter-clockwise seen from above. by_root: they and the way over the floor are the root's."""
     heading_rad = math.radians(turn_deg + yaw_deg)
     heading: Quaternion = (0.0, math.sin(0.5 * heading_rad), 0.0, math.cos(0.5 * heading_rad))
-    root, hips = (heading, _NONE) if by_root else (_NONE, heading)
+    root, hips = (heading, IDENTITY_XYZW) if by_root else (IDENTITY_XYZW, heading)
     return Placing(math.cos(heading_rad), math.sin(heading_rad), root, hips, by_root)
 
 

@@ -14,6 +14,7 @@ from mocapd.outputs.facing import SEEN_ABOVE, facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.prediction.prediction_params import PredictionParams, check_cap
+from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
 from mocapd.outputs.vrchat.confident_trackers import ConfidentTrackers
@@ -27,7 +28,6 @@ from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
 
 AUTO = "auto"
 HEAD_ON = "neck"  # the bone whose confidence tells how well the place of the head is known
-UPRIGHT_XYZW = (0.0, 0.0, 0.0, 1.0)
 
 _log = logging.getLogger(__name__)
 
@@ -128,7 +128,7 @@ class VRChatSink:
         if is_aligned:
             # level: VRChat takes its yaw
             half_forward = cos_sin(0.5 * self._alignment.forward_rad)
-            vectors[tracker_bundle.HEAD_ROTATION] = unity_euler_deg(UPRIGHT_XYZW, half_forward)
+            vectors[tracker_bundle.HEAD_ROTATION] = unity_euler_deg(IDENTITY_XYZW, half_forward)
         for one in trackers:
             place, rotation = joints[one.place].p, joints[one.turn].r
             vectors[tracker_bundle.position_address(one.number)] = unity_position(place, turn)

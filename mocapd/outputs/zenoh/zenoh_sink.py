@@ -20,9 +20,8 @@ from mocapd.outputs.zenoh.zenoh_open import open_session
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
 
-_HEARD_NS = (
-    NS_PER_S // 10
-)  # who was heard is taken to be for so long: to ask costs more than to send
+# Who was heard is taken to be for so long, as to ask costs more than to send [ns].
+_HEARD_NS = NS_PER_S // 10
 
 _log = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
-from mocapd.clock import monotonic_ns, nanoseconds
+from mocapd.clock import monotonic_ns, seconds
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.pipeline.collector import FrameCollector
@@ -21,6 +21,7 @@ from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObse
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
+from mocapd.wizard.patience import Patience
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 
@@ -68,8 +69,7 @@ def measure(
     ready = make_tracker(draft, cache_dir, tell)
     model = build_model(draft.stature_m)
     observations = BodyObservations(model, draft.rig.cameras, params)
-    give_up_ns = monotonic_ns() + nanoseconds(params.patience_s)
-    if not _watch(hub, draft.rig, ready, observations, watched, tell, give_up_ns):
+    if not _watch(hub, draft.rig, ready, observations, watched, tell, Patience(params.patience_s)):
         return None
     tell("working out the proportions", SEEN)
     fit = fit_shape(observations.observations, model, draft.rig.cameras)
@@ -111,7 +111,7 @@ def _watch(
     observations: BodyObservations,
     watched: BodyWatch,
     tell: Tell,
-    give_up_ns: int,
+    patience: Patience,
 ) -> bool:
     """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
@@ -122,19 +122,22 @@ def _watch(
         while observations.share < 1.0:
             if watched.stop.is_set():
                 return False
-            if monotonic_ns() > give_up_ns:
+            if patience.ended:
                 raise InputError(
                     f"the wearer was well seen for {observations.good_s:.0f} s only",
                     "body",
                     "check the colours, stand where all cameras see the whole shirt, and measure again",
                 )
+            began_ns = monotonic_ns()
             frames = collector.get(_TIMEOUT_S)
             if frames is None:
+                patience.looked(seconds(monotonic_ns() - began_ns), seen=False)
                 continue
             track = tracker.step(frames, shape)
             shape = track.shape
             watched.body = track.body, skeleton_of(shape)
             seen = observations.add(track, frames)
+            patience.looked(seconds(monotonic_ns() - began_ns), seen=seen)
             tell(_asked(seen, observations), READY + (SEEN - READY) * observations.share)
         return True
     finally:

@@ -21,7 +21,8 @@ _SIDES = [
 @dataclass(frozen=True, slots=True)
 class BodyObservationParams:
     """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
-    `longest_good_s` of them without bends; `patience_s`: by when they must have been seen."""
+    `longest_good_s` of them without bends; `patience_s`: how long in all the wearer may not be
+    well seen."""
 
     good_s: float = 4.5
     every_s: float = 0.15

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mocapd.geometry import rotations
-from mocapd.outputs.prediction import quaternions
+from mocapd.outputs import quaternions
 
 VECTORS = arrays(np.float64, 3, elements=st.floats(-1.8, 1.8))
 

@@ -2,9 +2,9 @@
 
 import math
 
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+from mocapd.outputs.wire import Quaternion, Vector
 
+IDENTITY_XYZW: Quaternion = (0.0, 0.0, 0.0, 1.0)
 _STRAIGHT = 1e-9  # a half turn's sine below which a rotation has no axis that could be told
 
 
