@@ -51,6 +51,7 @@ def form_of(spec: BoardSpec) -> dict[str, Json]:
         "dictionary": spec.dictionary,
         "inverted": spec.inverted,
         "legacy": spec.legacy,
+        "two_sided": spec.two_sided,
         "dictionaries": list(dictionaries()),
         "fewest": {kind.value: count for kind, count in FEWEST_SQUARES.items()},
         "most": MOST_SQUARES,

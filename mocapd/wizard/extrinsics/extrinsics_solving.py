@@ -9,6 +9,7 @@ from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     ContradictionError,
+    MirroredError,
     SceneExtrinsics,
     WorldExtrinsics,
     place_in_world,
@@ -19,6 +20,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
+from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
 from mocapd.wizard.board.sightings import Views
 from mocapd.wizard.draft import DraftCamera
@@ -45,14 +47,22 @@ def solve_live(
     `earlier`: indices of sightings from the step Lens. If they do not fit, the cameras
     may have been moved since, and it is solved without. Raises ConfigError.
     """
+    refusal: ContradictionError | None = None
     try:
         found = _solve(cameras, intrinsics_of, spec, views)
         if not earlier or _refused(found[0]) <= _MOST_REFUSED:
             return found
-    except ContradictionError:
+    except ContradictionError as error:
         if not earlier:
             raise
-    return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
+        refusal = error
+    try:
+        return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
+    except ConfigError:
+        # this step's own views may be too few to say it again
+        if isinstance(refusal, MirroredError):
+            raise refusal from None
+        raise
 
 
 def _solve(
