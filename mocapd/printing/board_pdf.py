@@ -270,7 +270,7 @@ def _write_on_back(canvas: Canvas, board: BoardSpec, layout: Layout, title: str)
     _write_title(canvas, board, layout, title, "Its crosses belong behind those of FRONT.")
     room_mm = layout.page_mm[0] - _EDGE_MM - x
     for line, below in zip(_GLUE, (4.8, 8.6), strict=True):
-        em_mm = min(2.4, room_mm / stringWidth(line, BOLD, 1.0))
+        em_mm = _fitting_mm(line, BOLD, 2.4, room_mm)
         write_text(canvas, (x, y - below), line, em_mm, font=BOLD)
 
 
@@ -281,7 +281,15 @@ def _write_title(canvas: Canvas, board: BoardSpec, layout: Layout, title: str, r
     write_text(canvas, (beside, y + 5.0), title, 3.4, font=BOLD)
     squares = f"{board.columns} x {board.rows} squares of {board.square_m * 1000:g} mm"
     markers = f"markers of {board.marker_m * 1000:g} mm, {board.dictionary}"
-    write_text(canvas, (beside, y + 1.4), [f"{squares}, {markers}", remark], 2.4)
+    lines = [f"{squares}, {markers}", remark]
+    room_mm = layout.page_mm[0] - _EDGE_MM - beside
+    em_mm = min(_fitting_mm(line, "Helvetica", 2.4, room_mm) for line in lines)
+    write_text(canvas, (beside, y + 1.4), lines, em_mm)
+
+
+def _fitting_mm(line: str, font: str, em_mm: float, room_mm: float) -> float:
+    """The font's em, smaller where the line has no room."""
+    return min(em_mm, room_mm / float(stringWidth(line, font, 1.0)))
 
 
 def _pages_mm(paper: str) -> tuple[Size, Size]:

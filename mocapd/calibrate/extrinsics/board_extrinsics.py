@@ -290,13 +290,6 @@ def _mirrored(told: Suspicion) -> MirroredError:
 
 
 def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams, spec: BoardSpec) -> None:
-    for name, fit in made.cameras.items():
-        if fit.focal_deviation > params.focal_deviation:
-            raise ConfigError(
-                f"the focal length is known to {100 * fit.focal_deviation:.1f} % only",
-                name,
-                "show the board nearer to this camera, and tilted by 30 degrees and more",
-            )
     far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
     if made.rms_px > params.rms_px or far:
         cm = (
@@ -311,3 +304,10 @@ def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams, spec: Boar
             "a picture, and see that frames of one index are of one moment"
             + (_SECOND_PAGE if spec.two_sided else ""),
         )
+    for name, fit in made.cameras.items():
+        if fit.focal_deviation > params.focal_deviation:
+            raise ConfigError(
+                f"the focal length is known to {100 * fit.focal_deviation:.1f} % only",
+                name,
+                "show the board nearer to this camera, and tilted by 30 degrees and more",
+            )
