@@ -57,6 +57,13 @@ def pictures(place: int) -> dict[str, Bytes]:
     }
 
 
+@cache
+def upside_down() -> dict[str, Bytes]:
+    """The board on the floor with its back up."""
+    R, t_m = turned_over(lying())
+    return {one.name: never_written(film(c).picture(R, t_m)) for c, one in enumerate(RIG)}
+
+
 class Around:
     """The step Room with a board of this kind, its lenses known."""
 
@@ -87,7 +94,10 @@ def test_cameras_all_around_are_found_and_a_back_glued_askew_is_told(tmp_path: P
     assert "the side that says FRONT up" in view.sentence
     assert "the board: the back of the board is not glued in register" in room.told()
     assert "mm to the right and" in room.told()
-    room.show([pictures(len(POSES))], 3.0)
+    room.show([upside_down()], 2.5)
+    assert room.step.view().state is StepState.FAILED
+    assert "the floor: the board lies there on its front: its back is up" in room.told()
+    room.show([{}, pictures(len(POSES))], 3.0)
     assert room.step.view().state is StepState.DONE, room.told()
     draft = room.context.draft
     assert draft.rig is not None

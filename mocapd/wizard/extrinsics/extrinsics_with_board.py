@@ -25,7 +25,12 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
+from mocapd.wizard.extrinsics.board_at_rest import (
+    LONG_NS,
+    BoardAtRest,
+    lies_on_its_face,
+    looks_like_floor,
+)
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
@@ -198,8 +203,12 @@ class ExtrinsicsWithBoard:
         self._rest.take(look, still)
         if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
             return
+        views = self._rest.views()
         try:
-            if looks_like_floor(self._extrinsics, self._rest.views()):
+            # with its back up it is refused with what is wrong
+            if looks_like_floor(self._extrinsics, views) or lies_on_its_face(
+                self._extrinsics, views
+            ):
                 self._lay_down()
         except ConfigError as error:
             self._refusal = Problem.of(error)
