@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.back_side import BackPrint, gluing_trouble
+from mocapd.calibrate.board.back_side import BackPrint, GluingPrior, gluing_trouble
 from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, Reason
 from mocapd.calibrate.board.detection_diagnostics import diagnose_detection
 from mocapd.calibrate.extrinsics.board_extrinsics import (
@@ -19,6 +19,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     place_in_world,
     solve_extrinsics,
 )
+from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration, calibrate_folder
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
@@ -59,9 +60,12 @@ def quiet(what: str, done: int, total: int) -> None:
 
 
 def solved(
-    views: dict[str, dict[int, BoardView]], spec: BoardSpec = SPEC, floor: int | None = HELD
+    views: dict[str, dict[int, BoardView]],
+    spec: BoardSpec = SPEC,
+    floor: int | None = HELD,
+    gluing: GluingPrior | None = None,
 ) -> WorldExtrinsics:
-    params = BoardExtrinsicsParams()
+    params = BoardExtrinsicsParams(bundle=BundleParams(gluing=gluing or GluingPrior()))
     sizes_px = [camera.size_px for camera in RIG]
     found = solve_extrinsics(NAMES, sizes_px, true_lenses(RIG), views, spec, params)
     return place_in_world(found, floor, "the floor", params)
@@ -197,12 +201,35 @@ def test_a_back_that_is_glued_askew_is_told_in_millimetres_and_does_no_harm() ->
     assert abs(scale) <= 0.005
 
 
+@pytest.mark.parametrize("thickness_m", [0.0, 0.005, 0.01])
+@pytest.mark.parametrize("askew", [False, True])
+def test_the_back_is_measured_since_a_thickness_or_gluing_taken_for_granted_costs_centimetres(
+    thickness_m: float, askew: bool
+) -> None:
+    board = replace(PRINT, thickness_m=thickness_m)
+    if not askew:
+        board = replace(board, back_shift_m=(0.0, 0.0), back_turn_rad=0.0)
+    views = views_of(RIG, POSES, board)
+    off_cm = {}
+    for how, mean_m in (("measured", None), ("thickness known", thickness_m), ("taken as 0", 0.0)):
+        known = None if mean_m is None else GluingPrior((0.0, 0.0, 0.0, mean_m), (1e-7,) * 4)
+        error_m, scale = off_m(RIG, solved(views, gluing=known).rig)
+        off_cm[how] = 100.0 * error_m.max()
+        glued = "1.4 mm askew" if askew else "in register"
+        told = f"{1000 * thickness_m:g} mm, {glued}, {how}"
+        print(f"{told}: within {off_cm[how]:.2f} cm, scale {100 * scale:+.2f} %")
+    assert off_cm["measured"] < 0.5
+    assert off_cm["measured"] < off_cm["thickness known"] + 0.05
+    if thickness_m > 0.0:
+        assert off_cm["taken as 0"] > 1.5
+
+
 def test_a_back_that_little_ties_to_the_front_is_called_so() -> None:
     """Two cameras face each other, three positions of the board between them, always the same side to each."""
     rig = (RIG[0], RIG[2])
-    both = ((i, *(view_of(c, pose, i) for c in rig)) for i, pose in enumerate(POSES[:HELD]))
-    shared = [(i, a, b) for i, a, b in both if a and b and b.back][:3]
-    views = {"cam0": {i: a for i, a, _ in shared}, "cam2": {i: b for i, _, b in shared}}
+    both = ((view_of(rig[0], pose, i), view_of(rig[1], pose, i)) for i, pose in enumerate(POSES))
+    shared = [(a, b) for a, b in both if a and b and b.back][:3]
+    views = {"cam0": {a.index: a for a, _ in shared}, "cam2": {b.index: b for _, b in shared}}
     params = BoardExtrinsicsParams()
     sizes_px = [camera.size_px for camera in rig]
     found = solve_extrinsics(list(views), sizes_px, true_lenses(rig), views, SPEC, params)

@@ -55,9 +55,9 @@ class BackPrint:
         return BackPrint(self.middle_m, self.offset + step)
 
 
-def usual_back(board_m: Floats) -> BackPrint:
+def usual_back(board_m: Floats, prior: GluingPrior | None = None) -> BackPrint:
     """As it is expected of a board with these corners (n,3)."""
-    return BackPrint(board_m.mean(axis=0), np.array(GluingPrior().mean))
+    return BackPrint(board_m.mean(axis=0), np.array((prior or GluingPrior()).mean))
 
 
 @dataclass(frozen=True, slots=True)

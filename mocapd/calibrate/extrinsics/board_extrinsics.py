@@ -122,7 +122,7 @@ def solve_extrinsics(
         suspicion = suspect(names, poses, board_m)
         if suspicion is not None:
             raise _mirrored(suspicion)
-    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m)
+    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
     seen = observations(names, trusted, indices, board_m)
     bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
     return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mocapd.calibrate.board.back_side import BackPrint, usual_back
+from mocapd.calibrate.board.back_side import BackPrint, GluingPrior, usual_back
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
@@ -27,6 +27,7 @@ def initial_scene(
     intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     board_m: Floats,
+    gluing: GluingPrior | None = None,
 ) -> tuple[ReprojectionProblem, list[int]]:
     """The scene in the first camera's frame, and the indices of its board positions.
 
@@ -34,7 +35,7 @@ def initial_scene(
     they are chained along the spanning tree of the pairs with the most shared positions. Raises
     ConfigError that names the cameras which share none with the others.
     """
-    back = usual_back(board_m)
+    back = usual_back(board_m, gluing)
     poses = {
         name: {
             index: camera_from_board(pose, back)
