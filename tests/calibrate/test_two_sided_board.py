@@ -13,13 +13,12 @@ from mocapd.calibrate.board.board_detection import BoardDetector, BoardView, Rea
 from mocapd.calibrate.board.detection_diagnostics import diagnose_detection
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
-    ContradictionError,
-    MirroredError,
     WorldExtrinsics,
     place_in_world,
     solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
+from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration, calibrate_folder
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
@@ -250,7 +249,7 @@ def test_of_two_against_two_both_are_named() -> None:
     views = views_of(RIG, POSES)
     for name in ("cam0", "cam3"):
         views[name] = mirrored(views[name])
-    with pytest.raises(MirroredError, match="or else of") as refused:
+    with pytest.raises(MirroredError, match="or else those of") as refused:
         solved(views)
     assert all(name in str(refused.value) for name in NAMES)
 

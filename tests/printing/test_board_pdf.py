@@ -6,13 +6,8 @@ import pytest
 
 from mocapd.calibration.board_spec import BoardSpec, aruco_board, corners_m
 from mocapd.errors import ConfigError
-from mocapd.printing.board_pdf import (
-    board_pdf,
-    fitted_board,
-    flags_of,
-    layout_behind,
-    layout_of,
-)
+from mocapd.printing.board_layout import fitted_board, layout_behind, layout_of
+from mocapd.printing.board_pdf import board_pdf, flags_of
 from mocapd.printing.paper_sizes import PAPERS_MM, RULER_MM
 from mocapd.types import Floats
 from tests.printing.printed import Print, keywords, pages, printed, text

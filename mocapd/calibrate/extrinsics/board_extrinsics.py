@@ -17,7 +17,8 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     with_steps,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust_bundle
-from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, Suspicion, suspect
+from mocapd.calibrate.extrinsics.contradictions import contradiction, mirrored
+from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, suspect
 from mocapd.calibrate.extrinsics.pose_graph import (
     camera_from_board,
     initial_scene,
@@ -37,16 +38,6 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_row
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
 from mocapd.types import Floats, Rig
-
-_SECOND_PAGE = "; the back of the board must be the second page, whose markers are mirrored"
-
-
-class ContradictionError(ConfigError):
-    """The views of the cameras do not fit together, whatever the extrinsics."""
-
-
-class MirroredError(ContradictionError):
-    """They would fit if the pictures of a camera, or the back of the board, were turned round."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +112,7 @@ def solve_extrinsics(
         poses = {name: seen_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
         suspicion = suspect(names, poses, board_m)
         if suspicion is not None:
-            raise _mirrored(suspicion)
+            raise mirrored(suspicion)
     scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
     seen = observations(names, trusted, indices, board_m)
     bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
@@ -273,37 +264,10 @@ def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
     )
 
 
-def _mirrored(told: Suspicion) -> MirroredError:
-    if told.upside_down:
-        return MirroredError(
-            "the back is upside down to the front, turned by 180 degrees",
-            "the board",
-            "glue it on so that each cross lies behind the cross with its own letter",
-        )
-    names = ", ".join(told.mirrored)
-    either = f", or else of {', '.join(told.others)}," if told.others else ""
-    return MirroredError(
-        f"the pictures{either} are mirrored: the others contradict them, and agree once they are turned round",
-        names,
-        "switch mirroring off in the camera or the recorder, and show the board anew, also for the lens",
-    )
-
-
 def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams, spec: BoardSpec) -> None:
     far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
     if made.rms_px > params.rms_px or far:
-        cm = (
-            ""
-            if made.play_area is None
-            else f", {made.play_area.median_cm:.1f} cm in the play area"
-        )
-        raise ContradictionError(
-            f"the cameras contradict each other: {made.rms_px:.2f} px{cm}",
-            "the room",
-            "hold the board still at each place, keep the cameras where they are, do not mirror "
-            "a picture, and see that frames of one index are of one moment"
-            + (_SECOND_PAGE if spec.two_sided else ""),
-        )
+        raise contradiction(made.rms_px, made.play_area, spec.two_sided)
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import msgspec
 
 from mocapd.calibration.board_spec import FEWEST_SQUARES, MOST_SQUARES, BoardSpec, dictionaries
-from mocapd.printing.board_pdf import fitted_board
+from mocapd.printing.board_layout import fitted_board
 from mocapd.wizard.intrinsics.intrinsics_verbs import Board
 from mocapd.wizard.step import Json
 

@@ -8,14 +8,13 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
-    ContradictionError,
-    MirroredError,
     SceneExtrinsics,
     WorldExtrinsics,
     place_in_world,
     solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
+from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views

@@ -9,13 +9,13 @@ from itertools import combinations
 
 from mocapd.calibrate.board.back_side import gluing_trouble
 from mocapd.calibrate.extrinsics.board_extrinsics import (
-    ContradictionError,
     SceneExtrinsics,
     WorldExtrinsics,
     lone_camera,
     place_in_world,
     with_board,
 )
+from mocapd.calibrate.extrinsics.contradictions import ContradictionError
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
