@@ -1,7 +1,7 @@
 """`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,7 @@ class FolderOptions:
     dictionary: str
     inverted: bool
     legacy: bool
+    two_sided: bool
     floor_frame: int | None
     strokes: Path | None
     as_json: bool
@@ -88,7 +89,7 @@ def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
     columns, rows = board_size(options.size)
     return options.out, BoardSpec(
         BoardKind(options.board), columns, rows, options.square_m, options.marker_m,
-        options.dictionary, options.inverted, options.legacy,
+        options.dictionary, options.inverted, options.legacy, options.two_sided,
     )  # fmt: skip
 
 
@@ -105,6 +106,7 @@ def _as_dict(found: "FolderCalibration") -> dict[str, object]:
                 "rms_px": round(one.rms_px, 4),
                 "held_out_px": round(one.held_out_px, 4),
                 "views": one.views,
+                "backs": one.backs,
                 "pictures": one.pictures,
                 "covered": round(one.covered, 3),
                 "delay_frames": round(one.delay_frames, 3),
@@ -120,7 +122,14 @@ def _as_dict(found: "FolderCalibration") -> dict[str, object]:
             }
             for name, one in found.cameras.items()
         },
-        "board": {"inverted": found.board.inverted, "legacy": found.board.legacy},
+        "board": {
+            "inverted": found.board.inverted,
+            "legacy": found.board.legacy,
+            "two_sided": found.board.two_sided,
+        },
+        "back": None
+        if found.gluing is None
+        else {name: round(value, 2) for name, value in asdict(found.gluing).items()},
         "notes": list(found.notes),
     }
 
@@ -132,6 +141,8 @@ def _as_text(found: "FolderCalibration", out: Path) -> str:
     lines += [
         f"{name}  {one.rms_px:.2f} px, {one.held_out_px:.2f} px held out, "
         f"{one.views} of {one.pictures} pictures"
+        + (f", {one.backs} of the board's back" if one.backs else "")
         for name, one in found.cameras.items()
     ]
+    lines += [] if found.gluing is None else [f"the back of the board lies {found.gluing}"]
     return "\n    ".join(lines)

@@ -39,10 +39,11 @@ class BoardSpec:
 
     `columns` and `rows` count squares, not inner corners. `marker_m` and `dictionary` matter to
     ChArUco only. `inverted`: white where other boards are black. `legacy`: the layout of OpenCV
-    before 4.6, which differs where `rows` is even.
+    before 4.6, which differs where `rows` is even. `two_sided`: the back bears the mirror image, so
+    that each corner has the same place on both sides.
 
-    The board's frame, seen from its printed side: x right along a row, y down, z into the board,
-    origin at the outer corner of the first square [m].
+    The board's frame, seen from its printed side, of two the one that is not mirrored: x right along a
+    row, y down, z into the board, origin at the outer corner of the first square [m].
     """
 
     kind: BoardKind
@@ -53,6 +54,7 @@ class BoardSpec:
     dictionary: str = "DICT_4X4_1000"
     inverted: bool = False
     legacy: bool = False
+    two_sided: bool = False
 
     def __post_init__(self) -> None:
         fewest = FEWEST_SQUARES[self.kind]
@@ -76,6 +78,12 @@ class BoardSpec:
                 "one of " + ", ".join(dictionaries()),
             )
         if self.kind is BoardKind.CHESSBOARD:
+            if self.two_sided:
+                raise ConfigError(
+                    "a plain chessboard looks the same from both sides",
+                    _WHERE,
+                    "take a ChArUco board, whose markers tell front from back",
+                )
             if not 0.0 <= self.marker_m < LARGEST_SQUARE_M:  # unused, but kept
                 raise ConfigError(
                     f"a marker of {self.marker_m:g} m", _WHERE, "leave it out for a chessboard"

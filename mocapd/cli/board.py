@@ -27,6 +27,13 @@ def board(
         str, typer.Option(help="OpenCV's name of the markers.")
     ] = "DICT_4X4_1000",
     inverted: Annotated[bool, typer.Option("--inverted", help="Light on dark.")] = False,
+    two_sided: Annotated[
+        bool,
+        typer.Option(
+            "--two-sided",
+            help="A second page, mirrored, for the back: cameras on both sides of the board see it at once.",
+        ),
+    ] = False,
 ) -> None:
     """Make a ChArUco calibration board to print.
 
@@ -35,13 +42,21 @@ def board(
     Example: mocapd board --out board.pdf --paper A4
     """
     from mocapd.calibration.board_spec import board_size as counts_of
-    from mocapd.printing.board_pdf import board_pdf, fitted_board, flags_of
+    from mocapd.printing.board_layout import fitted_board
+    from mocapd.printing.board_pdf import board_pdf, flags_of
     from mocapd.printing.paper_sizes import write_pdf
 
     columns, rows = counts_of(board_size)
     made = fitted_board(
-        paper, columns, rows, dictionary, inverted=inverted, square_m=square, marker_m=marker
-    )
+        paper, columns, rows, dictionary,
+        inverted=inverted, two_sided=two_sided, square_m=square, marker_m=marker,
+    )  # fmt: skip
     write_pdf(out, board_pdf(made, paper))
     print(flags_of(made))
-    typer.echo(f"{out}: print it at 100 % and glue it flat onto something stiff", err=True)
+    told = f"{out}: print it at 100 % and glue it flat onto something stiff"
+    if two_sided:
+        told += (
+            ", the page BACK on its other side: pins through the crosses of FRONT show where, each cross "
+            "on the one of its own letter"
+        )
+    typer.echo(told, err=True)

@@ -66,12 +66,16 @@ def calibrate(
     legacy: Annotated[
         bool, typer.Option("--legacy", help="The layout of OpenCV before 4.6.")
     ] = False,
+    two_sided: Annotated[
+        bool,
+        typer.Option("--two-sided", help="The back bears the mirror image; ChArUco only."),
+    ] = False,
     floor_frame: Annotated[
         int | None,
         typer.Option(
             min=0,
-            help="Index of a frame in which the board lies on the floor, printed side up: there "
-            "the world's origin is. Without it, up and floor are guessed.",
+            help="Index of a frame in which the board lies on the floor, printed side (of two: FRONT) up: "
+            "there the world's origin is. Without it, up and floor are guessed.",
         ),
     ] = None,
     strokes: Annotated[
@@ -106,7 +110,7 @@ def calibrate(
         from mocapd.app.folder_calibration_run import FolderOptions, calibrate_folder
 
         options = FolderOptions(
-            from_folder, out, size, square, board, marker, dictionary, inverted, legacy,
+            from_folder, out, size, square, board, marker, dictionary, inverted, legacy, two_sided,
             floor_frame, strokes, as_json,
         )  # fmt: skip
         calibrate_folder(options, effective)

@@ -53,6 +53,7 @@ class _View(Table, frozen=True):
     ids: tuple[Annotated[int, msgspec.Meta(ge=0, le=10_000)], ...]
     corners_px: tuple[tuple[Finite, Finite], ...]
     sharpness: Finite
+    back: bool = False
 
 
 class _Intrinsics(Table, frozen=True):
@@ -128,6 +129,7 @@ def kept_draft(draft: Draft) -> KeptDraft:
                     ids=view.ids.tolist(),
                     corners_px=view.corners_px.tolist(),
                     sharpness=view.sharpness,
+                    back=view.back,
                 )
                 for view in own.values()
             )
@@ -246,9 +248,8 @@ def draft_of(kept: KeptDraft, where: str) -> Draft:
 
 
 def _view(told: _View) -> BoardView:
-    return BoardView(
-        told.index, np.array(told.ids, np.int64), np.array(told.corners_px), told.sharpness
-    )
+    ids = np.array(told.ids, np.int64)
+    return BoardView(told.index, ids, np.array(told.corners_px), told.sharpness, told.back)
 
 
 def _read_intrinsics(told: _Intrinsics) -> Intrinsics:

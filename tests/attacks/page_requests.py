@@ -38,7 +38,7 @@ _COMMANDS = (
     {"verb": "same_port", "args": {"camera": "cam0", "same": True}},
     {"verb": "board", "args": {
         "kind": "chessboard", "columns": 5, "rows": 4, "square_mm": 30, "marker_mm": 20,
-        "dictionary": "DICT_4X4_1000", "inverted": False, "legacy": False,
+        "dictionary": "DICT_4X4_1000", "inverted": False, "legacy": False, "two_sided": False,
     }},
     {"verb": "ruler", "args": {"mm": 100}},
     {"verb": "use_saved", "args": {"camera": "cam0"}},

@@ -30,6 +30,17 @@ def form_asks_for_enough_squares(page: Page) -> None:
             expect(page.locator(f"#board-{side}")).to_have_attribute("max", "100")
 
 
+def form_knows_boards_of_two_sides(page: Page) -> None:
+    """A plain chessboard looks the same from both and is not asked about."""
+    page.select_option("#board-kind", "chessboard")
+    expect(page.locator("#board-two-sided")).to_be_hidden()
+    page.select_option("#board-kind", "charuco")
+    page.check("#board-two-sided")
+    page.click("#set-board")
+    expect(page.locator("#board summary")).to_contain_text(", on both sides")
+    expect(page.locator("#board-two-sided")).to_be_checked()
+
+
 def test_a_setup_is_gone_on_with_after_a_kill(
     browser: Browser, tmp_path: Path, user_env: dict[str, str]
 ) -> None:
@@ -66,6 +77,7 @@ def test_a_setup_is_gone_on_with_after_a_kill(
         # the first step that was not done
         page.locator('[data-step="lens"] #part > .part-lens').wait_for(timeout=STEP_MS)
         form_asks_for_enough_squares(page)
+        form_knows_boards_of_two_sides(page)
         body_step(page)
         expect(page.locator("#stature-cm")).to_have_value("181", timeout=STEP_MS)
         assert not heard

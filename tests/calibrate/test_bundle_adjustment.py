@@ -86,9 +86,12 @@ def test_projection_is_that_of_the_cameras() -> None:
 
 
 def test_slopes_are_those_of_small_steps() -> None:
+    """Also of corners on the board's back, where that lies askew."""
     scene, seen = random_scene()
+    seen = replace(seen, on_back=np.arange(len(seen.camera)) % 3 == 0)
+    scene = replace(scene, back=scene.back.stepped(np.array([0.004, -0.003, 0.02, 0.002])))
     rng = np.random.default_rng(1)
-    shapes = ((3, 9), (3, 6), (5, 6), (3,))
+    shapes = ((3, 9), (3, 6), (5, 6), (3,), (4,))
     at = [0.02 * rng.standard_normal(shape) for shape in shapes]
     d = [rng.standard_normal(shape) for shape in shapes]
     h = 1e-6
@@ -97,7 +100,13 @@ def test_slopes_are_those_of_small_steps() -> None:
         for s in (1.0, -1.0)
     )
     parts = jacobians(with_steps(scene, *at), seen, at[1], at[2])
-    rows = (d[0][seen.camera], d[1][seen.camera], d[2][seen.view], d[3][seen.camera, None])
+    rows = (
+        d[0][seen.camera],
+        d[1][seen.camera],
+        d[2][seen.view],
+        d[3][seen.camera, None],
+        np.broadcast_to(d[4], (len(seen.camera), 4)),
+    )
     slope = sum(np.einsum("nij,nj->ni", J, x) for J, x in zip(parts, rows, strict=True))
     np.testing.assert_allclose((ahead - behind) / (2 * h), slope, rtol=1e-5, atol=1e-3)
 

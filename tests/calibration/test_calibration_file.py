@@ -64,7 +64,7 @@ def saved_calibration() -> SavedCalibration:
         made=Made(when=datetime(2026, 11, 21, 10, 0, tzinfo=UTC), by="ann", mocapd="0.2.0"),
         room=RoomFit(method="board", rms_px=0.4, play_area_cm=0.3),
         wearer=SavedWearer(stature_m=1.71, proportions={"arm_girth": 1.2}, personal_colours=True),
-        board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
+        board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375, two_sided=True),
         camera=(camera("left", colour=True), camera("right/2")),
     )
 

@@ -68,6 +68,18 @@ def test_it_writes_the_rig_and_prints_one_object(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["home", "rig.json"]
 
 
+def test_a_board_whose_back_nobody_sees_is_said(
+    clean_env: dict[str, str], pictures: Path, tmp_path: Path
+) -> None:
+    outcome = calibrate(clean_env, pictures, tmp_path / "rig.json", "--two-sided", "--json")
+    assert outcome.code == 0, outcome.err
+    told = json.loads(outcome.out)
+    assert told["board"]["two_sided"]
+    assert told["back"] is None
+    assert [one["backs"] for one in told["cameras"].values()] == [0, 0]
+    assert "no camera saw the back of the board" in outcome.err
+
+
 def test_a_refusal_is_one_line_and_leaves_the_old_rig(
     clean_env: dict[str, str], pictures: Path, tmp_path: Path
 ) -> None:

@@ -50,6 +50,17 @@ def test_a_board_of_a_given_square(run: Run, tmp_path: Path) -> None:
     assert "--square 0.04 --marker 0.03 --dictionary DICT_4X4_1000 --inverted" in flags
 
 
+def test_a_board_of_two_sides_says_how_to_glue_it(
+    clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    out = tmp_path / "board.pdf"
+    outcome = mocapd(clean_env, "board", "--out", out, "--two-sided")
+    assert outcome.code == 0, outcome.err
+    assert outcome.out.strip().endswith(" --two-sided")
+    assert pages(out.read_bytes()) == 2
+    assert "pins through the crosses of FRONT" in outcome.err
+
+
 @pytest.mark.parametrize("command", ["board", "shirt"])
 def test_the_help_has_an_example(run: Run, command: str) -> None:
     assert f"Example: mocapd {command} --out {command}.pdf" in run(command, "--help")

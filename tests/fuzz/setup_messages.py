@@ -13,7 +13,7 @@ Args = Mapping[str, object]
 _PNG = base64.b64encode(png(strokes_on(SIZE_PX))).decode()
 _BOARD: Args = {
     "kind": "charuco", "columns": 5, "rows": 7, "square_mm": 30.0, "marker_mm": 22.0, "dictionary": "DICT_4X4_50",
-    "inverted": False, "legacy": False,
+    "inverted": False, "legacy": False, "two_sided": True,
 }  # fmt: skip
 # By the step in which it is understood; those of "" are in every step
 VERBS: Mapping[str, tuple[tuple[str, Args], ...]] = {

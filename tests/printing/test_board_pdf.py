@@ -6,7 +6,8 @@ import pytest
 
 from mocapd.calibration.board_spec import BoardSpec, aruco_board, corners_m
 from mocapd.errors import ConfigError
-from mocapd.printing.board_pdf import board_pdf, fitted_board, flags_of, layout_of
+from mocapd.printing.board_layout import fitted_board, layout_behind, layout_of
+from mocapd.printing.board_pdf import board_pdf, flags_of
 from mocapd.printing.paper_sizes import PAPERS_MM, RULER_MM
 from mocapd.types import Floats
 from tests.printing.printed import Print, keywords, pages, printed, text
@@ -116,6 +117,48 @@ def test_nothing_is_drawn_where_printers_cannot_print(
     inside = np.zeros(image.shape[:2], dtype=bool)
     inside[edge:-edge, edge:-edge] = True
     assert (image[~inside] == 255).all()
+
+
+@pytest.mark.parametrize(("paper", "columns", "rows", "dictionary", "inverted"), BOARDS)
+def test_back_to_back_every_corner_of_two_sides_has_one_place(
+    paper: str, columns: int, rows: int, dictionary: str, inverted: bool
+) -> None:
+    """The second page, looked at through the paper, is the first."""
+    board = fitted_board(paper, columns, rows, dictionary, inverted=inverted, two_sided=True)
+    assert board.two_sided
+    pdf = board_pdf(board, paper)
+    assert pages(pdf) == 2
+    front, back = (printed(pdf, page, PX_PER_MM) for page in (0, 1))
+    through = Print(np.ascontiguousarray(back.pixels[:, ::-1]), back.size_mm, back.px_per_mm)
+    sides = [found_corners_mm(sheet, board) for sheet in (front, through)]
+    for ids, _ in sides:
+        assert sorted(ids.tolist()) == list(range((columns - 1) * (rows - 1)))
+    in_order = [found_mm[np.argsort(ids)] for ids, found_mm in sides]
+    assert np.abs(in_order[0] - in_order[1]).max() < 0.1
+    layout = layout_of(board, paper)
+    for sheet, crosses in ((front, layout.crosses), (back, layout_behind(layout).crosses)):
+        assert list(crosses) == ["A", "B", "C", "D"]
+        for x, y in crosses.values():
+            assert sheet.part((x - 3.2, y - 0.4), (2.0, 0.8)).min() < 128  # left of its middle
+            assert sheet.part((x - 0.4, y - 3.2), (0.8, 2.0)).min() < 128  # below it
+    edge = int(6 * PX_PER_MM)
+    for sheet in (front, back):
+        inside = np.zeros(sheet.pixels.shape[:2], dtype=bool)
+        inside[edge:-edge, edge:-edge] = True
+        assert (sheet.pixels[~inside] == 255).all()
+
+
+def test_two_sides_say_how_they_are_glued() -> None:
+    board = fitted_board("A4", 5, 7, "DICT_4X4_1000", two_sided=True)
+    pdf = board_pdf(board, "A4")
+    assert flags_of(board) == keywords(pdf)
+    assert flags_of(board).endswith(" --two-sided")
+    front, back = (" ".join(text(pdf, page).split()) for page in (0, 1))
+    assert "FRONT: ChArUco board, A4" in front
+    assert "how BACK goes on is said there" in front
+    assert "BACK: ChArUco board, mirrored, A4" in back
+    assert "push a pin straight through each cross" in back
+    assert "each cross on the pin of its own letter" in back
 
 
 def test_the_same_board_gives_the_same_bytes() -> None:

@@ -50,7 +50,7 @@ def full_draft() -> Draft:
             )
             for name in NAMES
         ),
-        board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375),
+        board=BoardSpec(BoardKind.CHARUCO, 5, 7, 0.05, 0.0375, two_sided=True),
         intrinsics={
             camera.name: Intrinsics(
                 SIZE_PX, K, camera.dist, np.array([True, True, False, False, False]),
@@ -73,7 +73,7 @@ def drafted() -> Draft:
     draft = full_draft()
     one, other = draft.cameras
     corners_px = np.random.default_rng(2).uniform(0, 48, (24, 2))
-    views = {7: BoardView(7, np.arange(24), corners_px, 0.4)}
+    views = {7: BoardView(7, np.arange(24), corners_px, 0.4, back=True)}
     return replace(
         draft,
         cameras=(one, replace(other, source="rtsp://admin:hunter2@10.0.0.7/live")),

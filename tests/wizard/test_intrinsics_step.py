@@ -144,7 +144,8 @@ def test_a_mirrored_camera_is_told_while_the_other_sees_the_board(tmp_path: Path
     mirrored = {"cam0": both["cam0"], "cam1": np.ascontiguousarray(both["cam1"][:, ::-1])}
     shown.show([mirrored], 4.0)
     assert shown.told() == (
-        "cam1: the picture is mirrored -- switch mirroring off in the camera, then go on"
+        "cam1: the picture is mirrored -- switch mirroring off in the camera, then go on; if it is "
+        "the mirrored back of a board printed on both sides, say so in its form above"
     )
 
 

@@ -37,13 +37,15 @@ class Reason(StrEnum):
 class BoardView:
     """The board in one picture: ids (n,) of corners, corners_px (n,2), ascending by id.
 
-    `sharpness` is the rise of the steepest edges, in parts of the contrast per pixel.
+    `sharpness` is the rise of the steepest edges, in parts of the contrast per pixel. `back`: of a
+    two-sided board the back is seen, whose markers are mirrored.
     """
 
     index: int
     ids: Ints
     corners_px: Floats
     sharpness: float
+    back: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +77,13 @@ class BoardDetector:
         Raises ConfigError when OpenCV cannot look for such a board.
         """
         grey = self.as_printed(pixels)
+        back = False
         try:
             found = self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
+            if self.spec.two_sided and self._few(found):
+                mirrored = self._of_charuco(flipped(grey))
+                back = mirrored is not None and (found is None or len(mirrored[0]) > len(found[0]))
+                found = mirrored if back else found
         except cv2.error as error:
             raise ConfigError(
                 f"OpenCV cannot look for a {self.spec} in a picture of"
@@ -87,9 +94,11 @@ class BoardDetector:
         if found is None:
             return None
         ids, corners_px = found
+        if back:
+            corners_px = corners_px * [-1.0, 1.0] + [grey.shape[1] - 1.0, 0.0]
         if len(ids) < FEWEST_CORNERS or _on_a_line(corners_px):
             return None
-        return BoardView(index, ids, corners_px, edge_sharpness(grey, corners_px))
+        return BoardView(index, ids, corners_px, edge_sharpness(grey, corners_px), back)
 
     def as_printed(self, pixels: Bytes) -> Bytes:
         """The picture in grey, dark on light also for an inverted board."""
@@ -108,9 +117,7 @@ class BoardDetector:
         """A far board is looked at again enlarged: with cells of 2 px that finds four times the corners."""
         corners, ids, _, markers = self._charuco.detectBoard(grey)
         found = None if ids is None else _ascending(corners, ids)
-        columns, rows = self.spec.grid
-        few = found is None or len(found[0]) < _PLENTY * columns * rows
-        if markers is None or not few or grey.shape[1] > _ENLARGED_UP_TO_PX:
+        if markers is None or not self._few(found) or grey.shape[1] > _ENLARGED_UP_TO_PX:
             return found
         large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
         corners, ids, _, _ = self._charuco_enlarged.detectBoard(large)
@@ -118,6 +125,10 @@ class BoardDetector:
             return found
         # pixel centres are at integers in both pictures
         return _ascending((corners + 0.5) / 2.0 - 0.5, ids)
+
+    def _few(self, found: tuple[Ints, Floats] | None) -> bool:
+        columns, rows = self.spec.grid
+        return found is None or len(found[0]) < _PLENTY * columns * rows
 
     def _of_chessboard(self, grey: Bytes) -> tuple[Ints, Floats] | None:
         columns, rows = self.spec.grid
@@ -149,6 +160,11 @@ def _for_small_markers() -> Any:
     parameters.errorCorrectionRate = 1.0
     parameters.perspectiveRemovePixelPerCell = 8
     return parameters
+
+
+def flipped(grey: Bytes) -> Bytes:
+    """The mirror image of a picture (h,w), left and right exchanged."""
+    return np.ascontiguousarray(grey[:, ::-1])
 
 
 def as_grey(pixels: Bytes) -> Bytes:

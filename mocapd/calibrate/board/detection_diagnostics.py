@@ -9,7 +9,13 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import numpy as np
 
-from mocapd.calibrate.board.board_detection import BoardDetector, DetectionFailure, Reason, as_grey
+from mocapd.calibrate.board.board_detection import (
+    BoardDetector,
+    DetectionFailure,
+    Reason,
+    as_grey,
+    flipped,
+)
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, dictionaries, first_markers
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Ints
@@ -26,7 +32,8 @@ FIX: Mapping[Reason, str] = {
     Reason.FEW: "show the whole board, nearer",
     Reason.OTHER_SIZE: "give --board-size as columns x rows of squares",
     Reason.OTHER_DICTIONARY: "give the --dictionary that the board was printed with",
-    Reason.MIRRORED: "switch mirroring off in the camera or the recorder, and record again",
+    Reason.MIRRORED: "switch mirroring off in the camera or the recorder, and record again; if it is the "
+    "mirrored back of a board that is printed on both sides, give --two-sided",
     Reason.NOTHING: "show the board to this camera, or take its recording out of the folder",
 }
 
@@ -55,8 +62,10 @@ def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFa
     spec = detector.spec
     ids = detector.markers(grey)
     on_board = spec.columns * spec.rows // 2
+    if spec.two_sided:
+        grey, ids = _clearer_side(detector, grey, ids)
     # first, since a mirrored marker may well be another marker of a large dictionary
-    if detector.find(grey_of(spec, grey[:, ::-1].copy())) is not None:
+    elif detector.find(grey_of(spec, flipped(grey))) is not None:
         return DetectionFailure(index, Reason.MIRRORED)
     if len(ids) >= _CERTAIN:
         foreign = ids[ids >= on_board]
@@ -68,6 +77,13 @@ def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFa
     if other is None and len(ids):
         return DetectionFailure(index, Reason.FEW, f"{len(ids)} of {on_board} markers")
     return other
+
+
+def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Bytes, Ints]:
+    """The picture and its markers, or its mirror image and its where there are more: the back is seen."""
+    mirrored = flipped(grey)
+    others = detector.markers(mirrored)
+    return (mirrored, others) if len(others) > len(ids) else (grey, ids)
 
 
 def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:

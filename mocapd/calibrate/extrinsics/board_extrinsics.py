@@ -6,16 +6,25 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy  # its parts when they are used: they take long to import
 
+from mocapd.calibrate.board.back_side import OFFSET, Gluing, gluing_of, usual_back
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
     ReprojectionProblem,
+    placed_m,
     residuals_px,
     with_steps,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust_bundle
-from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
+from mocapd.calibrate.extrinsics.contradictions import contradiction, mirrored
+from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, suspect
+from mocapd.calibrate.extrinsics.pose_graph import (
+    camera_from_board,
+    initial_scene,
+    observations,
+    seen_poses,
+)
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
     guess_world,
@@ -29,10 +38,6 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_row
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
 from mocapd.types import Floats, Rig
-
-
-class ContradictionError(ConfigError):
-    """The views of the cameras do not fit together, whatever the extrinsics."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +75,8 @@ class CameraFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldExtrinsics:
-    """The extrinsics in the world; `note`: what must be said of the floor ("": nothing)."""
+    """The extrinsics in the world; `note`: what must be said of the floor ("": nothing); `gluing`: of a
+    two-sided board, None where nobody saw the back."""
 
     rig: Rig
     rms_px: float
@@ -78,6 +84,7 @@ class WorldExtrinsics:
     positions: int
     play_area: PlayAreaError | None
     note: str
+    gluing: Gluing | None
 
 
 def solve_extrinsics(
@@ -90,7 +97,8 @@ def solve_extrinsics(
 ) -> SceneExtrinsics:
     """All cameras and positions at once; `views[camera][index]`, frames of one index being of one instant.
 
-    Raises ConfigError naming the cameras that share no positions with the others.
+    Raises ConfigError naming the cameras that share no positions with the others, MirroredError naming
+    what is mirrored.
     """
     board_m = corners_m(spec)
     # a view that contradicted its own camera's intrinsics tells nothing of the extrinsics either
@@ -100,7 +108,12 @@ def solve_extrinsics(
         }
         for name in names
     }
-    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m)
+    if spec.two_sided:
+        poses = {name: seen_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
+        suspicion = suspect(names, poses, board_m)
+        if suspicion is not None:
+            raise mirrored(suspicion)
+    scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
     seen = observations(names, trusted, indices, board_m)
     bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
     return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
@@ -117,9 +130,10 @@ def lone_camera(
         stack([]),
         np.zeros(1),
         np.zeros((0, 2, POSE)),
+        usual_back(corners_m(spec)),
     )
-    seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)))
-    bundle = Bundle(scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]))
+    seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0, bool))
+    bundle = Bundle(scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]), None)
     return SceneExtrinsics((name,), (size_px,), spec, (), seen, bundle)
 
 
@@ -135,10 +149,11 @@ def with_board(
     for name, view in views.items():
         i = extrinsics.names.index(name)
         row = scene.intrinsics[i]
-        camera_from_board = board_pose(view, board_m, camera_matrix(row), row[4:])
-        if camera_from_board is None:
+        pose = board_pose(view, board_m, camera_matrix(row), row[4:])
+        if pose is None:
             continue
-        guess = _with(scene, scene.camera_from_scene[i].inverse() @ camera_from_board)
+        held = camera_from_board(SeenPose(pose, view.back), scene.back)
+        guess = _with(scene, scene.camera_from_scene[i].inverse() @ held)
         found, error_px = _fit_position(guess, seen)
         # one camera alone may take the mirror image of a board that it sees small
         if error_px < best_px:
@@ -156,6 +171,7 @@ def with_board(
         np.concatenate([extrinsics.seen.view, np.full_like(seen.view, len(extrinsics.indices))]),
         np.concatenate([extrinsics.seen.point_m, seen.point_m]),
         np.concatenate([extrinsics.seen.pixels, seen.pixels]),
+        np.concatenate([extrinsics.seen.on_back, seen.on_back]),
     )
     used = np.concatenate([extrinsics.bundle.used, np.ones(len(seen.camera), bool)])
     bundle = replace(extrinsics.bundle, scene=scene, used=used)
@@ -184,7 +200,7 @@ def _fit_position(
     still = np.zeros((cameras, INTRINSICS)), np.zeros((cameras, POSE))
 
     def stepped(x: Floats) -> ReprojectionProblem:
-        return with_steps(scene, *still, x[None], np.zeros(cameras))
+        return with_steps(scene, *still, x[None], np.zeros(cameras), np.zeros(OFFSET))
 
     solution = scipy.optimize.least_squares(
         lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01
@@ -205,21 +221,30 @@ def place_in_world(
     if floor is None:
         world = guess_world(scene, corners_m(extrinsics.spec))
     else:
-        world = world_on_floor(
-            scene, extrinsics.indices.index(floor), centre_m(extrinsics.spec), where
-        )
+        spec = extrinsics.spec
+        position = extrinsics.indices.index(floor)
+        world = world_on_floor(scene, position, centre_m(spec), where, spec.two_sided)
     rig = rig_in_world(world, scene, extrinsics.names, extrinsics.sizes_px)
     kept = seen.of(extrinsics.bundle.used)
+    deviation = extrinsics.bundle.back_deviation
     made = WorldExtrinsics(
         rig,
         _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
         {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)},
         len(extrinsics.indices),
-        play_area_error(rig, kept),
+        play_area_error(rig, _as_placed(scene, kept)),
         world.note,
+        None if deviation is None else gluing_of(scene.back, deviation),
     )
-    _refuse_bad(made, params)
+    _refuse_bad(made, params, extrinsics.spec)
     return made
+
+
+def _as_placed(scene: ReprojectionProblem, seen: Observations) -> Observations:
+    """Corners on the back where they are; those of one corner stay the same to the last digit."""
+    if not seen.on_back.any():
+        return seen
+    return replace(seen, point_m=np.round(placed_m(scene, seen), 9))
 
 
 def _rms(error_px: Floats) -> float:
@@ -239,7 +264,10 @@ def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
     )
 
 
-def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams) -> None:
+def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams, spec: BoardSpec) -> None:
+    far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
+    if made.rms_px > params.rms_px or far:
+        raise contradiction(made.rms_px, made.play_area, spec.two_sided)
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(
@@ -247,16 +275,3 @@ def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams) -> None:
                 name,
                 "show the board nearer to this camera, and tilted by 30 degrees and more",
             )
-    far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
-    if made.rms_px > params.rms_px or far:
-        cm = (
-            ""
-            if made.play_area is None
-            else f", {made.play_area.median_cm:.1f} cm in the play area"
-        )
-        raise ContradictionError(
-            f"the cameras contradict each other: {made.rms_px:.2f} px{cm}",
-            "the room",
-            "hold the board still at each place, keep the cameras where they are, do not mirror "
-            "a picture, and see that frames of one index are of one moment",
-        )

@@ -1,7 +1,7 @@
 """Where the board's corners fall in the pictures, and how that changes with intrinsics and poses.
 
-One row per observation: camera c saw corner p of the board in view v. The scene's frame is the first
-camera's.
+One row per observation: camera c saw corner p of the board in view v, on its front or its back. The
+scene's frame is the first camera's.
 """
 
 from dataclasses import dataclass
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.calibrate.board.back_side import OFFSET, BackPrint
 from mocapd.geometry.reprojection import project_rows, projection_jacobians
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.rotation_matrices import cross_matrices, exp_matrices, left_jacobians
@@ -19,17 +20,23 @@ POSE = 6  # a step of a pose: left rotation vector [rad], shift [m]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
-    """N corners seen: camera (N,), view (N,), point_m (N,3) in the board's frame, pixels (N,2)."""
+    """N corners seen: camera (N,), view (N,), point_m (N,3) on the board's front, in its frame, pixels (N,2);
+    on_back (N,): on the back instead, behind that point."""
 
     camera: Ints
     view: Ints
     point_m: Floats
     pixels: Floats
+    on_back: NDArray[np.bool_]
 
     def of(self, keep: NDArray[np.bool_]) -> "Observations":
         """Those of a mask (N,)."""
         return Observations(
-            self.camera[keep], self.view[keep], self.point_m[keep], self.pixels[keep]
+            self.camera[keep],
+            self.view[keep],
+            self.point_m[keep],
+            self.pixels[keep],
+            self.on_back[keep],
         )
 
 
@@ -39,7 +46,7 @@ class ReprojectionProblem:
 
     intrinsics (C,9); camera_from_scene (C,); scene_from_board (V,); delay (C,): how much later a camera
     exposes than the first, in frames; path (V,2,6): how the board moves on from each position, see
-    `board_motion.board_paths`.
+    `board_motion.board_paths`; back: the print on the board's back, if it has one.
     """
 
     intrinsics: Floats
@@ -47,18 +54,25 @@ class ReprojectionProblem:
     scene_from_board: RigidTransform
     delay: Floats
     path: Floats
+    back: BackPrint
 
 
 def with_steps(
-    scene: ReprojectionProblem, intrinsics: Floats, cameras: Floats, boards: Floats, delay: Floats
+    scene: ReprojectionProblem,
+    intrinsics: Floats,
+    cameras: Floats,
+    boards: Floats,
+    delay: Floats,
+    back: Floats,
 ) -> ReprojectionProblem:
-    """The scene with steps added: intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,)."""
+    """The scene with steps added: intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,), back (4,)."""
     return ReprojectionProblem(
         scene.intrinsics + intrinsics,
         _stepped(scene.camera_from_scene, cameras),
         _stepped(scene.scene_from_board, boards),
         scene.delay + delay,
         scene.path,
+        scene.back.stepped(back),
     )
 
 
@@ -74,6 +88,14 @@ def residuals_px(scene: ReprojectionProblem, seen: Observations) -> Floats:
     return project_rows(scene.intrinsics[seen.camera], points_m) - seen.pixels
 
 
+def placed_m(scene: ReprojectionProblem, seen: Observations) -> Floats:
+    """(N,3) [m]: where the corners are in the board's frame, those on the back on the back."""
+    if not seen.on_back.any():
+        return seen.point_m
+    behind_m = scene.back.board_from_back.apply(seen.point_m)
+    return np.where(seen.on_back[:, None], behind_m, seen.point_m)
+
+
 def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats, Floats, Floats]:
     """Of the corners, where the board is when their camera exposes.
 
@@ -85,7 +107,7 @@ def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats,
     way = delay * path[:, 0] + delay**2 * path[:, 1]
     since = exp_matrices(way[:, :3])
     scene_from_board = scene.scene_from_board[seen.view]
-    at_rest_m = scene_from_board.rotate(seen.point_m)
+    at_rest_m = scene_from_board.rotate(placed_m(scene, seen))
     return (
         np.einsum("nij,nj->ni", since, at_rest_m),
         scene_from_board.t_m + way[:, 3:],
@@ -95,8 +117,9 @@ def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats,
 
 def jacobians(
     scene: ReprojectionProblem, seen: Observations, cameras: Floats, boards: Floats
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """d residual by intrinsics (N,2,9), the camera's step (N,2,6), the board's (N,2,6), delay (N,2,1).
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """d residual by intrinsics (N,2,9), the camera's step (N,2,6), the board's (N,2,6), delay (N,2,1), back
+    (N,2,4).
 
     `scene` already has the steps `cameras` (C,6) and `boards` (V,6).
     """
@@ -110,7 +133,8 @@ def jacobians(
     by_camera = np.concatenate([-by_point @ cross_matrices(turned_m) @ spin, by_point], axis=2)
     by_scene = by_point @ camera_from_scene.R
     spin = left_jacobians(boards[:, :3])[seen.view]
-    at_rest_m = scene.scene_from_board[seen.view].rotate(seen.point_m)
+    scene_from_board = scene.scene_from_board[seen.view]
+    at_rest_m = scene_from_board.rotate(placed_m(scene, seen))
     by_turn = -by_scene @ since @ cross_matrices(at_rest_m) @ spin
     by_board = np.concatenate([by_turn, by_scene], axis=2)
     path, delay = scene.path[seen.view], scene.delay[seen.camera, None]
@@ -118,4 +142,8 @@ def jacobians(
     way = delay * path[:, 0] + delay**2 * path[:, 1]
     turning = np.einsum("nij,nj->ni", left_jacobians(way[:, :3]), speed[:, :3])
     velocity = np.cross(turning, arm_m) + speed[:, 3:]
-    return by_intrinsics, by_camera, by_board, by_scene @ velocity[..., None]
+    by_back, back = np.zeros((len(arm_m), 2, OFFSET)), seen.on_back
+    if back.any():
+        turned = by_scene[back] @ since[back] @ scene_from_board.R[back]
+        by_back[back] = turned @ scene.back.slopes(seen.point_m[back])
+    return by_intrinsics, by_camera, by_board, by_scene @ velocity[..., None], by_back

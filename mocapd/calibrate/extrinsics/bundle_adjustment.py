@@ -1,6 +1,7 @@
 """All cameras and board positions solved at once (bundle adjustment; Triggs et al. 2000).
 
-The first camera stays where it is; the board gives the scale.
+The first camera stays where it is; the board gives the scale. Where the print on the back of a two-sided
+board lies is solved for too, when somebody saw it.
 """
 
 from collections.abc import Sequence
@@ -10,6 +11,7 @@ import numpy as np
 import scipy  # its parts when they are used: they take long to import
 from numpy.typing import NDArray
 
+from mocapd.calibrate.board.back_side import OFFSET, GluingPrior
 from mocapd.calibrate.board.board_motion import board_paths
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
@@ -40,18 +42,21 @@ class BundleParams:
     rounds: int = 2  # of the board's motion, taken from the solution before
     evaluations: int = 15
     priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
+    gluing: GluingPrior = field(default_factory=GluingPrior)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bundle:
     """The solution, and which of the observations (N,) it is computed from.
 
-    `focal_deviation` (C,): standard deviation of each focal length, as a part of it.
+    `focal_deviation` (C,): standard deviation of each focal length, as a part of it; `back_deviation`
+    (4,): of how the back of the board lies, None where nobody saw it.
     """
 
     scene: ReprojectionProblem
     used: NDArray[np.bool_]
     focal_deviation: Floats
+    back_deviation: Floats | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,39 +70,47 @@ class _Problem:
 
     @property
     def columns(self) -> int:
-        """Intrinsics, cameras but the first, boards, delays but the first."""
+        """Intrinsics, cameras but the first, boards, delays but the first, the back if it was seen."""
         cameras, boards = len(self.scene.delay), len(self.scene.path)
-        return cameras * INTRINSICS + (cameras - 1) * (POSE + 1) + boards * POSE
+        return cameras * INTRINSICS + (cameras - 1) * (POSE + 1) + boards * POSE + self.of_back
 
-    def steps(self, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Intrinsics (C,9), cameras (C,6), boards (V,6) and delay (C,) of a vector of parameters."""
+    @property
+    def of_back(self) -> int:
+        """Parameters of the back's print."""
+        return OFFSET if self.seen.on_back.any() else 0
+
+    def steps(self, x: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,) and back (4,) of a vector of parameters."""
         cameras, boards = len(self.scene.delay), len(self.scene.path)
-        ends = np.cumsum([cameras * INTRINSICS, (cameras - 1) * POSE, boards * POSE])
-        intrinsics, poses, board_poses, delay = np.split(x, ends)
+        counts = [cameras * INTRINSICS, (cameras - 1) * POSE, boards * POSE, cameras - 1]
+        intrinsics, poses, board_poses, delay, back = np.split(x, np.cumsum(counts))
         poses = np.concatenate([np.zeros(POSE), poses]).reshape(-1, POSE)
         return (
             intrinsics.reshape(-1, INTRINSICS),
             poses,
             board_poses.reshape(-1, POSE),
             np.concatenate([np.zeros(1), delay]),
+            back if len(back) else np.zeros(OFFSET),
         )
 
     def error(self, x: Floats) -> Floats:
-        """(2N + priors + C - 1,)."""
+        """(2N + priors + C - 1,), and 4 for a back."""
         scene = with_steps(self.scene, *self.steps(x))
         priors = self.params.priors.residuals(scene.intrinsics, self.size_px)
+        gluing = self.params.gluing
         return np.concatenate(
             [
                 residuals_px(scene, self.seen).ravel() / self.params.corner_px,
                 priors.ravel(),
                 scene.delay[1:] / self.params.delay_frames,
+                ((scene.back.offset - gluing.mean) / gluing.deviation)[: self.of_back],
             ]
         )
 
     def slope(self, x: Floats) -> "scipy.sparse.csr_matrix":
         """d error by x."""
-        intrinsics, cameras, boards, delay = self.steps(x)
-        scene = with_steps(self.scene, intrinsics, cameras, boards, delay)
+        intrinsics, cameras, boards, delay, back = self.steps(x)
+        scene = with_steps(self.scene, intrinsics, cameras, boards, delay, back)
         values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
         columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
         rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
@@ -107,24 +120,26 @@ class _Problem:
             (values[free], (rows[free], columns[free])), shape=(2 * len(values), self.columns)
         )
         blocks = self.params.priors.slope(scene.intrinsics, self.size_px)
-        count = len(delay) - 1
+        tight = [1.0 / self.params.delay_frames] * (len(delay) - 1)
+        tight += [1.0 / deviation for deviation in self.params.gluing.deviation[: self.of_back]]
         own = scipy.sparse.block_diag(
             [
                 *blocks,
-                scipy.sparse.csr_matrix((0, self.columns - len(blocks) * INTRINSICS - count)),
-                scipy.sparse.identity(count) / self.params.delay_frames,
+                scipy.sparse.csr_matrix((0, self.columns - len(blocks) * INTRINSICS - len(tight))),
+                scipy.sparse.csr_matrix(np.diag(tight)),
             ]
         )
         return scipy.sparse.vstack([corners / self.params.corner_px, own]).tocsr()
 
     def _columns(self) -> Ints:
-        """(N, 9+6+6+1): what each observation depends on; -1: stays as it is."""
+        """(N, 9+6+6+1+4): what each observation depends on; -1: stays as it is."""
         place: Floats = np.arange(1, self.columns + 1, dtype=float)
         parts = [part.astype(np.int64) - 1 for part in self.steps(place)]
-        intrinsics, cameras, boards, delay = parts
+        intrinsics, cameras, boards, delay, back = parts
         camera, view = self.seen.camera, self.seen.view
+        behind = np.where(self.seen.on_back[:, None], back, -1)
         return np.concatenate(
-            [intrinsics[camera], cameras[camera], boards[view], delay[camera, None]], axis=1
+            [intrinsics[camera], cameras[camera], boards[view], delay[camera, None], behind], axis=1
         )
 
 
@@ -152,7 +167,7 @@ def adjust_bundle(
     used = error_px <= max(limit_px, params.least_outlier_px)
     problem = _Problem(scene, seen.of(used), size_px, params)
     scene = _solve(problem, robust=False)
-    return Bundle(scene, used, _focal_deviation(replace(problem, scene=scene)))
+    return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
 
 
 def _deviation_px(scene: ReprojectionProblem, seen: Observations, params: BundleParams) -> float:
@@ -226,14 +241,19 @@ def _lower(normal: Floats) -> Floats:
     return scales
 
 
-def _focal_deviation(problem: _Problem) -> Floats:
-    """(C,) from the curvature of the sum of squares at the solution."""
+def _deviations(problem: _Problem) -> tuple[Floats, Floats | None]:
+    """Of the focal lengths (C,), as parts of them, and of the back (4,), from the curvature of the sum of
+    squares at the solution."""
     J = problem.slope(np.zeros(problem.columns))
     cameras = len(problem.scene.delay)
-    wanted = np.zeros((problem.columns, cameras))
-    wanted[INTRINSICS * np.arange(cameras), np.arange(cameras)] = 1.0
+    asked = [
+        *(INTRINSICS * np.arange(cameras)),
+        *range(problem.columns - problem.of_back, problem.columns),
+    ]
+    wanted = np.zeros((problem.columns, len(asked)))
+    wanted[asked, np.arange(len(asked))] = 1.0
     normal = (J.T @ J + 1e-12 * scipy.sparse.identity(problem.columns)).tocsc()
     covariance = scipy.sparse.linalg.spsolve(normal, wanted)
-    variance = np.asarray(covariance)[INTRINSICS * np.arange(cameras), np.arange(cameras)]
-    deviation: Floats = np.sqrt(variance) / problem.scene.intrinsics[:, 0]
-    return deviation
+    deviation = np.sqrt(np.asarray(covariance).reshape(wanted.shape)[asked, np.arange(len(asked))])
+    focal: Floats = deviation[:cameras] / problem.scene.intrinsics[:, 0]
+    return focal, deviation[cameras:] if problem.of_back else None

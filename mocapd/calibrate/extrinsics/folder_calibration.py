@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
 from mocapd.calibrate.board.board_detection import (
     BoardDetector,
     BoardView,
@@ -54,11 +55,13 @@ class BoardSighting:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraReport:
-    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, pictures with the board."""
+    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, pictures with the board,
+    `backs` of them with its back."""
 
     rms_px: float
     held_out_px: float
     views: int
+    backs: int
     pictures: int
     covered: float
     delay_frames: float
@@ -69,7 +72,7 @@ class CameraReport:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FolderCalibration:
-    """The rig, how well it fits, and the board as it was found to be."""
+    """The rig, how well it fits, and the board as it was found to be; `gluing`: of a two-sided one."""
 
     rig: Rig
     rms_px: float
@@ -77,6 +80,7 @@ class FolderCalibration:
     positions: int
     play_area: PlayAreaError | None
     board: BoardSpec
+    gluing: Gluing | None
     notes: tuple[str, ...]
 
 
@@ -199,6 +203,10 @@ def _solve_rig(
     progress("room", 1, 1)
     made = place_in_world(extrinsics, floor_frame, f"frame {floor_frame}", params.extrinsics)
     notes += [made.note] if made.note else []
+    if made.gluing is not None:
+        notes += [trouble] if (trouble := gluing_trouble(made.gluing)) else []
+    elif spec.two_sided:
+        notes.append("no camera saw the back of the board, which was said to be two-sided")
     reports = {
         one.recording.name: _report(
             one, intrinsics_of[one.recording.name], made.cameras[one.recording.name]
@@ -206,7 +214,14 @@ def _solve_rig(
         for one in sightings
     }
     return FolderCalibration(
-        made.rig, made.rms_px, reports, made.positions, made.play_area, spec, tuple(notes)
+        made.rig,
+        made.rms_px,
+        reports,
+        made.positions,
+        made.play_area,
+        spec,
+        made.gluing,
+        tuple(notes),
     )
 
 
@@ -215,6 +230,7 @@ def _report(one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit) -> Camer
         fit.rms_px,
         intrinsics.held_out_px,
         fit.views,
+        sum(view.back for view in one.views.values()),
         one.pictures,
         covered(list(one.views.values()), one.recording.size_px),
         fit.delay_frames,

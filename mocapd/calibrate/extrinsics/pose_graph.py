@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from mocapd.calibrate.board.back_side import BackPrint, GluingPrior, usual_back
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
@@ -11,6 +12,7 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     ReprojectionProblem,
     residuals_px,
 )
+from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, distances
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
@@ -25,14 +27,22 @@ def initial_scene(
     intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     board_m: Floats,
+    gluing: GluingPrior | None = None,
 ) -> tuple[ReprojectionProblem, list[int]]:
     """The scene in the first camera's frame, and the indices of its board positions.
 
-    `views[camera][index]`. Cameras need not all see one position: they are chained along the
-    spanning tree of the pairs with the most shared positions. Raises ConfigError that names the
-    cameras which share none with the others.
+    `views[camera][index]`; a back lies as it is expected to lie. Cameras need not all see one position:
+    they are chained along the spanning tree of the pairs with the most shared positions. Raises
+    ConfigError that names the cameras which share none with the others.
     """
-    poses = {name: _poses(views[name], intrinsics_of[name], board_m) for name in names}
+    back = usual_back(board_m, gluing)
+    poses = {
+        name: {
+            index: camera_from_board(pose, back)
+            for index, pose in seen_poses(views[name], intrinsics_of[name], board_m).items()
+        }
+        for name in names
+    }
     relative = _span_pose_graph(names, poses)
     intrinsics = np.stack(
         [intrinsics_row(intrinsics_of[name].K, intrinsics_of[name].dist) for name in names]
@@ -44,10 +54,13 @@ def initial_scene(
         seen = [name for name in names if index in poses[name]]
         guesses = [relative[name].inverse() @ poses[name][index] for name in seen]
         corners = observations(names, views, [index], board_m)
-        errors = [_misfit_px(intrinsics, camera_from_scene, guess, corners) for guess in guesses]
+        errors = [
+            _misfit_px(intrinsics, camera_from_scene, guess, corners, back) for guess in guesses
+        ]
         boards.append(guesses[int(np.argmin(errors))])
     still = np.zeros(len(names)), np.zeros((len(indices), 2, POSE))
-    return ReprojectionProblem(intrinsics, camera_from_scene, stack(boards), *still), indices
+    scene = ReprojectionProblem(intrinsics, camera_from_scene, stack(boards), *still, back)
+    return scene, indices
 
 
 def observations(
@@ -69,17 +82,25 @@ def observations(
         np.repeat([place for _, place, _ in parts], counts),
         np.concatenate([board_m[view.ids] for _, _, view in parts]),
         np.concatenate([view.corners_px for _, _, view in parts]),
+        np.repeat([view.back for _, _, view in parts], counts),
     )
 
 
-def _poses(
+def seen_poses(
     views: Mapping[int, BoardView], intrinsics: Intrinsics, board_m: Floats
-) -> dict[int, RigidTransform]:
+) -> dict[int, SeenPose]:
+    """By index; views that no pose fits are left out."""
     found = {
         index: board_pose(view, board_m, intrinsics.K, intrinsics.dist)
         for index, view in views.items()
     }
-    return {index: pose for index, pose in found.items() if pose is not None}
+    return {i: SeenPose(pose, views[i].back) for i, pose in found.items() if pose is not None}
+
+
+def camera_from_board(seen: SeenPose, back: BackPrint) -> RigidTransform:
+    """Of a print that is on the front, or on a back that lies so."""
+    pose = seen.camera_from_print
+    return pose @ back.board_from_back.inverse() if seen.back else pose
 
 
 def _span_pose_graph(
@@ -126,11 +147,7 @@ def _relative(a: Mapping[int, RigidTransform], b: Mapping[int, RigidTransform]) 
     mean, but the middle one.
     """
     said = [a[index] @ b[index].inverse() for index in sorted(a.keys() & b.keys())]
-    all_said = stack(said)
-    R, t_m = all_said.R, all_said.t_m
-    cosines = np.clip((np.einsum("aij,bij->ab", R, R) - 1.0) / 2.0, -1.0, 1.0)
-    far = np.arccos(cosines) + np.linalg.norm(t_m[:, None] - t_m, axis=2)  # 1 rad as bad as 1 m
-    return said[int(np.argmin(np.median(far, axis=1)))]
+    return said[int(np.argmin(np.median(distances(stack(said)), axis=1)))]
 
 
 def _misfit_px(
@@ -138,8 +155,10 @@ def _misfit_px(
     camera_from_scene: RigidTransform,
     scene_from_board: RigidTransform,
     seen: Observations,
+    back: BackPrint,
 ) -> float:
     """Median distance [px] of the corners of one position in all cameras."""
     still = np.zeros(len(intrinsics)), np.zeros((1, 2, POSE))
-    scene = ReprojectionProblem(intrinsics, camera_from_scene, stack([scene_from_board]), *still)
+    boards = stack([scene_from_board])
+    scene = ReprojectionProblem(intrinsics, camera_from_scene, boards, *still, back)
     return float(np.median(np.linalg.norm(residuals_px(scene, seen), axis=1)))

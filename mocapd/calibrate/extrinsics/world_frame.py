@@ -35,7 +35,11 @@ class PlayAreaError:
 
 
 def world_on_floor(
-    scene: ReprojectionProblem, position: int, middle_m: Floats, where: str
+    scene: ReprojectionProblem,
+    position: int,
+    middle_m: Floats,
+    where: str,
+    two_sided: bool = False,
 ) -> WorldFrame:
     """The world of a board that lies on the floor, face up, at this position; its middle is the origin.
 
@@ -45,6 +49,13 @@ def world_on_floor(
     scene_from_board = scene.scene_from_board[position]
     world = _world(scene, -scene_from_board.R[:, 2], scene_from_board.apply(middle_m))
     heights_m = world.apply(camera_centres(scene))[:, 1]
+    if two_sided and heights_m.max() < 0.0:
+        raise ConfigError(
+            "the board lies there on its front: its back is up, or all pictures are mirrored",
+            where,
+            "lay it down with the side up that says FRONT; if it did lie so, switch mirroring off in "
+            "the cameras or the recorder",
+        )
     if heights_m.min() < 0.0:
         raise ConfigError(
             f"with this floor a camera is {-100 * heights_m.min():.0f} cm under it",

@@ -93,7 +93,7 @@ def solve_intrinsics(
         )
     kept = list(views)
     first = _solve(kept, board_m, size_px, _MODELS[1], where)
-    _refuse_parallel(first, where, limits)
+    _refuse_parallel(first, views, where, limits)
     bad = first.per_view_px > max(limits.view_rms * float(np.median(first.per_view_px)), 0.5)
     kept = [view for view, out in zip(views, bad, strict=True) if not out]
     if len(kept) < limits.fewest_views:
@@ -217,9 +217,12 @@ def _parallel(where: str) -> ConfigError:
     )
 
 
-def _refuse_parallel(solution: _Solution, where: str, limits: IntrinsicsLimits) -> None:
+def _refuse_parallel(
+    solution: _Solution, views: Sequence[BoardView], where: str, limits: IntrinsicsLimits
+) -> None:
     """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
-    normals = np.stack([R[:, 2] for R in solution.rotations])
+    away = [-1.0 if view.back else 1.0 for view in views]  # of the side that is seen
+    normals = np.stack([s * R[:, 2] for s, R in zip(away, solution.rotations, strict=True)])
     cosines = np.clip(normals @ normals.T, -1.0, 1.0)
     # of nine in ten, so that one wrong view does not pass for a tilt
     if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:

@@ -147,5 +147,5 @@ def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> F
         return None
     xy = view.corners_px / size_px[0]
     spread = max(float(np.sqrt(xy.var(axis=0).sum())), 1e-6)
-    normal = pose.R[:, 2]
+    normal = -pose.R[:, 2] if view.back else pose.R[:, 2]  # away from the camera
     return np.array([*xy.mean(axis=0), _SIZE * np.log(spread), *(_TURN * normal[:2])])

@@ -26,6 +26,9 @@ class PrintedBoard:
     The first square, at the left end of the top row, is black; in the `legacy` layout of a ChArUco
     board with an even number of rows it is white. Markers are in the white squares, numbered row
     by row. The margin is a third of a square.
+
+    `two_sided`: the back bears the mirror image, `thickness_m` behind the front, its middle shifted by
+    `back_shift_m` along the rows and down them, and turned about it by `back_turn_rad` from x to y.
     """
 
     columns: int
@@ -35,6 +38,10 @@ class PrintedBoard:
     dictionary: str = ""
     inverted: bool = False
     legacy: bool = False
+    two_sided: bool = False
+    thickness_m: float = 0.0
+    back_shift_m: tuple[float, float] = (0.0, 0.0)
+    back_turn_rad: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +103,7 @@ class BoardFilm:
         """(height, width, 3) uint8 BGR before a plain wall; R (3,3), t_m (3,) are world_from_board.
 
         The board's frame is x right, y down, z into the board, its origin at the outer corner of
-        the first square. From behind the board shows blank paper.
+        the first square. From behind a board of one side shows blank paper.
         """
         light = light or BoardLight()
         layer = self.layer(R, t_m)
@@ -114,18 +121,29 @@ class BoardFilm:
         """The sheet at world_from_board R (3,3), t_m (3,), to be laid over another picture."""
         camera_R = self._camera.R @ R
         camera_t = self._camera.R @ t_m + self._camera.t_m
-        board_from_ray = np.linalg.inv(np.column_stack([camera_R[:, :2], camera_t]))
-        # the printed side is seen when the board's z points away from the camera
+        # the front is seen when the board's z points away from the camera
         front = bool(camera_R[:, 2] @ camera_t > 0.0)
+        if self._board.two_sided and not front:
+            camera_R, camera_t = self._behind(camera_R, camera_t)
+        board_from_ray = np.linalg.inv(np.column_stack([camera_R[:, :2], camera_t]))
         region = self._region(camera_R, camera_t)
         rays, down, across = self._rays[region], self._down[region], self._across[region]
         cover, light = np.zeros(rays.shape[:2]), np.zeros(rays.shape[:2])
         blank = _INK if self._board.inverted else _PAPER
         shade_sheet(
             PixelRays(rays, down, across), board_from_ray, self._board.square_m, self._print, _CELLS,
-            _SUBSAMPLES, _INK, _PAPER, blank, front, cover, light,
+            _SUBSAMPLES, _INK, _PAPER, blank, front or self._board.two_sided, cover, light,
         )  # fmt: skip
         return BoardLayer(region, cover, light)
+
+    def _behind(self, R: Floats, t_m: Floats) -> tuple[Floats, Floats]:
+        """camera_from_back of the camera_from_board R, t_m: seen from behind, the print is mirrored."""
+        board = self._board
+        c, s = np.cos(board.back_turn_rad), np.sin(board.back_turn_rad)
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        middle_m = 0.5 * board.square_m * np.array([board.columns, board.rows, 0.0])
+        back_m = middle_m + [*board.back_shift_m, board.thickness_m] - turn @ middle_m
+        return R @ turn, t_m + R @ back_m
 
     def _region(self, R: Floats, t_m: Floats) -> tuple[slice, slice]:
         """Rows and columns of the picture that hold the whole sheet; camera_from_board R, t_m."""

@@ -113,6 +113,7 @@ class BoardForm {
     this.marker = number("board-marker", 0, 999, 0.01);
     this.inverted = element("input", { type: "checkbox", id: "board-inverted" });
     this.legacy = element("input", { type: "checkbox", id: "board-legacy" });
+    this.twoSided = element("input", { type: "checkbox", id: "board-two-sided" });
     this.ruler = number("ruler", 50, 150, 0.1);
     this.ruler.value = "100";
     this.form = element(
@@ -126,6 +127,7 @@ class BoardForm {
       (this.dictionaryLabel = labelled("Dictionary", this.dictionary)),
       labelled("Light on dark", this.inverted),
       (this.legacyLabel = labelled("Layout before OpenCV 4.6", this.legacy)),
+      (this.twoSidedLabel = labelled("On both sides, mirrored on the back", this.twoSided)),
       element("button", { type: "submit", "data-action": "set-board", id: "set-board" }, "Set the board"),
     );
     this.form.addEventListener("submit", (event) => {
@@ -149,7 +151,15 @@ class BoardForm {
       "details",
       { class: "panel", id: "board" },
       this.summary,
-      element("p", { class: "soft" }, "Print one with: ", element("code", {}, "mocapd board --out board.pdf")),
+      element(
+        "p",
+        { class: "soft" },
+        "Print one with: ",
+        element("code", {}, "mocapd board --out board.pdf"),
+        "; for cameras all around you add ",
+        element("code", {}, "--two-sided"),
+        ".",
+      ),
       this.form,
       rulerForm,
     );
@@ -163,7 +173,8 @@ class BoardForm {
     const kind = board.kind === "charuco" ? "ChArUco board" : "Chessboard";
     this.summary.textContent =
       `Your board: ${kind}, ${board.columns} x ${board.rows} squares of ${board.square_mm} mm` +
-      (board.inverted ? ", light on dark" : "");
+      (board.inverted ? ", light on dark" : "") +
+      (board.two_sided ? ", on both sides" : "");
     fill(this.dictionary, board.dictionaries.map((name) => [name, name]));
     this.kind.value = board.kind;
     this.columns.value = board.columns;
@@ -173,6 +184,7 @@ class BoardForm {
     this.dictionary.value = board.dictionary;
     this.inverted.checked = board.inverted;
     this.legacy.checked = board.legacy;
+    this.twoSided.checked = board.two_sided;
     this.showMarkers();
   }
 
@@ -182,7 +194,8 @@ class BoardForm {
       count.min = this.shown.fewest[this.kind.value];
       count.max = this.shown.most;
     }
-    for (const label of [this.markerLabel, this.dictionaryLabel, this.legacyLabel]) {
+    const ofMarkers = [this.markerLabel, this.dictionaryLabel, this.legacyLabel, this.twoSidedLabel];
+    for (const label of ofMarkers) {
       label.hidden = plain;
     }
   }
@@ -196,6 +209,8 @@ class BoardForm {
       dictionary: this.dictionary.value,
       inverted: this.inverted.checked,
       legacy: this.legacy.checked,
+      // a plain board looks the same from both sides
+      two_sided: this.twoSided.checked && this.kind.value === "charuco",
     };
     // lengths are shown rounded: only what was typed is sent
     if (Number(this.square.value) !== shown.square_mm) args.square_mm = Number(this.square.value);

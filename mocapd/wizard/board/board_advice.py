@@ -26,7 +26,8 @@ _LIVE_FIX = {
     **FIX,
     Reason.OTHER_SIZE: f"{_FORM}: its numbers of columns and rows count squares",
     Reason.OTHER_DICTIONARY: f"{_FORM}: another dictionary of markers",
-    Reason.MIRRORED: "switch mirroring off in the camera, then go on",
+    Reason.MIRRORED: "switch mirroring off in the camera, then go on; if it is the mirrored back of a board "
+    "printed on both sides, say so in its form above",
     Reason.NOTHING: "show the board to this camera",
 }
 

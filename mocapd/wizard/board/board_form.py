@@ -5,7 +5,7 @@ from dataclasses import replace
 import msgspec
 
 from mocapd.calibration.board_spec import FEWEST_SQUARES, MOST_SQUARES, BoardSpec, dictionaries
-from mocapd.printing.board_pdf import fitted_board
+from mocapd.printing.board_layout import fitted_board
 from mocapd.wizard.intrinsics.intrinsics_verbs import Board
 from mocapd.wizard.step import Json
 
@@ -51,6 +51,7 @@ def form_of(spec: BoardSpec) -> dict[str, Json]:
         "dictionary": spec.dictionary,
         "inverted": spec.inverted,
         "legacy": spec.legacy,
+        "two_sided": spec.two_sided,
         "dictionaries": list(dictionaries()),
         "fewest": {kind.value: count for kind, count in FEWEST_SQUARES.items()},
         "most": MOST_SQUARES,

@@ -86,10 +86,7 @@ class BoardSightings:
         times = [look.seen[name].t_ns for name in still]
         if len(still) < 2 or max(times) - min(times) > self._params.most_spread_s * 1e9:
             return False
-        places = {
-            name: rough_place(look.seen[name].view, self._board_m, self._sizes_px[name])
-            for name in still
-        }
+        places = {name: self._place(name, look.seen[name].view) for name in still}
         new = []
         for a, b in combinations(still, 2):
             at_a, at_b = places[a], places[b]
@@ -125,10 +122,12 @@ class BoardSightings:
                 self._views[name].update(own)
         for a, b in self._places:
             for index in self._views[a].keys() & self._views[b].keys():
-                both = [
-                    rough_place(self._views[name][index], self._board_m, self._sizes_px[name])
-                    for name in (a, b)
-                ]
+                both = [self._place(name, self._views[name][index]) for name in (a, b)]
                 self._places[a, b].append(
-                    np.concatenate([np.zeros(5) if at is None else at for at in both])
+                    np.concatenate([np.zeros(6) if at is None else at for at in both])
                 )
+
+    def _place(self, name: str, view: BoardView) -> Floats | None:
+        """(6,): `rough_place`, and the side: a board turned over tells more, wherever it is."""
+        place = rough_place(view, self._board_m, self._sizes_px[name])
+        return None if place is None else np.append(place, float(view.back))

@@ -80,11 +80,20 @@ def _mean(views: list[BoardView], index: int) -> BoardView:
 
 
 def looks_like_floor(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView]) -> bool:
-    """Whether a board at rest lies on the floor: level as the cameras stand, and under all its places."""
+    """Whether a board at rest lies on the floor, face up: level as the cameras stand, under all its places."""
+    return _lies(extrinsics, views, face_up=True)
+
+
+def lies_on_its_face(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView]) -> bool:
+    """Whether a two-sided board seems to lie on the floor with its back up."""
+    return extrinsics.spec.two_sided and _lies(extrinsics, views, face_up=False)
+
+
+def _lies(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView], face_up: bool) -> bool:
     scene = extrinsics.bundle.scene
     lying = with_board(extrinsics, -1, views).bundle.scene
     scene_from_board, camera_axes = lying.scene_from_board[-1], scene.camera_from_scene.R
-    up = -scene_from_board.R[:, 2]
+    up = scene_from_board.R[:, 2] * (-1.0 if face_up else 1.0)
     cameras_up = -camera_axes[:, 1].sum(axis=0)
     level = float(up @ cameras_up) / float(np.linalg.norm(cameras_up)) > np.cos(_LEVEL_RAD)
     rolls = np.abs(np.arcsin(np.clip(camera_axes[:, 0] @ up, -1.0, 1.0)))

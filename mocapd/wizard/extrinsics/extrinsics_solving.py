@@ -8,17 +8,18 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
-    ContradictionError,
     SceneExtrinsics,
     WorldExtrinsics,
     place_in_world,
     solve_extrinsics,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
+from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
+from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
 from mocapd.wizard.board.sightings import Views
 from mocapd.wizard.draft import DraftCamera
@@ -45,14 +46,22 @@ def solve_live(
     `earlier`: indices of sightings from the step Lens. If they do not fit, the cameras
     may have been moved since, and it is solved without. Raises ConfigError.
     """
+    refusal: ContradictionError | None = None
     try:
         found = _solve(cameras, intrinsics_of, spec, views)
         if not earlier or _refused(found[0]) <= _MOST_REFUSED:
             return found
-    except ContradictionError:
+    except ContradictionError as error:
         if not earlier:
             raise
-    return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
+        refusal = error
+    try:
+        return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
+    except ConfigError:
+        # this step's own views may be too few to say it again
+        if isinstance(refusal, MirroredError):
+            raise refusal from None
+        raise
 
 
 def _solve(

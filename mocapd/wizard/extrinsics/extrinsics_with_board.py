@@ -7,14 +7,15 @@ from dataclasses import replace
 from enum import StrEnum
 from itertools import combinations
 
+from mocapd.calibrate.board.back_side import gluing_trouble
 from mocapd.calibrate.extrinsics.board_extrinsics import (
-    ContradictionError,
     SceneExtrinsics,
     WorldExtrinsics,
     lone_camera,
     place_in_world,
     with_board,
 )
+from mocapd.calibrate.extrinsics.contradictions import ContradictionError
 from mocapd.errors import ConfigError, InputError, MocapdError
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
@@ -24,13 +25,21 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.extrinsics.board_at_rest import LONG_NS, BoardAtRest, looks_like_floor
+from mocapd.wizard.extrinsics.board_at_rest import (
+    LONG_NS,
+    BoardAtRest,
+    lies_on_its_face,
+    looks_like_floor,
+)
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
 
+_FACING = (
+    "; cameras that face each other need a board printed on both sides (mocapd board --two-sided)"
+)
 _PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
 
 
@@ -194,8 +203,12 @@ class ExtrinsicsWithBoard:
         self._rest.take(look, still)
         if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
             return
+        views = self._rest.views()
         try:
-            if looks_like_floor(self._extrinsics, self._rest.views()):
+            # with its back up it is refused with what is wrong
+            if looks_like_floor(self._extrinsics, views) or lies_on_its_face(
+                self._extrinsics, views
+            ):
                 self._lay_down()
         except ConfigError as error:
             self._refusal = Problem.of(error)
@@ -268,15 +281,23 @@ class ExtrinsicsWithBoard:
         if self._stage is BoardPhase.FLOOR:
             if self._rest.seen:
                 return "Leave the board where it lies."
-            return (
-                "Lay the board on the floor, printed side up, in the middle of where players stand."
-            )
+            side = "the side that says FRONT up" if self._spec.two_sided else "printed side up"
+            return f"Lay the board on the floor, {side}, in the middle of where players stand."
         if self._solving:
             return "Working out where the cameras stand. You can go on showing the board."
         apart = self._seen.apart()
         if apart and len(self._cameras) > 2:
             name = apart[0].label or apart[0].id
-            return f"Hold the board where {name} and another camera see it; keep it still for a moment."
+            sides = ", from either side" if self._spec.two_sided else ""
+            return (
+                f"Hold the board where {name} and another camera see it{sides}; "
+                "keep it still for a moment."
+            )
+        if self._spec.two_sided:
+            return (
+                "Hold the board where cameras see it together, from either side, here and there, and turn "
+                "it over now and then; keep it still each time."
+            )
         return "Hold the board where the cameras see it together, here and there; keep it still each time."
 
     def _progress(self) -> float:
@@ -288,6 +309,9 @@ class ExtrinsicsWithBoard:
 
     def _problems(self) -> tuple[Problem, ...]:
         told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
+        if self._stage is not BoardPhase.COLLECT and self._made is not None and self._made.gluing:
+            trouble = gluing_trouble(self._made.gluing)
+            told += [Problem(trouble, "the board")] if trouble else []
         if self._stage is BoardPhase.DONE:
             if not self._context.draft.floor_known:
                 told.append(
@@ -305,7 +329,8 @@ class ExtrinsicsWithBoard:
                 Problem(
                     "it never sees the board at the same moment as another camera",
                     camera.label or camera.id,
-                    "hold the board still where it and another camera see it, or turn them together",
+                    "hold the board still where it and another camera see it, or turn them together"
+                    + ("" if self._spec.two_sided else _FACING),
                 )
                 for camera in self._seen.lonely()
             ]

@@ -34,6 +34,7 @@ class Board(Command, frozen=True):
     dictionary: Annotated[str, msgspec.Meta(max_length=40)] | None = None
     inverted: bool | None = None
     legacy: bool | None = None
+    two_sided: bool | None = None
 
 
 class Ruler(Command, frozen=True):
