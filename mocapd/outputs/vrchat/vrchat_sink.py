@@ -10,14 +10,14 @@ from msgspec import Meta
 
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.facing import SEEN_ABOVE, facing_yaw_rad
+from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.prediction.prediction_params import PredictionParams, check_cap
 from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
-from mocapd.outputs.vrchat.confident_trackers import ConfidentTrackers
+from mocapd.outputs.vrchat.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
 from mocapd.outputs.vrchat.head_alignment import HeadAlignment
 from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
 from mocapd.outputs.vrchat.tracker_table import BodyPart, BodyTracker, trackers_of
@@ -123,7 +123,7 @@ class VRChatSink:
         turn, half_turn = cos_sin(turn_rad), cos_sin(0.5 * turn_rad)
         vectors: dict[str, Vector] = {}
         head, below = joints.get("head"), joints.get(HEAD_ON)
-        if self._params.head and head is not None and below is not None and below.c > SEEN_ABOVE:
+        if self._params.head and head is not None and below is not None and below.c > BEGINS_ABOVE:
             vectors[tracker_bundle.HEAD_POSITION] = unity_position(head.p, turn)
         if is_aligned:
             # level: VRChat takes its yaw

@@ -10,10 +10,10 @@ from mocapd.trackers.tracking_state import FADE_S
 from mocapd.types import Floats
 
 _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
-# An uncertainty that halves it. At 0.05 errors of two cameras would be told better yet, and what one camera sees would
-# fall below everything that clients believe.
-_HALF_M = 0.10
-_BELOW = 0.5  # what the shirt tells of head and legs
+# An uncertainty that halves it. At 0.05 errors of two cameras are told a little better, and what one camera sees falls
+# below all that clients believe; at 0.10 every third joint that is 10 cm off is believed in full.
+_HALF_M = 0.06
+_HEAD = 0.5  # what the shirt tells of it, of the neck's
 
 _UPPER_TORSO = tuple(patch for patch in TORSO_PATCHES if "UPPER" in patch.name)
 _LOWER_TORSO = tuple(patch for patch in TORSO_PATCHES if "LOWER" in patch.name)
@@ -35,12 +35,6 @@ def _seen_by() -> dict[str, tuple[ShirtPatch, ...]]:
     return out
 
 
-_FOLLOWS = {
-    "head": "neck",
-    **{f"{side}{bone}": "hips" for side in SIDES for bone in ("UpperLeg", "LowerLeg", "Foot", "Toes")},
-}  # fmt: skip
-
-
 def _patches_of_joints() -> Floats:
     out = np.zeros((N_JOINTS, N_LABELS))
     for name, patches in _seen_by().items():
@@ -57,7 +51,8 @@ def joint_confidence(
     """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
     there is no evidence.
 
-    A hidden arm is near 0, whatever pose the prior gives it; what one camera sees loses by its depth. uncertainty_m (J,):
+    A hidden arm is near 0, whatever pose the prior gives it; what one camera sees loses by its depth. The head follows
+    the neck; of the legs the shirt tells nothing, which is 0. uncertainty_m (J,):
     one standard deviation of each place; away_s: since the last evidence [s].
     """
     if fit is None:
@@ -68,6 +63,5 @@ def joint_confidence(
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
     out = np.minimum(1.25 * share, 1.0) * enough
     out /= 1.0 + (uncertainty_m / _HALF_M) ** 2
-    for name, source in _FOLLOWS.items():
-        out[INDEX[name]] = _BELOW * out[INDEX[source]]
+    out[INDEX["head"]] = _HEAD * out[INDEX["neck"]]
     return np.asarray(out * np.exp(-away_s / FADE_S))
