@@ -33,9 +33,10 @@ def image_scales(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartialRender:
-    """Part of the body drawn in one camera, with the posed joints."""
+    """Part of the body drawn in one camera, with the posed joints; triangle_at (h,w): which of the part's, or -1."""
 
     ids: NDArray[np.uint8]
+    triangle_at: NDArray[np.int32]
     zbuffer: NDArray[np.float32]
     posed: PosedJoints
 
@@ -117,7 +118,7 @@ class IdMapRenderer:
         zbuffer = self._raster(
             self.xy, m.triangles[triangles], m.colour[triangles], ids, triangle_at
         )
-        return PartialRender(ids, zbuffer, self.posed)
+        return PartialRender(ids, triangle_at, zbuffer, self.posed)
 
     def draw(
         self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi

@@ -69,4 +69,6 @@ class LimbSearchParams:
     # in the cost of its fit
     unusual_px: float = 1.4
     unusual_cost: float = 1.0
+    hand_px: float = 1.0  # what a hand's pixel that is skin, or is not, counts beside a sleeve's
+    hand_cost: float = 1.0  # the same beside the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

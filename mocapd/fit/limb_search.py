@@ -6,56 +6,26 @@ Triggs 2003), and a low-discrepancy cloud about the present pose and about rest.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.joint_limits import from_swing_twist
-from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES, PoseSpace
-from mocapd.body.skeleton import INDEX
-from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.fit.arm_samples import SKIN_ID, Arm, arm_of, placed
+from mocapd.fit.body_drawing import PartialRender
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
-from mocapd.types import Floats, Ints
+from mocapd.types import Floats
 
 _LIBRARY = 2048
 _ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
 _PX = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Arm:
-    """One arm of the body model: its chain of joints (collar, upper, lower, hand) and surface samples (S,...)."""
-
-    side: str
-    chain: Ints
-    sample: Ints  # triangles of the samples
-    corners: NDArray[np.int32]  # (S,3) their vertices
-    link: Ints  # (S,2) two bones, as places in `chain`
-    weights: Floats  # (S,2)
-    colour: NDArray[np.uint8]
-    others: Ints  # all triangles but this arm's
-
-
-def arm_of(model: BodyModel, side: str) -> Arm:
-    """Cut one arm out of the body model; every third triangle of its sleeve is a sample."""
-    mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
-    chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_arm"].joints])
-    sample = np.flatnonzero(mine & (model.colour > 0))[::3]
-    bones, weights = model.triangle_bones[sample, :2], model.triangle_weights[sample, :2]
-    place = np.zeros(int(model.parents.size), dtype=np.int64)
-    place[chain] = np.arange(len(chain))
-    weights = np.where(np.isin(bones, chain), weights, 0.0)
-    return Arm(
-        side, chain, sample, model.triangles[sample], place[bones],
-        weights / weights.sum(axis=1, keepdims=True), model.colour[sample], np.flatnonzero(~mine),
-    )  # fmt: skip
 
 
 def candidates(
@@ -117,12 +87,7 @@ def score_arm_poses(
     """
     model = fitter.model
     body = fitter.shaper(state.factors)
-    corners = body.vertices[arm.corners]
-    points = corners.mean(axis=1)
-    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normals, axis=1)
-    normals /= area[:, None]
-    samples = ArmSamples(arm.chain, points, normals, area, arm.colour, arm.link, arm.weights)
+    samples = placed(body, arm, arm.sleeve)
     scores = -farther / _PX * _turned_rad2(hypotheses, hypotheses[0])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
@@ -132,16 +97,48 @@ def score_arm_poses(
     )  # fmt: skip
     scores -= fitter.params.collision_information / _PX * depths_m2
     for view in views:
-        drawing = fitter.drawings[view.index]
-        base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
-        image_scale = drawing.image_scale
-        score_arms(
-            hypotheses, samples, model.parents, base.posed, drawing.projection,
-            np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
-            base.zbuffer, base.ids, view.ids, view.pixel_weight, scores,
-        )  # fmt: skip
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+        _score(fitter, view, base, base.ids, view.ids, samples, hypotheses, scores)
     seen_px: Floats = _PX * scores
     return seen_px
+
+
+def score_hand_places(
+    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hypotheses: Floats
+) -> Floats:
+    """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
+    less what contradicts it (N,) [work px]; 0 where nobody looked for skin."""
+    samples = placed(fitter.shaper(state.factors), arm, arm.hand)
+    scores = np.zeros(len(hypotheses))
+    for view in views:
+        if view.bare is None:
+            continue
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+        drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
+        seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
+        _score(fitter, view, base, drawn, seen, samples, hypotheses, scores)
+    seen_px: Floats = _PX * scores
+    return seen_px
+
+
+def _score(
+    fitter: Fitter,
+    view: View,
+    base: PartialRender,
+    drawn: NDArray[np.uint8],
+    seen: NDArray[np.uint8],
+    samples: ArmSamples,
+    hypotheses: Floats,
+    scores: Floats,
+) -> None:
+    """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]."""
+    drawing = fitter.drawings[view.index]
+    image_scale = drawing.image_scale
+    score_arms(
+        hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
+        np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
+        base.zbuffer, drawn, seen, view.pixel_weight, scores,
+    )  # fmt: skip
 
 
 def best_arm_poses(hypotheses: Floats, scores: Floats, keep: int) -> list[int]:
@@ -219,8 +216,10 @@ class ArmSearch:
             )  # fmt: skip
             scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px)
             scores -= p.unusual_px * unusualness(tries, self._usual[side])
+            scores += p.hand_px * score_hand_places(self.fitter, fit.state, arm, views, tries)
             here = tries[0]
-            best, least = fit, fit.cost + self._price(side, here, here) - p.arm_gain
+            seen_px = self._hand_px(arm, fit, views)
+            best, least = fit, fit.cost + self._price(side, here, here) - seen_px - p.arm_gain
             for n in best_arm_poses(tries, scores, p.arm_fits):
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
@@ -228,12 +227,21 @@ class ArmSearch:
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
                 there = other.state.local_xyzw[arm.chain[:3]]
                 cost = other.cost + self._price(side, there, here)
+                cost -= self._hand_px(arm, other, views)
                 if cost < least:
                     best, least = other, cost
             if best is not fit:
                 fit = best
                 changed.append(side)
         return fit, tuple(changed)
+
+    def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View]) -> float:
+        """How much of the hand is seen where this fit has it, in the measure of its cost."""
+        if self.params.hand_cost == 0.0:
+            return 0.0
+        pose = fit.state.local_xyzw[arm.chain[:3]][None]
+        seen_px = score_hand_places(self.fitter, fit.state, arm, views, pose)
+        return self.params.hand_cost * float(seen_px[0])
 
     def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
         """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""

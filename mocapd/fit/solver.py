@@ -35,13 +35,15 @@ _NO_PIXELS = np.zeros(N_LABELS)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """One camera's evidence: ids and pixel_weight (h,w) over `roi`, taken dt_s after the asked instant."""
+    """One camera's evidence: ids and pixel_weight (h,w) over `roi`, taken dt_s after the asked instant; bare (h,w):
+    where skin may be, when that was looked for."""
 
     index: int
     roi: Roi
     ids: NDArray[np.uint8]
     pixel_weight: NDArray[np.uint8]
     dt_s: float
+    bare: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__

@@ -6,19 +6,22 @@ from mocapd.geometry.camera_model import project, to_camera
 from mocapd.types import BodyState, Camera, Floats, Skeleton
 from mocapd.wizard.step import Shape
 
-SURE = 0.35  # a joint of less confidence is drawn as a guess, one of none not at all
+SURE = (
+    0.35  # a joint of less confidence is drawn as a guess, one of which nothing is known not at all
+)
 _SHOWN = 0.005  # as the page of the live view, which has two digits of a confidence
 _WIDEST_M = 0.3  # of a halo: what is less certain is not known better for being drawn wider
 
 
 def bone_shapes(camera: Camera, body: BodyState, skeleton: Skeleton) -> tuple[Shape, ...]:
     """A line for each bone in pixels of the camera's frame, above halos of one standard deviation; nothing without a
-    pose, and no bone of which an end is behind the camera or has no confidence at all."""
+    pose, and no bone of which an end is behind the camera or has neither confidence nor an uncertainty."""
     if body.joints_m is None:
         return ()
     at_px = project(camera, body.joints_m)
     # lists: this is drawn over every picture of the live view, and numpy is slow at single numbers
-    drawn: list[bool] = (np.isfinite(at_px).all(axis=1) & (body.confidence > _SHOWN)).tolist()
+    known = (body.confidence > _SHOWN) | np.isfinite(body.uncertainty_m)
+    drawn: list[bool] = (np.isfinite(at_px).all(axis=1) & known).tolist()
     points = [(x, y) for x, y in at_px.tolist()]
     styles = ["bone" if sure else "hint" for sure in (body.confidence >= SURE).tolist()]
     bones = [

@@ -79,7 +79,8 @@ def drawn(page: Page, body: dict[str, Any]) -> tuple[Floats, Floats]:
     _, skeleton = left_hand_up()
     scene = json.loads(json.dumps(scene_json((), None, skeleton)))
     pictures = []
-    for one in (body, body | {"confidence": [0.0] * len(INDEX)}):
+    nothing = {"confidence": [0.0] * len(INDEX), "uncertainty_m": [None] * len(INDEX)}
+    for one in (body, body | nothing):
         shown = page.evaluate(DRAWN, {"scene": scene, "body": one})
         encoded = np.frombuffer(base64.b64decode(shown["picture"].partition(",")[2]), np.uint8)
         picture = cv2.imdecode(encoded, cv2.IMREAD_UNCHANGED)
@@ -119,6 +120,15 @@ def test_a_guess_is_drawn_fainter_and_in_another_colour(page: Page) -> None:
     x, y, _ = ((at[INDEX["leftLowerArm"]] + at[INDEX["leftHand"]]) / 2.0).astype(int)
     around = np.s_[y - 12 : y + 13, x - 12 : x + 13]
     assert 0 < (fainter[around] > 100).sum() < 0.6 * (change[around] > 100).sum()
+
+
+def test_an_arm_that_no_picture_shows_is_a_guess_and_does_not_vanish(page: Page) -> None:
+    hidden = upper_body()
+    for joint in ("leftLowerArm", "leftHand"):
+        hidden["confidence"] = changed(hidden["confidence"], joint, 0.0)
+        hidden["uncertainty_m"] = changed(hidden["uncertainty_m"], joint, 0.2)
+    at, change = drawn(page, hidden)
+    assert at_middle_of(at, change, "leftLowerArm", "leftHand") > 20
 
 
 def test_what_is_uncertain_is_seen_to_be(page: Page) -> None:

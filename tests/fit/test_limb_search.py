@@ -4,23 +4,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from mocapd.body.arrays import camera_arrays
 from mocapd.body.joint_limits import swing_twist
 from mocapd.body.model import shaped
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import HEAD, LEFT_ARM, RIGHT_ARM
+from mocapd.fit.arm_samples import arm_of, placed
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limb_search import (
     ArmSearch,
     arm_library,
-    arm_of,
     best_arm_poses,
     candidates,
     is_uncertain,
     score_arm_poses,
+    score_hand_places,
 )
-from mocapd.fit.limb_search_kernels import ArmSamples, score_arms
+from mocapd.fit.limb_search_kernels import score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
@@ -125,15 +128,15 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
     arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     nearest = base.zbuffer.copy()
-    corners = shaped(MODEL, state.factors)[0][arm.corners]
+    corners = shaped(MODEL, state.factors)[0][arm.sleeve.corners]
     rest = MODEL.rest_m
     joints, turned = by.joints(state)
     score = 0.0
-    for s in range(len(arm.sample)):
+    for s in range(len(arm.sleeve.triangle)):
         middle = corners[s].mean(axis=0)
         normal = 0.5 * np.cross(corners[s, 1] - corners[s, 0], corners[s, 2] - corners[s, 0])
         point, posed_normal = np.zeros(3), np.zeros(3)
-        for place, weight in zip(arm.link[s], arm.weights[s], strict=True):
+        for place, weight in zip(arm.sleeve.link[s], arm.sleeve.weights[s], strict=True):
             bone = arm.chain[place]
             point += weight * (joints[bone] + rotations.rotate(turned[bone], middle - rest[bone]))
             posed_normal += weight * rotations.rotate(turned[bone], normal)
@@ -149,7 +152,7 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
             continue
         have = view.ids[y, x]
         beside = base.ids[max(y - 2, 0) : y + 3, max(x - 2, 0) : x + 3]
-        if have == arm.colour[s]:
+        if have == arm.sleeve.colour[s]:
             score += 0.0 if (beside == have).any() else facing
         elif have and have == base.ids[y, x]:
             score -= facing
@@ -162,17 +165,11 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
 
 def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Floats) -> Floats:
     arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
-    corners = shaped(MODEL, state.factors)[0][arm.corners]
-    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normals, axis=1)
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     out = np.zeros(len(hypotheses))
     score_arms(
         hypotheses,
-        ArmSamples(
-            arm.chain, corners.mean(axis=1), normals / area[:, None], area, arm.colour, arm.link,
-            arm.weights,
-        ),
+        placed(by.shaper(state.factors), arm, arm.sleeve),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
         base.zbuffer, base.ids, view.ids, view.pixel_weight, out,
@@ -246,6 +243,54 @@ def test_an_arm_in_the_trunk_is_worth_less() -> None:
     assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0)[1] - 1.0
 
 
+def with_bare_skin(by: Fitter, state: MotionState, views: list[View]) -> list[View]:
+    """The same views; face and hands are seen to be bare."""
+    out = []
+    for view in views:
+        drawing = by.drawings[view.index]
+        drawing.render(state, view.dt_s, view.roi)
+        seen = drawing.last(view.roi)[1]
+        skin = np.append(
+            (MODEL.colour == 0) & np.isin(MODEL.part, (LEFT_ARM, RIGHT_ARM, HEAD)), False
+        )
+        out.append(replace(view, bare=skin[seen]))
+    return out
+
+
+def hand_px(by: Fitter, state: MotionState, views: list[View], *poses: str) -> Floats:
+    """What is seen of the left hand in these poses of its arm."""
+    bones = [INDEX["left" + bone] for bone in BONES]
+    tries = np.array([standing(pose).local_xyzw[bones] for pose in poses])
+    return score_hand_places(by, state, arm_of(MODEL, "left"), views, tries)
+
+
+def test_a_hand_is_where_skin_is_seen_that_is_nobody_elses() -> None:
+    by, truth = fitter(2), standing("guarding", "side_low")
+    views = with_bare_skin(by, truth, views_of(by, truth))
+    there, hanging, raised = hand_px(by, truth, views, "guarding", "hanging", "raised")
+    assert there > 10.0
+    assert max(hanging, raised) < 0.0
+    # of the other hand and of the face nothing is for this one
+    without = [
+        replace(v, bare=v.bare & ~by_left_hand(by, truth, v)) for v in views if v.bare is not None
+    ]
+    assert hand_px(by, truth, without, "guarding")[0] <= 0.0
+
+
+def test_a_hand_that_nobody_looked_for_counts_for_nothing() -> None:
+    by, truth = fitter(2), standing("guarding", "side_low")
+    assert not hand_px(by, truth, views_of(by, truth), "guarding", "hanging").any()
+
+
+def by_left_hand(by: Fitter, state: MotionState, view: View) -> NDArray[np.bool_]:
+    """Where the left hand is drawn (h,w)."""
+    drawing = by.drawings[view.index]
+    drawing.render(state, view.dt_s, view.roi)
+    hand = np.append((MODEL.colour == 0) & (MODEL.part == LEFT_ARM), False)
+    out: NDArray[np.bool_] = hand[drawing.last(view.roi)[1]]
+    return out
+
+
 # --- the search ------------------------------------------------------------------------------
 
 
@@ -280,6 +325,39 @@ def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
     for side in SIDES:
         off = arm_joints(by, fit.state, side) - arm_joints(by, truth, side)
         assert np.linalg.norm(off, axis=1).max() < 0.04
+
+
+def test_a_hidden_arm_goes_where_its_hand_is_seen() -> None:
+    """No colour of the sleeve shows."""
+    by, truth = fitter(2), standing("hand_on_hip", "hanging")
+    views = with_bare_skin(by, truth, views_of(by, truth))
+    colours = np.unique(arm_of(MODEL, "left").sleeve.colour)
+    wrong = swapped(truth, "left", standing("hand_on_belly", "hand_on_belly"))
+    hidden = [hidden_sleeve(by, truth, view, colours) for view in views]
+    off = []
+    for seen in (hidden, [replace(view, bare=None) for view in hidden]):
+        fit, search = (
+            by.fit(wrong, seen, 1 / 30, 1, learn_shape=False),
+            ArmSearch(by, LimbSearchParams()),
+        )
+        for turn in range(8):
+            fit, _ = search.improve(fit, seen, 1 / 30, turn, learn_shape=False)
+        off_m = arm_joints(by, fit.state, "left")[2] - arm_joints(by, truth, "left")[2]
+        off.append(float(np.linalg.norm(off_m)))
+    assert off[0] < 0.12
+    assert off[0] < 0.5 * off[1]
+
+
+def hidden_sleeve(by: Fitter, state: MotionState, view: View, colours: NDArray[np.uint8]) -> View:
+    """The left sleeve is behind something that is no shirt."""
+    drawing = by.drawings[view.index]
+    drawing.render(state, view.dt_s, view.roi)
+    sleeve = np.append((MODEL.colour > 0) & (MODEL.part == LEFT_ARM), False)
+    ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()
+    mine = sleeve[drawing.last(view.roi)[1]]
+    assert set(np.unique(ids[mine])) <= set(colours.tolist())
+    ids[mine], pixel_weight[mine] = 0, 60
+    return replace(view, ids=ids, pixel_weight=pixel_weight)
 
 
 def test_arms_that_agree_are_not_searched() -> None:

@@ -7,6 +7,7 @@ from mocapd.body.shirt_patches import standard_shirt
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation.bare_skin import face_disc, learned, statistics, whitening
+from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     ClassifierWeights,
@@ -137,3 +138,19 @@ def test_skin_seen_too_little_is_not_believed() -> None:
     few = np.concatenate([[10.0], 10.0 * SKIN_RGB[::-1]])
     seen = picture(SKIN_RGB)
     np.testing.assert_array_equal(classified(seen, few), classified(seen, np.zeros(4)))
+
+
+def test_bare_is_what_looks_like_skin_and_is_neither_shirt_nor_background() -> None:
+    affine = whitening(np.array([100.0, *(100.0 * SKIN_RGB[::-1])]), 0.04, 0.015, 0.25)
+    seen = picture(SKIN_RGB)
+    seen[:, 40:] = picture(np.array([0.1, 0.3, 0.8]))[:, 40:]
+    ids = np.zeros((40, 50), np.uint8)
+    ids[:10] = PINK
+    mean, age = seen.astype(np.float32), np.zeros((60, 60), np.uint8)
+    age[40:] = 255  # here the wall is known, and of the colour of skin
+    out = np.empty(ids.shape, np.bool_)
+    bare_pixels(seen, 0, 10, ids, affine, 3.0, mean, age, 14.0, out)
+    assert out[10:30, :40].mean() > 0.95
+    assert not out[:10].any()
+    assert not out[30:].any()
+    assert out[:, 40:].mean() < 0.01

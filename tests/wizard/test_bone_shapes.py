@@ -23,10 +23,11 @@ def body(confidence: float = 1.0, uncertainty_m: float = 0.01) -> BodyState:
 
 
 def without(one: BodyState, *joints: str) -> BodyState:
-    """The same, with no confidence in these."""
-    confidence = one.confidence.copy()
-    confidence[[INDEX[name] for name in joints]] = 0.0
-    return replace(one, confidence=confidence)
+    """The same, with nothing known of these."""
+    confidence, uncertainty_m = one.confidence.copy(), one.uncertainty_m.copy()
+    unknown = [INDEX[name] for name in joints]
+    confidence[unknown], uncertainty_m[unknown] = 0.0, np.inf
+    return replace(one, confidence=confidence, uncertainty_m=uncertainty_m)
 
 
 def test_a_bone_has_a_line_unless_nothing_is_known_of_an_end() -> None:
@@ -39,7 +40,18 @@ def test_a_bone_has_a_line_unless_nothing_is_known_of_an_end() -> None:
     knee_px = project(CAMERA, BODY.joints_m[INDEX["leftLowerLeg"]])
     ends_px = np.array(drawn).reshape(-1, 2)
     assert np.linalg.norm(ends_px - knee_px, axis=1).min() > 20.0
-    assert bone_shapes(CAMERA, body(confidence=0.0), SKELETON) == ()
+    assert bone_shapes(CAMERA, body(confidence=0.0, uncertainty_m=np.inf), SKELETON) == ()
+
+
+def test_an_arm_that_no_picture_shows_is_a_guess_with_its_halo() -> None:
+    hidden = body()
+    hidden.confidence[[ELBOW, HAND]] = 0.0
+    hidden.uncertainty_m[[ELBOW, HAND]] = 0.2
+    shapes = bone_shapes(CAMERA, hidden, SKELETON)
+    lines = [shape for shape in shapes if shape.kind == "line"]
+    assert len(lines) == len(SKELETON.names) - 1
+    assert any(line.style == "hint" for line in lines)
+    assert any(shape.kind == "halo" and shape.style == "hint" for shape in shapes)
 
 
 def test_a_halo_is_one_standard_deviation_wide_at_the_joints_distance() -> None:

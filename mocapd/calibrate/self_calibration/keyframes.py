@@ -33,7 +33,7 @@ def choose_keyframes(
     observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
-    least_confidence: float = 0.3,
+    least_confidence: float = 0.15,
 ) -> list[Keyframe]:
     """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow."""
     rated: list[tuple[float, Keyframe]] = []

@@ -16,6 +16,7 @@ from mocapd.shirt.colour.white_balance import remember_illumination
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation import bare_skin
 from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     ClassifierWeights,
@@ -247,6 +248,18 @@ class CameraSegmenter:
             keep = np.float32(np.exp(-8 * dt_s / p.count_memory_s))
             memory.shirt_count *= keep
             memory.other_count *= keep
+
+    def bare(self, roi: Roi, ids: Ids) -> NDArray[np.bool_] | None:
+        """Where bare skin may be (h,w), of a region that was classified as ids; None while skin is not known."""
+        p, memory = self.params, self.memory
+        if memory.skin_affine is bare_skin.NOWHERE:
+            return None
+        out = np.empty(ids.shape, np.bool_)
+        bare_pixels(
+            self.picture, roi[0], roi[1], ids, memory.skin_affine, p.bare_threshold,
+            memory.background_mean, memory.background_age, 255.0 * p.background_tolerance, out,
+        )  # fmt: skip
+        return out
 
     @property
     def is_due_for_skin(self) -> bool:

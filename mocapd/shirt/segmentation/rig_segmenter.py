@@ -70,7 +70,8 @@ class RigSegmenter:
             ids, pixel_weight = self.each[i].classify(
                 predicted, drawing.outline(), roi, colours, may_relight=True
             )
-            views.append(View(i, roi, ids, pixel_weight, dt_s))
+            bare = self.each[i].bare(roi, ids) if uncertain else None
+            views.append(View(i, roi, ids, pixel_weight, dt_s, bare))
         return views
 
     def learn_with(self, state: MotionState, fit: Fit, views: list[View], redraw: bool) -> None:

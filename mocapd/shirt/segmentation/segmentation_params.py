@@ -21,6 +21,7 @@ class SegmentationParams:
     background_penalty: float = 1.5  # added where static background is seen [standard deviations]
     other_penalty: float = 1.5  # added where the colour is rather seen on other things
     skin_penalty: float = 0.3  # by how much skin must be nearer than a colour of the shirt
+    bare_threshold: float = 3.0  # from which on nothing is skin [standard deviations]
     skin_memory_s: float = 1.0  # time constant of the colour of the skin
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
     background_jump: float = 0.25  # share of the background that changes at once when a lamp does

@@ -10,7 +10,7 @@ const KEY_TURN = 0.12; // rad
 const NEAREST_M = 1.5;
 const FARTHEST_M = 20;
 // as wizard/bone_shapes.py
-const SURE = 0.35; // joints of less confidence are drawn as guesses, those of none not at all
+const SURE = 0.35; // joints of less confidence are drawn as guesses, those of which nothing is known not at all
 const WIDEST_M = 0.3; // of a halo: what is less certain is not known better for being drawn wider
 
 export class StickFigure {
@@ -180,7 +180,7 @@ function drawCamera(pen, camera, colour) {
 function drawBody(pen, body, parents, colour) {
   const [bone, hint] = [colour("shape-bone"), colour("shape-hint")];
   const sure = body.tracking === "live" ? bone : hint;
-  const isKnown = (i) => body.confidence[i] > 0;
+  const isKnown = (i) => body.confidence[i] > 0 || Number.isFinite(body.uncertainty_m[i]);
   const lookOf = (i) => (body.confidence[i] >= SURE ? sure : hint);
   const bones = parents.flatMap((parent, i) => (parent >= 0 && isKnown(i) && isKnown(parent) ? [[parent, i]] : []));
   body.joints_m.forEach(([x, , z], i) => {

@@ -12,7 +12,7 @@ from mocapd.clock import nanoseconds
 from mocapd.trackers.base import Track
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Tracking
 
-_SURE = 0.4  # mean confidence of the arms' joints in an observation that counts
+_SURE = 0.15  # mean confidence of the arms' joints in an observation that counts
 _SIDES = [
     [INDEX[side + bone] for bone in ("UpperArm", "LowerArm", "Hand")] for side in ("left", "right")
 ]

@@ -48,8 +48,6 @@ def known_but(value: float, *bones: str) -> Floats:
 
 
 def of_the_shirt(trunk: float = 0.9) -> Floats:
-    """As a tracker of the shirt has it: head and legs follow, with half the confidence of the trunk."""
-    below = [
-        name for name in SKELETON.names if name == "head" or name.endswith(("Leg", "Foot", "Toes"))
-    ]
-    return trunk * known_but(0.5, *below)
+    """As a tracker of the shirt has it: the head follows, with half the confidence of the trunk; of legs it knows nothing."""
+    legs = [name for name in SKELETON.names if name.endswith(("Leg", "Foot", "Toes"))]
+    return trunk * known_but(0.5, "head") * known_but(0.0, *legs)

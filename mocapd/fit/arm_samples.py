@@ -1,0 +1,76 @@
+"""One arm cut out of the body model: its joints, and samples of its sleeve and of the bare hand beyond the cuff."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.model import BodyModel
+from mocapd.body.shaping import Shaped
+from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM, TORSO
+from mocapd.fit.limb_search_kernels import ArmSamples
+from mocapd.types import Floats, Ints
+
+SKIN_ID = 11  # as a colour, beside the ten of the shirt
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceSamples:
+    """Triangles (S,) of an arm with their vertices (S,3), two bones (S,2) as places in its chain, their weights (S,2),
+    and colours (S,)."""
+
+    triangle: Ints
+    corners: NDArray[np.int32]
+    link: Ints
+    weights: Floats
+    colour: NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arm:
+    """One arm of the body model: its chain of joints (collar, upper, lower, hand), samples of sleeve and bare hand."""
+
+    side: str
+    chain: Ints
+    sleeve: SurfaceSamples
+    hand: SurfaceSamples
+    others: Ints  # all triangles but this arm's
+    is_skin: NDArray[np.bool_]  # of these head and other hand, with a False for none
+
+
+def arm_of(model: BodyModel, side: str) -> Arm:
+    """Cut one arm out of the body model; every third triangle is a sample."""
+    mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
+    chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_arm"].joints])
+    bare = (model.colour == 0) & (model.part != TORSO) & (model.part != LEGS)
+    sleeve, hand = mine & (model.colour > 0), mine & (model.colour == 0)
+    return Arm(
+        side, chain, _samples(model, chain, np.flatnonzero(sleeve)[::3], model.colour),
+        _samples(model, chain, np.flatnonzero(hand)[::3], np.full_like(model.colour, SKIN_ID)),
+        np.flatnonzero(~mine), np.append(bare[~mine], False),
+    )  # fmt: skip
+
+
+def _samples(
+    model: BodyModel, chain: Ints, triangle: Ints, colour: NDArray[np.uint8]
+) -> SurfaceSamples:
+    bones, weights = model.triangle_bones[triangle, :2], model.triangle_weights[triangle, :2]
+    place = np.zeros(int(model.parents.size), dtype=np.int64)
+    place[chain] = np.arange(len(chain))
+    weights = np.where(np.isin(bones, chain), weights, 0.0)
+    return SurfaceSamples(
+        triangle, model.triangles[triangle], place[bones],
+        weights / weights.sum(axis=1, keepdims=True), colour[triangle],
+    )  # fmt: skip
+
+
+def placed(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
+    """Samples on a body of this shape, in the T-pose."""
+    corners = body.vertices[of.corners]
+    normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    normals /= area[:, None]
+    return ArmSamples(
+        arm.chain, corners.mean(axis=1), normals, area, of.colour, of.link, of.weights
+    )
