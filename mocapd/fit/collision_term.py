@@ -21,9 +21,10 @@ _BELOW_HIPS_M = 0.12  # the cylinder begins there
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TorsoHull:
-    """Which vertices make each slice of the trunk; of one body model."""
+    """The vertices of the trunk slice by slice, and where in them each slice begins (SLICES,); of one body model."""
 
-    slices: tuple[Ints, ...]
+    vertices: Ints
+    first: Ints
 
     @classmethod
     def of(cls, model: BodyModel) -> "TorsoHull":
@@ -32,19 +33,21 @@ class TorsoHull:
         y_m = model.vertices_m[mine, 1]
         low, high = _span_m(model.rest_m)
         place = np.clip(((y_m - low) / (high - low) * SLICES).astype(int), -1, SLICES)
-        return cls(tuple(mine[place == k] for k in range(SLICES)))
+        slices = [mine[place == k] for k in range(SLICES)]
+        return cls(np.concatenate(slices), np.cumsum([0, *map(len, slices[:-1])]))
 
     def sized(self, body: Shaped) -> TorsoSlices:
         """Half axes and middles of the slices of a wearer, about the line from the hips to the upper chest [m]."""
-        vertices, rest = body.vertices, body.rest
+        rest, first = body.rest, self.first
         hips, top = rest[INDEX["hips"]], rest[INDEX["upperChest"]]
         low, high = _span_m(rest)
-        out = np.empty((SLICES, 3))
-        for k, which in enumerate(self.slices):
-            x, y, z = vertices[which].T
-            along = (y.mean() - hips[1]) / (top[1] - hips[1])
-            line_z = hips[2] + along * (top[2] - hips[2])
-            out[k] = np.abs(x).max(), 0.5 * (z.max() - z.min()), 0.5 * (z.max() + z.min()) - line_z
+        x, y, z = body.vertices[self.vertices].T
+        counts = np.diff(first, append=len(self.vertices))
+        along = (np.add.reduceat(y, first) / counts - hips[1]) / (top[1] - hips[1])
+        back, front = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
+        line_z = hips[2] + along * (top[2] - hips[2])
+        half_x, half_z = np.maximum.reduceat(np.abs(x), first), 0.5 * (front - back)
+        out = np.stack([half_x, half_z, 0.5 * (front + back) - line_z], axis=1)
         return TorsoSlices(out, low - hips[1], high - hips[1])
 
 

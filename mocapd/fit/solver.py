@@ -193,6 +193,7 @@ class Fitter:
         fine = p.fine_iterations if fine is None else fine
         priors = self._narrow if self._is_narrow(prediction, views) else self._wide
         H = held = np.zeros((P, P))
+        torso = plain(self.torso(self.shaper(state.factors)))
         coarse = [_coarse(view) for view in views]
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
@@ -218,7 +219,7 @@ class Fitter:
                 R,
                 joints,
                 m.parents,
-                plain(self.torso(one.body)),
+                torso,
                 self._plain_arms,
                 p.collision_information,
                 held,
