@@ -6,7 +6,13 @@ from mocapd.body.arrays import plain
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.segmentation import appearance as looks
-from mocapd.shirt.segmentation.bare_skin import face_disc, learned, statistics, whitening
+from mocapd.shirt.segmentation.bare_skin import (
+    face_disc,
+    hand_sized,
+    learned,
+    statistics,
+    whitening,
+)
 from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
@@ -154,3 +160,15 @@ def test_bare_is_what_looks_like_skin_and_is_neither_shirt_nor_background() -> N
     assert not out[:10].any()
     assert not out[30:].any()
     assert out[:, 40:].mean() < 0.01
+
+
+def test_a_wall_of_the_colour_of_skin_and_specks_are_no_hand() -> None:
+    may_be = np.zeros((100, 100), np.bool_)
+    hand = np.s_[10:20, 10:18]
+    may_be[hand] = True
+    may_be[40:80, 30:90] = True
+    may_be[5, 60] = may_be[90, 5] = True
+    expected = np.zeros_like(may_be)
+    expected[hand] = True
+    np.testing.assert_array_equal(hand_sized(may_be), expected)
+    assert not hand_sized(np.zeros((8, 8), np.bool_)).any()

@@ -4,6 +4,7 @@ In some light skin is the shirt's pink or orange, and face and hands are beside 
 skin looks like now tells them apart. Trousers, tried likewise, helped in some sessions and harmed in others.
 """
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +25,7 @@ _SEEN_PX = 30.0  # before it is believed
 _RED = (0.36, 0.62)  # share of red, and of green, of skin in white-balanced light
 _GREEN = (0.22, 0.36)
 _DARK = 0.08  # brightness below which shares mean nothing, 0..1
+_HAND_PX = (4, 400)  # of work pictures; one that is spread out at 1.5 m takes 400
 NOWHERE: Singles = np.zeros((3, 4), np.float32)  # an affine that no pixel is near to
 NOWHERE[0, 3] = 1e4
 
@@ -71,6 +73,16 @@ def _can_be_skin(balanced: Floats) -> NDArray[np.bool_]:
     bright = total > 3.0 * _DARK
     in_hue = (red > _RED[0]) & (red < _RED[1]) & (green > _GREEN[0]) & (green < _GREEN[1])
     out: NDArray[np.bool_] = bright & in_hue
+    return out
+
+
+def hand_sized(bare: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of what may be skin (h,w): what hangs together and is neither noise nor, as a wall is, larger than a hand."""
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(bare.astype(np.uint8), connectivity=4)
+    area = stats[:, cv2.CC_STAT_AREA]
+    kept = (area >= _HAND_PX[0]) & (area <= _HAND_PX[1])
+    kept[0] = False
+    out: NDArray[np.bool_] = kept[labels]
     return out
 
 

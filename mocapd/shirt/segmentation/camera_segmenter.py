@@ -250,7 +250,7 @@ class CameraSegmenter:
             memory.other_count *= keep
 
     def bare(self, roi: Roi, ids: Ids) -> NDArray[np.bool_] | None:
-        """Where bare skin may be (h,w), of a region that was classified as ids; None while skin is not known."""
+        """Where a bare hand may be (h,w), of a region that was classified as ids; None while skin is not known."""
         p, memory = self.params, self.memory
         if memory.skin_affine is bare_skin.NOWHERE:
             return None
@@ -259,7 +259,7 @@ class CameraSegmenter:
             self.picture, roi[0], roi[1], ids, memory.skin_affine, p.bare_threshold,
             memory.background_mean, memory.background_age, 255.0 * p.background_tolerance, out,
         )  # fmt: skip
-        return out
+        return bare_skin.hand_sized(out)
 
     @property
     def is_due_for_skin(self) -> bool:
