@@ -4,7 +4,8 @@ import math
 
 from mocapd.outputs.wire import SkeletonFrame
 
-SEEN_ABOVE = 0.5  # confidence; what only follows another bone has less, see the trackers
+SEEN_ABOVE = 0.15  # confidence
+_OWN = 0.75  # of the upper chest's confidence: a head of less only follows it, see the trackers
 _LEVEL = 0.3  # of the forward direction, at least this much must be level [share]; else it says little of the yaw
 # who is asked to look ahead does so with head and body: the first of these that is seen
 _BONES = ("head", "upperChest", "hips")
@@ -15,9 +16,12 @@ def facing_yaw_rad(frame: SkeletonFrame) -> float | None:
 
     None when nothing is seen that would tell.
     """
+    chest = frame.joints.get("upperChest")
     for name in _BONES:
         joint = frame.joints.get(name)
         if joint is None or joint.c <= SEEN_ABOVE:
+            continue
+        if name == "head" and chest is not None and joint.c < _OWN * chest.c:
             continue
         x, y, z, w = joint.r
         to_left, ahead = 2.0 * (x * z + w * y), 1.0 - 2.0 * (x * x + y * y)

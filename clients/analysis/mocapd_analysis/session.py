@@ -15,7 +15,7 @@ Flags = NDArray[np.bool_]
 # frames at 30 Hz may be missing; a swing's speed stays within a few percent over so short a hole.
 LONGEST_JOINED_S = 0.12
 SHORTEST_SEGMENT = 5  # frames; of fewer nothing can be said about speed
-LEAST_CONFIDENCE = 0.2  # of a joint in a frame; below, the tracker had next to no evidence
+LEAST_CONFIDENCE = 0.1  # of a joint in a frame; below, the tracker had next to no evidence
 
 
 @dataclass(frozen=True, eq=False)  # without slots: what is cached lies beside the fields

@@ -138,7 +138,7 @@ def test_a_body_of_which_the_shirt_tells_no_legs_sends_none(line: Line) -> None:
 def test_a_tracker_ends_where_its_bone_is_hidden_and_does_not_flicker(line: Line) -> None:
     line.open(trackers=("hip", "feet", "elbows"), rate_hz=200.0)
     seen = []
-    for number, value in enumerate((1.0, 0.3, 0.2, 0.1, 0.2, 0.3, 0.4)):
+    for number, value in enumerate((1.0, 0.2, 0.1, 0.05, 0.1, 0.14, 0.2)):
         confidence = known_but(value, "leftUpperArm")
         frame = stepping_left(confidence=confidence, now_ns=number * NS_PER_S // 30)
         seen.append(7 in line.numbers(frame))

@@ -54,7 +54,7 @@ const POSE := "default"
 ## After so long without a frame there is no tracking data [s].
 @export var silence_s: float = 0.5
 ## A joint is flagged as tracked when mocapd's confidence in it is above this.
-@export_range(0.0, 1.0) var tracked_above: float = 0.5
+@export_range(0.0, 1.0) var tracked_above: float = 0.15
 
 var _frames := Frames.new()
 var _socket := Socket.new()
