@@ -17,8 +17,9 @@ from mocapd.calibrate.self_calibration.joint_solver import (
     SelfCalibrationParams,
     SelfCalibrationReport,
 )
+from mocapd.calibrate.self_calibration.joint_track import followed_together
 from mocapd.calibrate.self_calibration.keyframes import Keyframe
-from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, PatchSighting
+from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, PatchSighting
 from mocapd.calibrate.self_calibration.ring_pairs import RingPairs, ring_pairs
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibrate.self_calibration.surface_residuals import free_body
@@ -28,7 +29,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
-from mocapd.geometry.camera_model import centre, to_camera
+from mocapd.geometry.camera_model import centre, from_camera, to_camera
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 
@@ -233,3 +234,48 @@ def test_a_camera_that_never_saw_the_wearer_is_named() -> None:
     alone = [{"left": m["left"]} for m in observations(4)]
     with pytest.raises(ConfigError, match="'right'"):
         extrinsics_from_body(alone, lenses(), STATURE_M)
+
+
+def off_m(seen: PatchObservation, i: int) -> float:
+    """How far the marks of the i-th pose are from the truth, in the camera that places them worst."""
+    true = FITTER.joints(walking(i))[0][MARKS]
+    by_camera = [
+        np.linalg.norm(from_camera(c, seen[c.name].joints_m[MARKS]) - true, axis=1).mean()
+        for c in CAMERAS
+    ]
+    return float(max(by_camera))
+
+
+def test_both_cameras_together_place_the_body_where_it_is() -> None:
+    seen = observations(6)
+    together = followed_together(seen, Rig(CAMERAS), MODEL, np.ones(MODEL.n_shape))
+    after = [off_m(m, i) for i, m in enumerate(together)]
+    assert float(np.mean(after)) < 0.015
+    assert float(np.mean([off_m(m, i) for i, m in enumerate(seen)])) > 3.0 * float(np.mean(after))
+
+
+def test_a_body_that_was_followed_is_kept_when_each_camera_alone_has_it_wrong() -> None:
+    """Four frames of somebody who stands still; of the last both cameras think that the arms hang."""
+    first, hanging = observations(1)[0], observations(5)[4]
+    wrong = {
+        name: replace(s, joints_m=hanging[name].joints_m, quats_xyzw=hanging[name].quats_xyzw)
+        for name, s in first.items()
+    }
+    frames = [
+        {
+            name: replace(s, t_ns=nanoseconds(k / 30))
+            for name, s in (wrong if k == 3 else first).items()
+        }
+        for k in range(4)
+    ]
+    together = followed_together(frames, Rig(CAMERAS), MODEL, np.ones(MODEL.n_shape))
+    assert off_m(together[3], 0) < 0.015
+
+
+def test_an_observation_of_one_camera_or_of_another_picture_is_left_empty() -> None:
+    seen = observations(2)
+    nobody = {name: replace(s, ids=np.zeros_like(s.ids)) for name, s in seen[1].items()}
+    together = followed_together(
+        [{"left": seen[0]["left"]}, nobody], Rig(CAMERAS), MODEL, np.ones(MODEL.n_shape)
+    )
+    assert together == [{}, {}]

@@ -33,9 +33,25 @@ def choose_keyframes(
     observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
-    least_confidence: float = 0.15,
+    least_confidence: float = 0.3,
+    at_worst: float = 0.1,
 ) -> list[Keyframe]:
-    """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow."""
+    """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow.
+
+    at_worst: the confidence that does when fewer than half of `count` have the other.
+    """
+    chosen = _chosen(observations, names, count, least_confidence)
+    if len(chosen) < count / 2 and at_worst < least_confidence:
+        return _chosen(observations, names, count, at_worst)
+    return chosen
+
+
+def _chosen(
+    observations: Sequence[PatchObservation],
+    names: Sequence[str],
+    count: int,
+    least_confidence: float,
+) -> list[Keyframe]:
     rated: list[tuple[float, Keyframe]] = []
     last: dict[int, PatchSighting] = {}
     for observation in observations:

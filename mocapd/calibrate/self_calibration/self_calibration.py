@@ -1,11 +1,14 @@
-"""The extrinsics from the wearer alone: keyframes are chosen, cameras placed, all solved together, gravity found."""
+"""The extrinsics from the wearer alone: keyframes are chosen, cameras placed, all solved together, gravity found.
+
+In two passes: in the second the poses start from where all cameras together see the wearer.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.model import build_model
+from mocapd.body.model import BodyModel, build_model
 from mocapd.calibrate.self_calibration.camera_uncertainty import uncertainty_of
 from mocapd.calibrate.self_calibration.gravity_alignment import align_with_gravity
 from mocapd.calibrate.self_calibration.initial_extrinsics import initial_extrinsics
@@ -14,10 +17,12 @@ from mocapd.calibrate.self_calibration.joint_solver import (
     SelfCalibrationParams,
     SelfCalibrationReport,
 )
+from mocapd.calibrate.self_calibration.joint_track import followed_together
 from mocapd.calibrate.self_calibration.keyframes import choose_keyframes
 from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation
 from mocapd.calibrate.self_calibration.ring_bundle import place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import ring_pairs
+from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.geometry.camera_model import camera_from_world, centre, with_extrinsics
@@ -46,11 +51,41 @@ def extrinsics_from_body(
         old = {camera.name: camera for camera in near.cameras}
         before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in bare_cameras]
         solvers.append(JointSolver(model, before, keyframes, p))
-    rig, report, covariances = min(solvers, key=lambda solver: solver.cost).solve()
-    rig, report = _with_rings(
-        rig, report, covariances, observations, stature_m, p.surface_uncertainty
-    )
+    found = _solved(min(solvers, key=lambda solver: solver.cost), observations, stature_m, p)
+    rig, report = _again(*found, observations, model, p)
     return align_with_gravity(rig, observations, stature_m, report.factors), report
+
+
+def _solved(
+    solver: JointSolver,
+    observations: Sequence[PatchObservation],
+    stature_m: float,
+    params: SelfCalibrationParams,
+) -> tuple[Rig, SelfCalibrationReport]:
+    """One pass: by all of the body, then weighed against the sleeve rings of the lone trackers' observations."""
+    rig, report, covariances = solver.solve()
+    return _with_rings(
+        rig, report, covariances, observations, stature_m, params.surface_uncertainty
+    )
+
+
+def _again(
+    rig: Rig,
+    report: SelfCalibrationReport,
+    observations: Sequence[PatchObservation],
+    model: BodyModel,
+    params: SelfCalibrationParams,
+) -> tuple[Rig, SelfCalibrationReport]:
+    """The second pass; the same as given when all cameras together see too little of the wearer."""
+    together = followed_together(observations, rig, model, report.factors)
+    keyframes = choose_keyframes(together, rig.names, params.keyframes)
+    if len(keyframes) < params.least_keyframes:
+        return rig, report
+    try:
+        solver = JointSolver(model, rig.cameras, keyframes, params)
+        return _solved(solver, observations, model.stature_m, params)
+    except ConfigError:
+        return rig, report
 
 
 def _with_rings(

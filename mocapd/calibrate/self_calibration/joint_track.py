@@ -1,0 +1,108 @@
+"""The wearer followed by all cameras together, in the pictures that each of them classified alone.
+
+A lone camera has arms point the wrong way for seconds. Once it is known nearly where the cameras stand, both
+together tell; solving anew from there is what a second pass gains.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
+from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, PatchSighting
+from mocapd.clock import seconds
+from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, moved, step_between
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import to_camera
+from mocapd.types import Camera, Floats, Rig
+
+_ITERATIONS = 6
+_LOOSE_S = 0.4  # a lone camera's body is held to as loosely as a prediction over this time
+_LONGEST_GAP_S = 0.2  # over which a pose is predicted
+_LEAST_MATCH = 0.6
+_FASTEST = 8.0  # of a pose, m/s and rad/s
+_DAMPING = 0.8
+
+
+class _Follower:
+    """Fits one observation after the other; remembers the last."""
+
+    def __init__(self, model: BodyModel, cameras: Sequence[Camera], factors: Floats) -> None:
+        params = FitParams()
+        self._scales = image_scales(cameras, params.work_width_px)
+        self._fitter = Fitter(model, cameras, self._scales, params)
+        self._model, self._cameras, self._factors = model, cameras, factors
+        self._last: tuple[int, MotionState] | None = None
+
+    def follow(self, keyframe: Keyframe) -> Fit | None:
+        """The body in one observation; None when the pictures do not confirm it."""
+        views = keyframe_views(keyframe, self._scales)
+        starts = initial_states(keyframe, self._cameras, self._model, self._factors)
+        last, dt_s = self._before(keyframe.t_ns)
+        if last is not None:
+            starts = [replace(s, velocity=last.velocity) for s in starts]
+        fits = [
+            self._fitter.fit(s, views, _LOOSE_S, _ITERATIONS, learn_shape=False) for s in starts
+        ]
+        if last is not None:
+            fits.append(self._predicted(last, views, dt_s))
+        best = min(fits, key=lambda fit: fit.cost)
+        self._last = None
+        if best.match < _LEAST_MATCH:
+            return None
+        velocity = np.zeros(self._model.n_pose)
+        if last is not None:
+            now, before = ((s.root_m, s.local_xyzw) for s in (best.state, last))
+            velocity = np.clip(step_between(self._model, now, before) / dt_s, -_FASTEST, _FASTEST)
+        self._last = keyframe.t_ns, replace(best.state, velocity=velocity)
+        return best
+
+    def _before(self, t_ns: int) -> tuple[MotionState | None, float]:
+        """The state that this one is predicted from, and how long ago that was [s]."""
+        if self._last is None:
+            return None, 0.0
+        dt_s = seconds(t_ns - self._last[0])
+        return (self._last[1], dt_s) if 0.0 < dt_s < _LONGEST_GAP_S else (None, dt_s)
+
+    def sighting(self, fit: Fit, seen: PatchSighting, camera: Camera, dt_s: float) -> PatchSighting:
+        """What a camera saw, with the body that all of them see, dt_s later."""
+        root, local = moved(self._model, fit.state, dt_s)
+        joints, quats = self._fitter.joints(replace(fit.state, root_m=root, local_xyzw=local))
+        turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
+        return replace(seen, joints_m=to_camera(camera, joints), quats_xyzw=turned)
+
+    def _predicted(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
+        root, local = moved(self._model, last, dt_s, _DAMPING)
+        state = replace(last, root_m=root, local_xyzw=local)
+        return self._fitter.fit(state, views, dt_s, _ITERATIONS, learn_shape=False)
+
+
+def followed_together(
+    observations: Sequence[PatchObservation], rig: Rig, model: BodyModel, factors: Floats
+) -> list[PatchObservation]:
+    """The observations with the one body that all cameras see, which has these proportions (n_shape,).
+
+    Those of a lone camera, and those in which the pictures do not agree, are left empty.
+    """
+    follower = _Follower(model, rig.cameras, factors)
+    out: list[PatchObservation] = []
+    for observation in observations:
+        seen = {i: observation[n] for i, n in enumerate(rig.names) if n in observation}
+        together: dict[str, PatchSighting] = {}
+        if len(seen) >= 2:
+            t_ns = seen[min(seen)].t_ns
+            fit = follower.follow(Keyframe(t_ns, seen, None))
+            if fit is not None:
+                sure = np.maximum.reduce([s.confidence for s in seen.values()])
+                for i, sighting in seen.items():
+                    camera = rig.cameras[i]
+                    later_s = seconds(sighting.t_ns - t_ns)
+                    mine = follower.sighting(fit, sighting, camera, later_s)
+                    together[camera.name] = replace(mine, confidence=sure)
+        out.append(together)
+    return out
