@@ -118,7 +118,7 @@ def test_a_recentre_tells_which_way_the_newest_person_faces() -> None:
     assert (facing.instance, facing.person) == ("pc", run.sink.frames[-1].person)
     assert facing.at_unix_ns == run.sink.frames[-1].capture_unix_ns
     lost = replace(seen, tracking=Tracking.LOST, pose=None, joints_m=None)
-    hidden = replace(seen, confidence=np.full(len(SKELETON.names), 0.5))
+    hidden = replace(seen, confidence=np.full(len(SKELETON.names), 0.1))
     for body in (lost, replace(seen, tracking=Tracking.COASTING), hidden):
         put(body)
         with pytest.raises(UnavailableError):
