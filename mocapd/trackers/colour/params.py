@@ -11,7 +11,7 @@ class ShapeLearningParams:
     """When the proportions are learned while tracking, and how fast."""
 
     learn: bool = True
-    gain: float = 0.5  # share of a frame's information kept: errors last over frames
+    gain: float = 0.6  # share of a frame's information kept: errors last over frames
     learning_s: float = 6.0  # proportions settle over the first seconds of good tracking
     least_match: float = 0.7  # agreement of a frame that teaches
 
