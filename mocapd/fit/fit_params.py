@@ -65,6 +65,9 @@ class LimbSearchParams:
     farther_px: float = (
         5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]
     )
+    # share of an arm's area before background that denies it; where all cameras look from one side, little else does
+    empty: float = 0.25
+    empty_narrow: float = 0.5
     # what a pose costs that arms seldom have, by its squared Mahalanobis distance: of what is seen of it [work px], and
     # in the cost of its fit
     unusual_px: float = 1.4

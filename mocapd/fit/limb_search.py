@@ -80,10 +80,12 @@ def score_arm_poses(
     views: Sequence[View],
     hypotheses: Floats,
     farther: float,
+    empty: float,
 ) -> Floats:
     """How much of each hypothesis (N,3,4) is seen, less what contradicts it and what is in the trunk (N,) [work px].
 
-    farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2].
+    farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2]; empty: share of
+    what lies where the picture shows none of the shirt's colours that contradicts it.
     """
     model = fitter.model
     body = fitter.shaper(state.factors)
@@ -98,16 +100,21 @@ def score_arm_poses(
     scores -= fitter.params.collision_information / _PX * depths_m2
     for view in views:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
-        _score(fitter, view, base, base.ids, view.ids, samples, hypotheses, scores)
+        _score(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, scores)
     seen_px: Floats = _PX * scores
     return seen_px
 
 
 def score_hand_places(
-    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hypotheses: Floats
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    empty: float,
 ) -> Floats:
     """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
-    less what contradicts it (N,) [work px]; 0 where nobody looked for skin."""
+    less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for sleeves."""
     samples = placed(fitter.shaper(state.factors), arm, arm.hand)
     scores = np.zeros(len(hypotheses))
     for view in views:
@@ -116,7 +123,7 @@ def score_hand_places(
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
         drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
         seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
-        _score(fitter, view, base, drawn, seen, samples, hypotheses, scores)
+        _score(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
     seen_px: Floats = _PX * scores
     return seen_px
 
@@ -129,6 +136,7 @@ def _score(
     seen: NDArray[np.uint8],
     samples: ArmSamples,
     hypotheses: Floats,
+    empty: float,
     scores: Floats,
 ) -> None:
     """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]."""
@@ -137,7 +145,7 @@ def _score(
     score_arms(
         hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
         np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
-        base.zbuffer, drawn, seen, view.pixel_weight, scores,
+        base.zbuffer, drawn, seen, view.pixel_weight, empty, scores,
     )  # fmt: skip
 
 
@@ -196,7 +204,7 @@ class ArmSearch:
             tries = candidates(
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
             )
-            score_arm_poses(self.fitter, state, arm, views, tries, 0.0)
+            score_arm_poses(self.fitter, state, arm, views, tries, 0.0, 0.0)
 
     def improve(
         self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
@@ -207,6 +215,7 @@ class ArmSearch:
         """
         p = self.params
         changed = []
+        empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
@@ -214,11 +223,13 @@ class ArmSearch:
                 self.fitter, fit.state, arm, views,
                 _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
             )  # fmt: skip
-            scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px)
+            scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px, empty)
             scores -= p.unusual_px * unusualness(tries, self._usual[side])
-            scores += p.hand_px * score_hand_places(self.fitter, fit.state, arm, views, tries)
+            scores += p.hand_px * score_hand_places(
+                self.fitter, fit.state, arm, views, tries, empty
+            )
             here = tries[0]
-            seen_px = self._hand_px(arm, fit, views)
+            seen_px = self._hand_px(arm, fit, views, empty)
             best, least = fit, fit.cost + self._price(side, here, here) - seen_px - p.arm_gain
             for n in best_arm_poses(tries, scores, p.arm_fits):
                 local = fit.state.local_xyzw.copy()
@@ -227,7 +238,7 @@ class ArmSearch:
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
                 there = other.state.local_xyzw[arm.chain[:3]]
                 cost = other.cost + self._price(side, there, here)
-                cost -= self._hand_px(arm, other, views)
+                cost -= self._hand_px(arm, other, views, empty)
                 if cost < least:
                     best, least = other, cost
             if best is not fit:
@@ -235,12 +246,12 @@ class ArmSearch:
                 changed.append(side)
         return fit, tuple(changed)
 
-    def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View]) -> float:
+    def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
         """How much of the hand is seen where this fit has it, in the measure of its cost."""
         if self.params.hand_cost == 0.0:
             return 0.0
         pose = fit.state.local_xyzw[arm.chain[:3]][None]
-        seen_px = score_hand_places(self.fitter, fit.state, arm, views, pose)
+        seen_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)
         return self.params.hand_cost * float(seen_px[0])
 
     def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:

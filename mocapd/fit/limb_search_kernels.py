@@ -127,9 +127,11 @@ def score_arms(
     base_ids: NDArray[np.uint8],
     image_ids: NDArray[np.uint8],
     pixel_weight: NDArray[np.uint8],
+    empty: float,
     scores: Array,
 ) -> None:
-    """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2].
+    """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2], and
+    less a share `empty`, by pixel_weight, where it has none of the shirt's.
 
     hypotheses (N,3,4): local rotations of collar, upper arm and forearm; the hand keeps straight.
     posed: the body, of which the collar's parent is used. A sample counts when it faces the camera
@@ -202,5 +204,5 @@ def score_arms(
             elif seen > 0:
                 score -= 0.5 * size
             else:
-                score -= 0.5 * size * pixel_weight[t, u] / 255.0
+                score -= empty * size * pixel_weight[t, u] / 255.0
         scores[n] += score

@@ -191,7 +191,7 @@ class Fitter:
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(dt_s * 30.0, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        priors = self._narrow if self._is_narrow(prediction, views) else self._wide
+        priors = self._narrow if self.is_narrow(prediction, views) else self._wide
         H = held = np.zeros((P, P))
         torso = plain(self.torso(self.shaper(state.factors)))
         coarse = [_coarse(view) for view in views]
@@ -245,12 +245,12 @@ class Fitter:
             held[: m.n_pose, : m.n_pose] + motion,
         )
 
-    def _is_narrow(self, prediction: MotionState, views: Sequence[View]) -> bool:
+    def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""
         if not views:
             return False
         cameras = [self.drawings[view.index].camera for view in views]
-        rays = np.array([prediction.root_m + c.R.T @ c.t_m for c in cameras])
+        rays = np.array([state.root_m + c.R.T @ c.t_m for c in cameras])
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
         return bool((rays @ rays.T).min() > np.cos(self.params.narrow_rad))
 

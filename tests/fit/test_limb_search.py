@@ -29,10 +29,12 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
+
 from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
 pytestmark = pytest.mark.kernels
 
+EMPTY = 0.25  # share of an arm before background that denies it
 NO_CLOUD, NO_LIBRARY = np.empty((0, 6)), np.empty((0, 3, 4))
 BONES = ("Shoulder", "UpperArm", "LowerArm")
 
@@ -159,7 +161,7 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
         elif have:
             score -= 0.5 * facing
         else:
-            score -= 0.5 * facing * view.pixel_weight[y, x] / 255.0
+            score -= EMPTY * facing * view.pixel_weight[y, x] / 255.0
     return score
 
 
@@ -172,7 +174,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
         placed(by.shaper(state.factors), arm, arm.sleeve),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
-        base.zbuffer, base.ids, view.ids, view.pixel_weight, out,
+        base.zbuffer, base.ids, view.ids, view.pixel_weight, EMPTY, out,
     )  # fmt: skip
     return out
 
@@ -207,7 +209,7 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
     tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
-    seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0)
+    seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0, EMPTY)
     best = best_arm_poses(tries, seen_px, 3)
     assert 1 <= len(best) <= 3
     assert (seen_px[best] > seen_px[0]).all()
@@ -217,14 +219,17 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     assert off.min() < 0.25
     assert off.min() < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
     at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)[:1]
-    assert best_arm_poses(at_truth, score_arm_poses(by, truth, arm, views, at_truth, 0.0), 3) == []
+    assert (
+        best_arm_poses(at_truth, score_arm_poses(by, truth, arm, views, at_truth, 0.0, EMPTY), 3)
+        == []
+    )
 
 
 def test_a_pose_farther_away_must_be_seen_more() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
     tries = candidates(by, truth, arm, views, NO_CLOUD, arm_library(MODEL.space, 50, "left"))
-    freely, held = (score_arm_poses(by, truth, arm, views, tries, px) for px in (0.0, 10.0))
+    freely, held = (score_arm_poses(by, truth, arm, views, tries, px, EMPTY) for px in (0.0, 10.0))
     np.testing.assert_allclose(held[0], freely[0])
     angle_rad = 2.0 * np.arccos(np.minimum(np.abs((tries[:, 1:] * tries[0, 1:]).sum(axis=2)), 1.0))
     np.testing.assert_allclose(freely - held, 10.0 * (angle_rad**2).sum(axis=1), atol=1e-6)
@@ -237,10 +242,10 @@ def test_an_arm_in_the_trunk_is_worth_less() -> None:
     through = truth.local_xyzw[arm.chain[:3]].copy()
     through[1:] = rotations.exp(np.array([[0.0, 0.0, -1.35], [0.0, 0.0, -0.9]]))
     tries = np.stack([truth.local_xyzw[arm.chain[:3]], through])
-    stiff = score_arm_poses(by, truth, arm, views, tries, 0.0)
+    stiff = score_arm_poses(by, truth, arm, views, tries, 0.0, EMPTY)
     soft_params = replace(by.params, collision_sd_m=10.0)
     soft = Fitter(MODEL, [d.camera for d in by.drawings], [FACTOR], soft_params)
-    assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0)[1] - 1.0
+    assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0, EMPTY)[1] - 1.0
 
 
 def with_bare_skin(by: Fitter, state: MotionState, views: list[View]) -> list[View]:
@@ -261,7 +266,7 @@ def hand_px(by: Fitter, state: MotionState, views: list[View], *poses: str) -> F
     """What is seen of the left hand in these poses of its arm."""
     bones = [INDEX["left" + bone] for bone in BONES]
     tries = np.array([standing(pose).local_xyzw[bones] for pose in poses])
-    return score_hand_places(by, state, arm_of(MODEL, "left"), views, tries)
+    return score_hand_places(by, state, arm_of(MODEL, "left"), views, tries, EMPTY)
 
 
 def test_a_hand_is_where_skin_is_seen_that_is_nobody_elses() -> None:
