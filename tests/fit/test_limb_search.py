@@ -29,7 +29,6 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
-
 from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
 pytestmark = pytest.mark.kernels
