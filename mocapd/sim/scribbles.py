@@ -37,7 +37,8 @@ def _zigzag(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     stops = np.quantile(along, np.linspace(0.08, 0.92, int(rng.integers(5, 8))))
     corners = []
     for i, stop in enumerate(stops):
-        near = np.flatnonzero(np.abs(along - stop) <= max(1.5, 0.05 * np.ptp(along)))
+        away = np.abs(along - stop)
+        near = np.flatnonzero(away <= max(1.5, 0.05 * np.ptp(along), away.min()))
         side = across[near] * (1 if i % 2 else -1)
         # not to the very edge: somewhere in the outer half of this side
         choice = near[np.argsort(side)[int(rng.uniform(0.7, 0.95) * (len(near) - 1))]]
