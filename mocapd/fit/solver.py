@@ -25,6 +25,7 @@ from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.pose_term import PoseTerm
 from mocapd.fit.step_kernels import gauss_newton_step
 from mocapd.types import Camera, Floats, Ints
 
@@ -176,13 +177,14 @@ class Fitter:
         rendered: bool = False,
         fine: int | None = None,
         motion: Floats | None = None,
+        terms: Sequence[PoseTerm] = (),
     ) -> Fit:
         """Fit all views, starting at and held loosely to `prediction`, dt_s after the last fit.
 
         rendered: the prediction was drawn last into every view, so that the first iteration need
         not draw it again. fine: how many of the iterations, the last ones, look at all pixels
         (None: as many as the parameters say). motion (n_pose,n_pose): information of
-        the prediction; None for the usual, loose one.
+        the prediction; None for the usual, loose one. terms: what else holds or pulls the pose.
         """
         p, m = self.params, self.model
         state, crowded = prediction, 0.0
@@ -214,7 +216,8 @@ class Fitter:
                 H += mine[0]
                 b += mine[1]
             held, pull = H.copy(), b.copy()
-            _, R, joints, _ = self._posed(state, one.body)
+            posed = self._posed(state, one.body)
+            _, R, joints, _ = posed
             crowded = push_arms_out(
                 R,
                 joints,
@@ -225,6 +228,7 @@ class Fitter:
                 held,
                 pull,
             )
+            crowded += sum(term.add(posed, one.body, held, pull) for term in terms)
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 motion, priors, prediction.factors - state.factors, prediction.information,

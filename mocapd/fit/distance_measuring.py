@@ -1,0 +1,96 @@
+"""Distances of the body's surface, measured between two cameras side by side where its cloth has texture."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.shaping import Shaped
+from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.distance_term import MeasuredDistances
+from mocapd.geometry.camera_model import project, rays
+from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.vision.ray_matching_kernels import match_along_rays
+
+_EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of what is behind
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuringParams:
+    """How many points are tried, and which are believed."""
+
+    points: int = 20  # tried on each part and region of the body that shows
+    reach_m: float = 0.4  # looked for so much nearer and farther than expected
+    places: int = 19  # along the ray
+    half_px: int = 6  # of a patch, in the pictures as delivered
+    least_contrast: float = 4.0  # standard deviation of a patch, in grey values
+    least_alike: float = 0.85
+    sd_m: float = 0.04
+
+
+def measured_distances(
+    drawing: IdMapRenderer,
+    drawn: tuple[Bytes, NDArray[np.int32]],
+    body: Shaped,
+    other: Camera,
+    greys: tuple[Bytes, Bytes],
+    turn: int,
+    params: MeasuringParams | None = None,
+) -> MeasuredDistances:
+    """Look for points of the body as expected in one camera (drawn: its ids and triangles (h,w) over the whole work
+    picture, posed by `drawing`) in the other camera's picture.
+
+    greys: both pictures as delivered; turn: a running number, by which other points are taken. What has no
+    texture, or does not look alike, is left out.
+    """
+    p = params if params is not None else MeasuringParams()
+    y, x = _samples(drawn, drawing.model.part, p.points, turn)
+    triangle = drawn[1][y, x].astype(np.int64)
+    pixels: Floats = (np.stack([x, y], axis=1).astype(float) + 0.5) * drawing.image_scale - 0.5
+    origin, along = rays(drawing.camera, pixels)
+    expected_m = np.einsum("ni,ni->n", _places(drawing, body, triangle) - origin, along)
+    offsets_m = np.linspace(-p.reach_m, p.reach_m, p.places)
+    points = origin + (expected_m[:, None] + offsets_m)[..., None] * along[:, None]
+    there = project(other, points.reshape(-1, 3)).reshape(len(y), p.places, 2)
+    place, alike = np.empty(len(y)), np.empty(len(y))
+    match_along_rays(*greys, pixels, there, p.half_px, p.least_contrast, place, alike)
+    good = alike >= p.least_alike
+    found_m = expected_m + (place / (p.places - 1) * 2.0 - 1.0) * p.reach_m
+    return MeasuredDistances(
+        triangle[good], origin, along[good], found_m[good], np.full(int(good.sum()), p.sd_m)
+    )
+
+
+def _samples(
+    drawn: tuple[Bytes, NDArray[np.int32]], part: NDArray[np.uint8], points: int, turn: int
+) -> tuple[Ints, Ints]:
+    """Rows and columns of pixels inside of the drawing, as many of each part's regions."""
+    ids, triangle_at = drawn
+    inside = ids > 0
+    e = _EDGE_PX
+    deep = np.zeros_like(inside)
+    deep[e:-e, e:-e] = (
+        inside[: -2 * e, e:-e] & inside[2 * e :, e:-e] & inside[e:-e, : -2 * e] & inside[e:-e, 2 * e :]
+    )  # fmt: skip
+    y, x = np.nonzero(deep & inside)
+    which = part[triangle_at[y, x]].astype(np.int64) * 16 + ids[y, x]
+    rows = []
+    for one in np.unique(which).tolist():
+        mine = np.flatnonzero(which == one)
+        step = max(len(mine) // points, 1)
+        rows.append(mine[turn % step :: step][:points])
+    picked = np.concatenate(rows) if rows else np.empty(0, np.int64)
+    return y[picked], x[picked]
+
+
+def _places(drawing: IdMapRenderer, body: Shaped, triangle: Ints) -> Floats:
+    """Middles (N,3) of triangles in the world, of the body as posed."""
+    m, posed = drawing.model, drawing.posed
+    bones = m.triangle_bones[triangle]
+    turned = np.einsum(
+        "nkij,nkj->nki", posed.R[bones], body.centres[triangle][:, None] - body.rest[bones]
+    )
+    placed: Floats = np.einsum(
+        "nk,nki->ni", m.triangle_weights[triangle], turned + posed.joints[bones]
+    )
+    return placed

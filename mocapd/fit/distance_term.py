@@ -1,0 +1,49 @@
+"""Points of the body's surface at distances that two close views measured.
+
+Silhouettes of cameras side by side say little along their views; the cloth's own texture does (Horaud et al. 2009 align
+the surface with stereo points; here each point knows the triangle that it was looked for at).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.arrays import PosedJoints
+from mocapd.body.model import BodyModel
+from mocapd.body.shaping import Shaped
+from mocapd.fit.point_rows_kernels import pull_along_rays
+from mocapd.types import Floats, Ints
+
+_ROBUST_M = (
+    0.12  # a residual of this has a quarter of its weight: what was matched is another thing
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredDistances:
+    """triangle (N,) of the body, and how far away it is from origin_m (3,) along the unit vectors rays (N,3):
+    distance_m (N,), each with its standard deviation sd_m (N,)."""
+
+    triangle: Ints
+    origin_m: Floats
+    rays: Floats
+    distance_m: Floats
+    sd_m: Floats
+
+
+class DistanceTerm:
+    """The distances of one frame set for one body model, a `PoseTerm`."""
+
+    def __init__(self, model: BodyModel, measured: MeasuredDistances) -> None:
+        self._model, self._measured = model, measured
+        self._row = np.zeros(model.n_pose)
+
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+        """See `PoseTerm`."""
+        m, seen = self._model, self._measured
+        cost: float = pull_along_rays(
+            seen.triangle, seen.origin_m, seen.rays, seen.distance_m, 1.0 / seen.sd_m**2, _ROBUST_M,
+            body.centres, m.triangle_bones, m.triangle_weights, body.rest, m.parents,
+            m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, self._row, H, b,
+        )  # fmt: skip
+        return cost

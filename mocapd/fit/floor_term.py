@@ -1,0 +1,46 @@
+"""Feet are not under the floor, and somebody who does not jump stands on one or both.
+
+The paper's future work (Hecht et al. 2009, section V.B): external constraints. Where cameras look from one side it fixes how
+far away the feet are, which nothing else does.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.arrays import PosedJoints
+from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES
+from mocapd.body.shaping import Shaped
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.point_rows_kernels import stand_on_floor
+from mocapd.types import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class FloorParams:
+    """How firm the floor is."""
+
+    under_sd_m: float = 0.01  # of an ankle that is too low
+    standing_sd_m: float = 0.01  # of one that stands: pixels by the hundred pull at it
+    together_m: float = 0.08  # ankles that differ by less stand both
+    jump_m: float = 0.25  # at this height standing has lost half of its weight
+
+
+class FloorTerm:
+    """The floor at y = 0 under one body model, a `PoseTerm`."""
+
+    def __init__(self, model: BodyModel, params: FloorParams | None = None) -> None:
+        self._model, self._params = model, params if params is not None else FloorParams()
+        self._feet = np.array([INDEX[side + "Foot"] for side in SIDES])
+        self._row = np.zeros(model.n_pose)
+
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+        """See `PoseTerm`."""
+        m, p = self._model, self._params
+        cost: float = stand_on_floor(
+            self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.standing_sd_m**2),
+            p.together_m, p.jump_m, m.parents, m.group_of_joint, m.share_of_joint,
+            posed.R, posed.joints, self._row, H, b,
+        )  # fmt: skip
+        return cost

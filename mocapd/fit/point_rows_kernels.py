@@ -1,0 +1,156 @@
+"""Derivatives of points of the body by the pose, for terms that pull at points."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mocapd.body.posing_kernels import surface_row_of_arrays
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+_FEW = 1e-12
+
+
+@njit(cache=True, nogil=True)
+def joint_row(
+    j: int,
+    g: Array,
+    parents: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    out: Array,
+) -> None:
+    """Derivative of g . joints[j] by the pose step: out (P,); g (3,) in the world, R (J,3,3) and joints (J,3) as posed."""
+    for k in range(out.shape[0]):
+        out[k] = g[k] if k < 3 else 0.0
+    a = parents[j]
+    while a >= 0:
+        group = group_of_joint[a]
+        if group >= 0:
+            rx, ry, rz = (
+                joints[j, 0] - joints[a, 0],
+                joints[j, 1] - joints[a, 1],
+                joints[j, 2] - joints[a, 2],
+            )
+            mx = share_of_joint[a] * (ry * g[2] - rz * g[1])
+            my = share_of_joint[a] * (rz * g[0] - rx * g[2])
+            mz = share_of_joint[a] * (rx * g[1] - ry * g[0])
+            p = parents[a]
+            first = 3 + 3 * group
+            if p < 0:
+                out[first] += mx
+                out[first + 1] += my
+                out[first + 2] += mz
+            else:
+                for i in range(3):
+                    out[first + i] += R[p, 0, i] * mx + R[p, 1, i] * my + R[p, 2, i] * mz
+        a = parents[a]
+
+
+@njit(cache=True, nogil=True)
+def add_row(row: Array, residual: float, information: float, H: Array, b: Array) -> None:
+    """One row (P,) to the normal equations H (P,P) and b (P,), of which it may be the first columns."""
+    for p in range(row.shape[0]):
+        if abs(row[p]) < _FEW:
+            continue
+        scaled = information * row[p]
+        b[p] += scaled * residual
+        for q in range(row.shape[0]):
+            H[p, q] += scaled * row[q]
+
+
+@njit(cache=True, nogil=True)
+def stand_on_floor(
+    feet: Ints,
+    heights_m: Array,
+    information: tuple[float, float],
+    together_m: float,
+    jump_m: float,
+    parents: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    row: Array,
+    H: Array,
+    b: Array,
+) -> float:
+    """Add a row for each ankle, feet (F,), that is too low or stands; the cost.
+
+    heights_m (F,): of the ankles of one who stands; information: of what is under the floor and of what is on it;
+    together_m: by how much more than the lowest an ankle may be up and still stand; jump_m: height at which
+    standing has lost half of its weight. row (n_pose,) is scratch.
+    """
+    up = np.array([0.0, 1.0, 0.0])
+    lowest = np.inf
+    for f in range(feet.shape[0]):
+        lowest = min(lowest, joints[feet[f], 1] - heights_m[f])
+    cost = 0.0
+    for f in range(feet.shape[0]):
+        above = joints[feet[f], 1] - heights_m[f]
+        if above < 0.0:
+            weight = information[0]
+        elif above <= lowest + together_m:
+            weight = information[1] / (1.0 + (above / jump_m) ** 2)
+        else:
+            continue
+        joint_row(feet[f], up, parents, group_of_joint, share_of_joint, R, joints, row)
+        add_row(row, -above, weight, H, b)
+        cost += weight * above * above
+    return cost
+
+
+@njit(cache=True, nogil=True)
+def pull_along_rays(
+    triangle: Ints,
+    origin: Array,
+    rays: Array,
+    distance_m: Array,
+    information: Array,
+    robust_m: float,
+    centres: Array,
+    triangle_bones: NDArray[np.int32],
+    triangle_weights: Array,
+    rest: Array,
+    parents: Ints,
+    joint_of_group: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    row: Array,
+    H: Array,
+    b: Array,
+) -> float:
+    """Add a row for each triangle (N,) whose distance from origin (3,) along rays (N,3) was measured; the robust cost.
+
+    A residual of robust_m has a quarter of its weight (Geman-McClure). centres (T,3) of the triangles in the T-pose;
+    row (n_pose,) is scratch.
+    """
+    nothing = np.zeros((0, 3))
+    no_rest = np.zeros((0, rest.shape[0], 3))
+    cost = 0.0
+    for n in range(triangle.shape[0]):
+        t = triangle[n]
+        along = 0.0
+        for k in range(triangle_bones.shape[1]):
+            wt = triangle_weights[t, k]
+            if wt == 0.0:
+                continue
+            j = triangle_bones[t, k]
+            for i in range(3):
+                place = joints[j, i]
+                for m in range(3):
+                    place += R[j, i, m] * (centres[t, m] - rest[j, m])
+                along += wt * rays[n, i] * (place - origin[i])
+        residual = distance_m[n] - along
+        trust = 1.0 / (1.0 + (residual / robust_m) ** 2)
+        surface_row_of_arrays(
+            centres[t], triangle_bones[t], triangle_weights[t], nothing, rays[n], rest, parents,
+            joint_of_group, group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
+        )  # fmt: skip
+        add_row(row, residual, information[n] * trust * trust, H, b)
+        cost += information[n] * residual * residual * trust
+    return cost

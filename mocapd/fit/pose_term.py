@@ -1,0 +1,16 @@
+"""A further term of the fit: rows that do not come from id maps."""
+
+from typing import Protocol
+
+from mocapd.body.arrays import PosedJoints
+from mocapd.body.shaping import Shaped
+from mocapd.types import Floats
+
+
+class PoseTerm(Protocol):
+    """What a term must do; it keeps nothing of the poses that it is asked about."""
+
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+        """Add its rows at this pose to H (P,P) and b (P,), whose first unknowns are the pose's: the step H^-1 b makes the
+        residuals smaller. Its cost, in the unit of the id maps' rows: information times squared residual."""
+        ...

@@ -1,0 +1,48 @@
+"""The whole body's regions: what looks alike, whatever is worn."""
+
+import numpy as np
+import pytest
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.regions import Region, as_silhouette, by_region, regions
+from mocapd.body.skeleton import INDEX
+
+BODY = build_model(1.75, full_body())
+
+
+def test_every_region_is_where_it_should_be() -> None:
+    of, centres = regions(BODY), BODY.centres_m
+    rest = BODY.rest_m
+    assert set(of.tolist()) == {int(region) for region in Region}
+    assert centres[of == Region.HEAD, 1].min() > rest[INDEX["leftUpperArm"], 1] - 0.05
+    assert centres[of == Region.FOOT, 1].max() < rest[INDEX["leftFoot"], 1] + 0.02
+    elbow = rest[INDEX["leftLowerArm"], 0]
+    assert np.abs(centres[of == Region.FOREARM, 0]).min() > elbow - 0.06
+    assert np.abs(centres[of == Region.TRUNK, 0]).max() < elbow + 0.06
+
+
+def test_left_and_right_are_alike() -> None:
+    of = regions(BODY)
+    for region in Region:
+        x = BODY.centres_m[of == region, 0]
+        assert abs(np.count_nonzero(x > 0.0) - np.count_nonzero(x < 0.0)) <= 0.02 * len(x)
+
+
+def test_colours_are_the_regions_or_one_for_all() -> None:
+    assert np.array_equal(by_region(BODY).colour, regions(BODY))
+    assert set(as_silhouette(BODY).colour.tolist()) == {1}
+
+
+@pytest.mark.parametrize("dress", [by_region, as_silhouette])
+def test_hidden_arms_are_found_by_their_colour(dress) -> None:  # type: ignore[no-untyped-def]
+    dressed = dress(BODY)
+    for colour in range(1, 11):
+        mine = dressed.sleeves[dressed.sleeve_start[colour] : dressed.sleeve_start[colour + 1]]
+        assert (dressed.colour[mine] == colour).all()
+    assert len(dressed.sleeves) == dressed.sleeve_start[-1]
+
+
+def test_a_body_without_legs_is_refused() -> None:
+    with pytest.raises(ValueError, match="no legs"):
+        by_region(build_model(1.75))
