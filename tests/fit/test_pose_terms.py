@@ -114,7 +114,7 @@ def test_rows_are_the_derivatives_of_the_cost(which: int) -> None:
     for k in range(BODY.n_pose):
         ends = []
         for sign in (1.0, -1.0):
-            there: Floats = np.zeros(BODY.n_pose)
+            there = np.zeros(BODY.n_pose, dtype=np.float64)
             there[k] = sign * step
             ends.append(system(term, *stepped(BODY, root, local, there))[0])
         slope = (ends[0] - ends[1]) / (2.0 * step)
@@ -125,7 +125,8 @@ def settled(term: PoseTerm, root: Floats, local: Floats) -> tuple[Floats, Floats
     """After ten steps, with a little that holds the pose."""
     for _ in range(10):
         _, H, b = system(term, root, local)
-        root, local = stepped(BODY, root, local, np.linalg.solve(H + np.eye(len(b)), b))
+        step = np.asarray(np.linalg.solve(H + np.eye(len(b)), b), dtype=np.float64)
+        root, local = stepped(BODY, root, local, step)
     return root, local
 
 
