@@ -44,7 +44,7 @@ class Swings(NamedTuple):
     """W limits on the direction from the mean of points 1, 2 to the mean of points 3, 4.
 
     points (W,4); frame (W,) UPPER or LOWER; axis (W,) and sign (W,): the direction in the T-pose, an axis of the frame;
-    lower, upper (W,2): tan(angle / 2) about the two axes after `axis`, in cyclic order; mirror (W,).
+    lower, upper (W,2): tan(angle / 2) about the two axes after `axis`, in cyclic order.
     """
 
     points: Ints
@@ -53,7 +53,6 @@ class Swings(NamedTuple):
     sign: Floats
     lower: Floats
     upper: Floats
-    mirror: Ints
 
 
 class Hinges(NamedTuple):
@@ -62,7 +61,7 @@ class Hinges(NamedTuple):
     points (H,3); frame (H,); axis (H,) and sign (H,): direction a to b in the T-pose, an axis of the frame; forward (H,):
     +1 bends to +Z in the T-pose, -1 to -Z; side (H,4): cosine and sine of the middle of the sides it bends to, counted
     about a to b from `forward`, then of half their width; bend (3,): cosine and sine of what counts as straight, cosine
-    of the greatest bend; mirror (H,).
+    of the greatest bend.
     """
 
     points: Ints
@@ -72,7 +71,6 @@ class Hinges(NamedTuple):
     forward: Floats
     side: Floats
     bend: Floats
-    mirror: Ints
 
 
 def swings() -> Swings:
@@ -106,7 +104,7 @@ def swings() -> Swings:
     points, frame, axis, sign, lower, upper = zip(*rows, strict=True)
     return Swings(
         np.array(points), np.array(frame), np.array(axis), np.array(sign), np.array(lower),
-        np.array(upper), np.array([0, 1, 2, 5, 6, 3, 4]),
+        np.array(upper),
     )  # fmt: skip
 
 
@@ -130,5 +128,5 @@ def hinges() -> Hinges:
         np.array(points), np.array([UPPER, UPPER, LOWER, LOWER]), np.array([X, X, Y, Y]),
         np.array([1.0, -1.0, -1.0, -1.0]), np.array([1.0, 1.0, -1.0, -1.0]),
         np.stack([np.cos(middle), np.sin(middle), np.cos(half), np.sin(half)], axis=1),
-        np.array([np.cos(straight), np.sin(straight), np.cos(most)]), np.array([1, 0, 3, 2]),
+        np.array([np.cos(straight), np.sin(straight), np.cos(most)]),
     )  # fmt: skip

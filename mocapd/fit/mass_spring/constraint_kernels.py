@@ -33,17 +33,16 @@ def sweep_springs(
     lengths: Array,
     give: Array,
     shares: Array,
-    order: Ints,
-    row: int,
+    rows: Ints,
     multipliers: Array,
 ) -> None:
-    """Correct the springs order[row] one after the other.
+    """Correct the springs of `rows` one after the other.
 
     give (S,): compliance / dt^2 [1/kg]; shares (S,): 1 / (inverse masses of both ends + give), 0 where both ends stay;
     multipliers (S,): what its sweeps have added up to.
     """
-    for k in range(order.shape[1]):
-        s = order[row, k]
+    for k in range(rows.shape[0]):
+        s = rows[k]
         a, b = ends[s, 0], ends[s, 1]
         dx = points[b, 0] - points[a, 0]
         dy = points[b, 1] - points[a, 1]
@@ -97,12 +96,12 @@ def span_frames(points: Array, out: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep_swings(
-    points: Array, inverse_mass: Array, swings: Swings, order: Ints, row: int, frames: Array
+    points: Array, inverse_mass: Array, swings: Swings, rows: Ints, frames: Array
 ) -> None:
-    """Turn parts that left their box back into it, in the order order[row]."""
-    ends, frame, axis, sign, lower, upper, _ = swings
-    for n in range(order.shape[1]):
-        k = order[row, n]
+    """Turn the parts of `rows` that left their box back into it."""
+    ends, frame, axis, sign, lower, upper = swings
+    for n in range(rows.shape[0]):
+        k = rows[n]
         a, a2, c, c2 = ends[k, 0], ends[k, 1], ends[k, 2], ends[k, 3]
         wa, wc = (
             0.5 * (inverse_mass[a] + inverse_mass[a2]),
@@ -143,12 +142,12 @@ def sweep_swings(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep_hinges(
-    points: Array, inverse_mass: Array, hinges: Hinges, order: Ints, row: int, frames: Array
+    points: Array, inverse_mass: Array, hinges: Hinges, rows: Ints, frames: Array
 ) -> None:
-    """Turn lower parts of limbs back to where their joints bend, in the order order[row]."""
-    ends, frame, axis, sign, forward, side, bend, _ = hinges
-    for n in range(order.shape[1]):
-        k = order[row, n]
+    """Turn the lower parts of `rows` back to where their joints bend."""
+    ends, frame, axis, sign, forward, side, bend = hinges
+    for n in range(rows.shape[0]):
+        k = rows[n]
         a, b, c = ends[k, 0], ends[k, 1], ends[k, 2]
         wb, wc = inverse_mass[b], inverse_mass[c]
         if wb + wc == 0.0:

@@ -108,21 +108,12 @@ def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
 def _active(springs: Springs, constraints: Constraints, points: frozenset[int]) -> Active:
     """The constraints that may move one of the points."""
 
-    def touching(moved: Ints) -> list[int]:
-        return [k for k, row in enumerate(moved.tolist()) if points & set(row)]
+    def touching(moved: Ints) -> Ints:
+        rows = [k for k, ends in enumerate(moved.tolist()) if points & set(ends)]
+        return np.array(rows, dtype=np.int64)
 
-    def both_orders(moved: Ints, mirror: Ints) -> Ints:
-        kept = touching(moved)
-        mirrored = [k for k in mirror.tolist() if k in kept]
-        return np.array([kept, mirrored], dtype=np.int64)
-
-    turning, bending = swings(), hinges()
     return Active(
-        both_orders(springs.ends, springs.mirror),
-        both_orders(turning.points, turning.mirror),
-        # a hinge moves its middle and its end
-        both_orders(bending.points[:, 1:], bending.mirror),
-        np.array(touching(constraints.arms), dtype=np.int64),
-        np.array(touching(constraints.pairs), dtype=np.int64),
-        np.array(sorted(points), dtype=np.int64),
-    )
+        touching(springs.ends), touching(swings().points),
+        touching(hinges().points[:, 1:]),  # a hinge moves its middle and its end
+        touching(constraints.arms), touching(constraints.pairs), np.array(sorted(points)),
+    )  # fmt: skip

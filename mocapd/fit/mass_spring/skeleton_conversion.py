@@ -40,7 +40,11 @@ _COLLAR = np.array([INDEX[side + "Shoulder"] for side in ("left", "right")])
 _TOES = np.array([INDEX[side + "Toes"] for side in ("left", "right")])
 # elbows bend forwards, knees backwards
 _BENDS_TO = np.array([[0.0, 0.0, 1.0]] * 2 + [[0.0, 0.0, -1.0]] * 2)
-_BASE = np.array([*SHOULDER, *HIP])  # the points that place the skeleton
+_TRUNK = np.array([INDEX[name] for name in ("spine", "chest", "upperChest", "neck")])
+_TRUNK_SHARES = np.array([1 / 3, 2 / 3, 1.0, 0.5])
+# lines of the upper and the lower trunk, each with the waist
+_TRUNK_POINTS = np.array([[*SHOULDER, *WAIST], [*HIP, *WAIST]])
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 # Standard deviations [rad] of what nothing determines: half of the joints' ranges
 _OPEN_TWIST_RAD = np.radians([60.0, 60.0, 30.0, 30.0])
@@ -64,31 +68,36 @@ def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose
     beside points by what the springs give; the trunk is placed to fit shoulders and hips best."""
     p, rest = np.asarray(points_m, dtype=float), body.skeleton.rest_m
     quats = np.empty((N_JOINTS, 4))
-    upper = _trunk_turn(p, body.rest_m, SHOULDER, (WAIST, SHOULDER))
-    lower = _trunk_turn(p, body.rest_m, HIP, (HIP, WAIST))
-    quats[INDEX["hips"]] = lower
-    for share, name in ((1 / 3, "spine"), (2 / 3, "chest"), (1.0, "upperChest")):
-        quats[INDEX[name]] = rotations.slerp(lower, upper, share)
-    head = _swung(upper, body.rest_m[HEAD] - body.rest_m[NECK], p[HEAD] - p[NECK])
-    quats[INDEX["neck"]], quats[INDEX["head"]] = rotations.slerp(upper, head, 0.5), head
-    # collar bones: from their joint, which the upper trunk carries, to the shoulder
-    carried = 0.5 * (p[SHOULDER[0]] + p[SHOULDER[1]]) + rotations.rotate(
-        upper, rest[_COLLAR] - 0.5 * (rest[_UPPER_BONE[0]] + rest[_UPPER_BONE[1]])
-    )
-    quats[_COLLAR] = _swung(
-        np.tile(upper, (2, 1)), rest[_UPPER_BONE[:2]] - rest[_COLLAR], p[list(SHOULDER)] - carried
-    )
-    above = np.stack([upper, upper, lower, lower])
+    upper, lower = _trunk_turns(p, body.rest_m)
+    # head, collar bones, upper parts of the limbs
     bone = rest[_LOWER_BONE] - rest[_UPPER_BONE]
-    untwisted = _swung(above, bone, p[_MIDDLE] - p[_UPPER])
+    middle_m = 0.5 * (p[SHOULDER[0]] + p[SHOULDER[1]])
+    from_middle = rest[_COLLAR] - 0.5 * (rest[_UPPER_BONE[0]] + rest[_UPPER_BONE[1]])
+    turned = _swung(
+        np.stack([upper] * 5 + [lower] * 2),
+        np.concatenate([
+            body.rest_m[[HEAD]] - body.rest_m[NECK], rest[_UPPER_BONE[:2]] - rest[_COLLAR], bone
+        ]),
+        np.concatenate([
+            p[[HEAD]] - p[NECK],
+            p[list(SHOULDER)] - middle_m - rotations.rotate(upper, from_middle),
+            p[_MIDDLE] - p[_UPPER],
+        ]),
+    )  # fmt: skip
+    head, untwisted = turned[0], turned[3:]
+    quats[_COLLAR] = turned[1:3]
+    # the spine's three bones and the two of the neck share their bends evenly
+    quats[_TRUNK] = rotations.slerp(
+        np.stack([lower, lower, lower, upper]), np.stack([upper, upper, upper, head]), _TRUNK_SHARES
+    )
+    quats[INDEX["hips"]], quats[INDEX["head"]] = lower, head
     reach = p[_END] - p[_MIDDLE]
     twist, sine = _bend_side(untwisted, bone, reach)
     length = np.linalg.norm(rest[_END_BONE] - rest[_LOWER_BONE], axis=1)
     # a measurement of the twist with the bend's own uncertainty, beside what is known without it
     spread2 = (_POINT_SD_M / (length * np.maximum(sine, 1e-3))) ** 2 + _HINGE_SD_RAD**2
     known = _OPEN_TWIST_RAD**2 / (_OPEN_TWIST_RAD**2 + spread2)
-    along = bone / np.linalg.norm(bone, axis=1)[:, None]
-    turn = rotations.exp((known * twist)[:, None] * along)
+    turn = rotations.exp((known * twist)[:, None] * _unit(bone))
     quats[_UPPER_BONE] = rotations.multiply(untwisted, turn)
     quats[_LOWER_BONE] = _swung(quats[_UPPER_BONE], rest[_END_BONE] - rest[_LOWER_BONE], reach)
     quats[_END_BONE] = quats[_LOWER_BONE]
@@ -96,7 +105,7 @@ def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose
     quats = rotations.canonical(quats)
     pose = Pose(np.zeros(3), quats)
     placed = joint_positions(body.skeleton, pose)[_UPPER_BONE]
-    pose = Pose((p[_BASE] - placed).mean(axis=0), quats)
+    pose = Pose((p[_UPPER] - placed).mean(axis=0), quats)
     return SkeletonPose(pose, _what_is_open(np.sqrt(known * spread2)))
 
 
@@ -118,30 +127,31 @@ def points_from_skeleton(body: MassSpringBody, pose: Pose) -> Floats:
     return out
 
 
-def _trunk_turn(
-    points_m: Floats,
-    rest_m: Floats,
-    line: tuple[int, int],
-    up: tuple[tuple[int, int], tuple[int, int]],
-) -> Floats:
-    """The turn (4,) from the T-pose of a part of the trunk, by its line and the way from the first pair to the second."""
+def _trunk_turns(points_m: Floats, rest_m: Floats) -> Floats:
+    """The turns (2,4) from the T-pose of the upper and the lower part of the trunk."""
+    axes = np.stack([points_m, rest_m])[:, _TRUNK_POINTS]  # (2,2,4,3)
+    x = _unit(axes[:, :, 0] - axes[:, :, 1])
+    z = _unit(_cross(x, axes[:, :, :2].sum(axis=2) - axes[:, :, 2:].sum(axis=2)))
+    z[:, 1] *= -1.0  # the waist is above the hips
+    R = np.stack([x, _cross(z, x), z], axis=-1)
+    return rotations.from_matrix(R[0] @ R[1].swapaxes(-1, -2))
 
-    def axes(p: Floats) -> Floats:
-        x = p[line[0]] - p[line[1]]
-        x = x / max(float(np.linalg.norm(x)), 1e-9)
-        z = np.cross(x, p[list(up[1])].sum(axis=0) - p[list(up[0])].sum(axis=0))
-        z = z / max(float(np.linalg.norm(z)), 1e-9)
-        return np.stack([x, np.cross(z, x), z], axis=1)
 
-    return rotations.from_matrix(axes(points_m) @ axes(rest_m).T)
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Cross products (...,3); np.cross takes three times as long for so few."""
+    out: Floats = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    return out
+
+
+def _unit(v: Floats) -> Floats:
+    out: Floats = v / np.maximum(np.sqrt(np.vecdot(v, v)), 1e-9)[..., None]
+    return out
 
 
 def _swung(above_xyzw: Floats, rest_m: Floats, now_m: Floats) -> Floats:
     """The bone's turn (...,4): that above it (...,4), then the smallest that leads rest_m (...,3) to now_m (...,3)."""
-    local = rotations.rotate(rotations.inverse(above_xyzw), now_m)
-    a = rest_m / np.linalg.norm(rest_m, axis=-1, keepdims=True)
-    b = local / np.maximum(np.linalg.norm(local, axis=-1, keepdims=True), 1e-9)
-    arc = np.concatenate([np.cross(a, b), 1.0 + np.vecdot(a, b)[..., None]], axis=-1)
+    a, b = _unit(rest_m), _unit(rotations.rotate(rotations.inverse(above_xyzw), now_m))
+    arc = np.concatenate([_cross(a, b), 1.0 + np.vecdot(a, b)[..., None]], axis=-1)
     # opposite directions have no smallest turn: any is as small
     opposite = np.vecdot(arc, arc)[..., None] < 1e-12
     arc = np.where(opposite, np.array([0.0, 0.0, 1.0, 0.0]), arc)
@@ -150,11 +160,10 @@ def _swung(above_xyzw: Floats, rest_m: Floats, now_m: Floats) -> Floats:
 
 def _bend_side(untwisted_xyzw: Floats, bone_m: Floats, reach_m: Floats) -> tuple[Floats, Floats]:
     """By how much each upper part is twisted (4,) [rad] for its joint to bend as it does, and the sine (4,) of the bend."""
-    local = rotations.rotate(rotations.inverse(untwisted_xyzw), reach_m)
-    local = local / np.maximum(np.linalg.norm(local, axis=1, keepdims=True), 1e-9)
-    along = bone_m / np.linalg.norm(bone_m, axis=1)[:, None]
-    across = np.cross(along, _BENDS_TO)
-    p, q = np.vecdot(local, np.cross(across, along)), np.vecdot(local, across)
+    local = _unit(rotations.rotate(rotations.inverse(untwisted_xyzw), reach_m))
+    along = _unit(bone_m)
+    across = _cross(along, _BENDS_TO)
+    p, q = np.vecdot(local, _cross(across, along)), np.vecdot(local, across)
     return np.arctan2(q, p), np.hypot(p, q)
 
 

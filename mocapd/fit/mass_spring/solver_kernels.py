@@ -43,9 +43,8 @@ class Constraints(NamedTuple):
 
 
 class Active(NamedTuple):
-    """Which constraints are projected. Springs, swings and hinges in two orders (2,K), the second mirrored: sweeps
-    alternate between them, so that neither side of the body always comes first. arms, pairs: rows of those tables;
-    points: which the floor holds."""
+    """Which constraints are projected: rows of the tables of springs, swings, hinges, arms and pairs, and the points that the
+    floor holds."""
 
     springs: Ints
     swings: Ints
@@ -75,7 +74,7 @@ def project(
     height, -inf where it is not known; dt_s scales the give of springs.
     """
     ends, lengths, compliance, swings, hinges, trunk, arms, pairs, gaps, clearance = constraints
-    spring_order, swing_order, hinge_order, arm_rows, pair_rows, held = active
+    spring_rows, swing_rows, hinge_rows, arm_rows, pair_rows, held = active
     n_springs = lengths.shape[0]
     give, shares, multipliers = np.empty(n_springs), np.empty(n_springs), np.empty(n_springs)
     frames = np.empty((2, 3, 3))
@@ -83,8 +82,8 @@ def project(
     w = np.zeros(points.shape[0])
     for i in range(moved.shape[0]):
         w[moved[i]] = inverse_mass[moved[i]]
-    for k in range(spring_order.shape[1]):
-        s = spring_order[0, k]
+    for k in range(spring_rows.shape[0]):
+        s = spring_rows[k]
         give[s] = compliance[s] / (dt_s * dt_s)
         both = w[ends[s, 0]] + w[ends[s, 1]]
         shares[s] = 1.0 / (both + give[s]) if both > 0.0 else 0.0
@@ -95,13 +94,12 @@ def project(
         for s in range(n_springs):
             multipliers[s] = 0.0
         for n in range(iterations):
-            sweep_springs(body, w, ends, lengths, give, shares, spring_order, n % 2, multipliers)
+            sweep_springs(body, w, ends, lengths, give, shares, spring_rows, multipliers)
             if (n + 1) % every != 0:
                 continue
-            order = (n // every) % 2
             span_frames(body, frames)
-            sweep_swings(body, w, swings, swing_order, order, frames)
-            sweep_hinges(body, w, hinges, hinge_order, order, frames)
+            sweep_swings(body, w, swings, swing_rows, frames)
+            sweep_hinges(body, w, hinges, hinge_rows, frames)
             part_pairs(body, w, pairs, gaps, pair_rows, frames)
             push_arms_out(body, w, arms, arm_rows, trunk, frames)
             for k in range(held.shape[0]):

@@ -93,6 +93,15 @@ def test_no_impulse_breaks_it(name: str, seed: int, dt_s: float) -> None:
     assert np.linalg.norm(state.velocities_m_s, axis=1).max() <= SimulationParams().most_m_s + 1e-9
 
 
+def test_a_far_correction_is_no_motion() -> None:
+    start = RELAXED["stiff"]
+    torn = with_points(start, [WRIST[0]], start.points_m[[WRIST[0]]] + [0.9, 0.3, 0.4])
+    after = advanced(BODY, torn, 1.0 / 30.0)
+    speeds = np.linalg.norm(after.velocities_m_s, axis=1)
+    assert speeds.max() <= SimulationParams().most_m_s + 1e-9
+    assert strain_m(BODY, after.points_m)[BONES].max() < BONE_GIVE_M
+
+
 @pytest.mark.parametrize("name", BODIES)
 @quick
 @given(seeds)
