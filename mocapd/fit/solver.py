@@ -25,8 +25,8 @@ from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
-from mocapd.fit.pose_term import PoseTerm
 from mocapd.fit.step_kernels import gauss_newton_step
+from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.types import Camera, Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels

@@ -12,13 +12,13 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.regions import as_silhouette
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.distance_measuring import measured_distances
-from mocapd.fit.distance_term import DistanceTerm, MeasuredDistances
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.floor_term import FloorTerm
 from mocapd.fit.motion_state import MotionState, initial_information, stepped
-from mocapd.fit.pose_term import PoseTerm
 from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.distance_measuring import measured_distances
+from mocapd.fit.terms.distance_term import DistanceTerm, MeasuredDistances
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats, Ints

@@ -18,7 +18,7 @@ from mocapd.fit.mass_spring.body_points import (
     rest_points,
 )
 from mocapd.fit.mass_spring.frusta import Frusta, build_frusta, trunk_ellipses
-from mocapd.fit.mass_spring.solver_kernels import Active, Constraints
+from mocapd.fit.mass_spring.solver_kernels import Active, PointConstraints
 from mocapd.fit.mass_spring.springs import Compliances, Springs, build_springs
 from mocapd.types import Floats, Ints, Skeleton
 
@@ -59,7 +59,7 @@ class MassSpringBody:
     built_m: Floats
     lengths_m: Floats
     frusta: Frusta
-    constraints: Constraints
+    constraints: PointConstraints
     everybody: Active
     limbs: dict[str, Active]
 
@@ -84,7 +84,7 @@ def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpring
     lengths = springs.lengths_of(rest)
     mass = _MASS_SHARES * _MASS_PER_STATURE3 * shape.stature_m**3
     mass[HEAD] = np.inf
-    constraints = Constraints(
+    constraints = PointConstraints(
         springs.ends, lengths, springs.compliance, plain(swings()), plain(hinges()),
         trunk_ellipses(shape, skeleton, rest), _ARMS, _PAIRS,
         np.array([softness.knee_gap_m, softness.ankle_gap_m]), _clearance(shape, rest),
@@ -105,7 +105,7 @@ def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
     return out
 
 
-def _active(springs: Springs, constraints: Constraints, points: frozenset[int]) -> Active:
+def _active(springs: Springs, constraints: PointConstraints, points: frozenset[int]) -> Active:
     """The constraints that may move one of the points."""
 
     def touching(moved: Ints) -> Ints:

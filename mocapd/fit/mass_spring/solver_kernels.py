@@ -22,7 +22,7 @@ Ints = NDArray[np.int64]
 LIMITS_EVERY = 4  # sweeps of the springs for one of all else: lengths are what takes long to agree
 
 
-class Constraints(NamedTuple):
+class PointConstraints(NamedTuple):
     """All constraints of a body with S springs.
 
     ends (S,2), lengths (S,) [m], compliance (S,) [m/N]; swings, hinges: see `angular_limits`; trunk (3,3): see
@@ -60,7 +60,7 @@ def project(
     moved: Ints,
     points: Array,
     inverse_mass: Array,
-    constraints: Constraints,
+    constraints: PointConstraints,
     active: Active,
     floor_m: float,
     dt_s: float,
@@ -116,7 +116,7 @@ def advance(
     points: Array,
     velocities: Array,
     inverse_mass: Array,
-    constraints: Constraints,
+    constraints: PointConstraints,
     active: Active,
     floor_m: float,
     dt_s: float,

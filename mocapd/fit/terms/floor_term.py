@@ -13,7 +13,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.point_rows_kernels import stand_on_floor
+from mocapd.fit.terms.point_rows_kernels import stand_on_floor
 from mocapd.types import Floats
 
 

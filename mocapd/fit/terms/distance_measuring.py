@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.shaping import Shaped
 from mocapd.fit.body_drawing import IdMapRenderer
-from mocapd.fit.distance_term import MeasuredDistances
+from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays

@@ -11,7 +11,7 @@ import numpy as np
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
-from mocapd.fit.point_rows_kernels import pull_along_rays
+from mocapd.fit.terms.point_rows_kernels import pull_along_rays
 from mocapd.types import Floats, Ints
 
 _ROBUST_M = (
