@@ -1,0 +1,1 @@
+"""Faces in pictures: detection, the colour of skin and head, depth from two views."""
