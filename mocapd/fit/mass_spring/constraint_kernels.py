@@ -310,19 +310,29 @@ def push_arms_out(
 def part_pairs(
     points: Array, inverse_mass: Array, pairs: Ints, gaps: Array, rows: Ints, frames: Array
 ) -> None:
-    """Keep a plane, perpendicular to the hip line, between left and right points pairs[rows], gaps [m] wide."""
+    """Keep a plane, perpendicular to the hip line, between left and right points pairs[rows].
+
+    gaps (P,2) [m]: how wide, and how far apart along the plane legs begin to pass: beyond that the gap narrows by as much as
+    they are farther apart, and they may cross.
+    """
     for row in range(rows.shape[0]):
         k = rows[row]
         left, right = pairs[k, 0], pairs[k, 1]
         w = inverse_mass[left] + inverse_mass[right]
         if w == 0.0:
             continue
-        apart = 0.0
+        apart, square = 0.0, 0.0
         for r in range(3):
-            apart += frames[1, r, 0] * (points[left, r] - points[right, r])
-        if apart >= gaps[k]:
+            d = points[left, r] - points[right, r]
+            apart += frames[1, r, 0] * d
+            square += d * d
+        if apart >= gaps[k, 0]:
             continue
-        step = (gaps[k] - apart) / w
+        beside = np.sqrt(max(square - apart * apart, 0.0))
+        gap = gaps[k, 0] - max(beside - gaps[k, 1], 0.0)
+        if apart >= gap:
+            continue
+        step = (gap - apart) / w
         for r in range(3):
             points[left, r] += inverse_mass[left] * step * frames[1, r, 0]
             points[right, r] -= inverse_mass[right] * step * frames[1, r, 0]

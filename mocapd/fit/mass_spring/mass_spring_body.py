@@ -34,12 +34,15 @@ _PAIRS = np.array([KNEE, ANKLE])
 @dataclass(frozen=True, slots=True)
 class Softness:
     """How the body is built. soft_waist: see `build_springs`; knee_gap_m, ankle_gap_m: the least distance of left and right
-    along the hip line: ankles pass each other closely when walking."""
+    along the hip line: ankles pass each other closely when walking; passing_m: farther from each other than that, across
+    the hip line, legs may cross (two filters on one leg are near to each other, crossed legs are not); inf as in the paper:
+    never."""
 
     soft_waist: bool = False
     compliances: Compliances = field(default_factory=Compliances)
     knee_gap_m: float = 0.05
     ankle_gap_m: float = 0.03
+    passing_m: float = 0.12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +90,8 @@ def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpring
     constraints = PointConstraints(
         springs.ends, lengths, springs.compliance, plain(swings()), plain(hinges()),
         trunk_ellipses(shape, skeleton, rest), _ARMS, _PAIRS,
-        np.array([softness.knee_gap_m, softness.ankle_gap_m]), _clearance(shape, rest),
+        np.array([[gap, softness.passing_m] for gap in (softness.knee_gap_m, softness.ankle_gap_m)]),
+        _clearance(shape, rest),
     )  # fmt: skip
     everybody = _active(springs, constraints, frozenset(range(N_POINTS)))
     limbs = {name: _active(springs, constraints, frozenset(limb)) for name, limb in LIMBS.items()}

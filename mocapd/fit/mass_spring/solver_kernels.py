@@ -26,7 +26,8 @@ class PointConstraints(NamedTuple):
     """All constraints of a body with S springs.
 
     ends (S,2), lengths (S,) [m], compliance (S,) [m/N]; swings, hinges: see `angular_limits`; trunk (3,3): see
-    `push_arms_out`; arms (2,2): elbow and wrist; pairs (2,2): left and right knees, ankles; gaps (2,) [m]; clearance (16,):
+    `push_arms_out`; arms (2,2): elbow and wrist; pairs (2,2): left and right knees, ankles; gaps (2,2) [m]: see
+    `part_pairs`; clearance (16,):
     least height of each point above the floor [m].
     """
 

@@ -144,7 +144,13 @@ def deepest_in_trunk_m(body: MassSpringBody, p: Floats) -> float:
     return float(deepest)
 
 
-def leg_gaps_m(p: Floats) -> Floats:
-    """How far left knee and ankle are to the left of the right ones, along the hip line."""
+def legs_too_near_m(body: MassSpringBody, p: Floats) -> float:
+    """By how much more the left knee or ankle should be to the left of the right one, along the hip line."""
     across = unit(p[HIP[0]] - p[HIP[1]])
-    return np.array([(p[pair[0]] - p[pair[1]]) @ across for pair in (KNEE, ANKLE)])
+    missing = []
+    softness = body.softness
+    for pair, gap in ((KNEE, softness.knee_gap_m), (ANKLE, softness.ankle_gap_m)):
+        d = p[pair[0]] - p[pair[1]]
+        beside = float(np.linalg.norm(d - (d @ across) * across))
+        missing.append(gap - max(0.0, beside - softness.passing_m) - float(d @ across))
+    return max(missing)

@@ -18,7 +18,7 @@ from mocapd.fit.mass_spring.simulation import (
 from mocapd.types import Floats
 from tests.fit.mass_spring.naive_constraints import (
     deepest_in_trunk_m,
-    leg_gaps_m,
+    legs_too_near_m,
     worst_angle_rad,
 )
 
@@ -79,7 +79,7 @@ def test_particles_become_valid(limb: str, seed: int, spread_m: float) -> None:
         assert np.isfinite(points).all()
         assert np.degrees(worst_angle_rad(BODY, points)) < 6.0
         assert deepest_in_trunk_m(BODY, points) < 0.005
-        assert (leg_gaps_m(points) > BODY.constraints.gaps - 0.005).all()
+        assert legs_too_near_m(BODY, points) < 0.005
         strain = np.abs(BODY.springs.lengths_of(points) - BODY.lengths_m)
         assert strain[BODY.springs.compliance == 0.0].max() < 0.01
 
@@ -126,6 +126,12 @@ def test_left_particles_are_right_ones_mirrored(seed: int) -> None:
 def test_particles_stay_above_a_floor(limb: str, seed: int) -> None:
     after = project_limb(BODY, limb, cloud(limb, seed, 0.3), POINTS, floor_m=0.0, sweeps=8)
     assert (after[:, :, 1] > BODY.constraints.clearance[list(LIMBS[limb])] - 1e-9).all()
+
+
+@pytest.mark.parametrize("limb", sorted(LIMBS))
+def test_particles_whose_points_are_one_find_apart(limb: str) -> None:
+    particles = np.stack([np.tile(POINTS[LIMBS[limb][0]], (3, 1)), np.tile(POINTS[1], (3, 1))])
+    assert np.isfinite(project_limb(BODY, limb, particles, POINTS, sweeps=2)).all()
 
 
 def test_particles_themselves_are_not_touched() -> None:

@@ -34,7 +34,7 @@ from mocapd.fit.mass_spring.simulation import (
 from mocapd.types import Floats
 from tests.fit.mass_spring.naive_constraints import (
     deepest_in_trunk_m,
-    leg_gaps_m,
+    legs_too_near_m,
     unit,
     worst_angle_rad,
 )
@@ -77,7 +77,7 @@ def assert_valid(body: MassSpringBody, points: Floats, trunk_m: float) -> None:
     assert strain[~BONES].max() < trunk_m
     assert np.degrees(worst_angle_rad(body, points)) < 2.0
     assert deepest_in_trunk_m(body, points) < 0.003
-    assert (leg_gaps_m(points) > body.constraints.gaps - 0.003).all()
+    assert legs_too_near_m(body, points) < 0.003
 
 
 @pytest.mark.parametrize("name", BODIES)
@@ -312,6 +312,21 @@ def test_a_soft_waist_leans_where_a_stiff_one_takes_the_shoulders_along() -> Non
         waist = unit(after[5] - after[12])
         tilt.append(float(np.arctan2(waist[1], waist[0])))
     assert abs(tilt[1]) < 0.75 * tilt[0]
+
+
+@pytest.mark.parametrize("passing_m", [0.12, np.inf])
+def test_legs_pass_each_other_but_not_through(passing_m: float) -> None:
+    body = build_body(mean_shape(1.75), Softness(passing_m=passing_m))
+    start = RELAXED["stiff"]
+    both = [ANKLE[0], ANKLE[1]]
+    mass = body.mass_kg.copy()
+    mass[both] = 40.0
+    for ahead_m, passes in ((0.0, False), (0.5, passing_m < 1.0)):
+        feet = start.points_m[both] + [[-0.15, 0.05, 0.5 * ahead_m], [0.15, 0.05, -0.5 * ahead_m]]
+        state = projected(body, with_points(start, both, feet), mass)
+        crossed = state.points_m[ANKLE[0], 0] < state.points_m[ANKLE[1], 0]
+        assert crossed == passes
+        assert legs_too_near_m(body, state.points_m) < 0.003
 
 
 @pytest.mark.parametrize("stature_m", [1.2, 1.55, 2.0])

@@ -6,12 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mocapd.body.shape import BodyShape, mean_shape
+from mocapd.body.skeleton import INDEX
 from mocapd.fit.mass_spring.body_points import (
     HEAD,
     LIMBS,
     MIRROR,
     N_POINTS,
 )
+from mocapd.fit.mass_spring.constraint_kernels import sweep_springs
 from mocapd.fit.mass_spring.frusta import CHIN, CROWN, MID_WAIST, N_ENDS, NAMES
 from mocapd.fit.mass_spring.mass_spring_body import build_body
 from mocapd.fit.mass_spring.simulation import advanced, relaxed
@@ -83,6 +85,17 @@ def test_the_body_takes_new_lengths() -> None:
     assert (grown.built_m == BODY.built_m).all()
 
 
+def test_a_spring_whose_ends_are_one_point_parts_them() -> None:
+    points = np.ones((2, 3))
+    sweep_springs(
+        points, np.array([1.0, 3.0]), np.array([[0, 1]]), np.array([0.4]), np.zeros(1), np.full(1, 0.25),
+        np.array([0]), np.zeros(1),
+    )  # fmt: skip
+    # as long as it should be, the lighter end having moved three times as far
+    assert np.linalg.norm(points[1] - points[0]) == pytest.approx(0.4)
+    assert np.linalg.norm(points[1] - 1.0) == pytest.approx(0.3)
+
+
 def test_frusta_cover_the_limbs() -> None:
     frusta = BODY.frusta
     assert len(NAMES) == len(frusta.start_index) == 11
@@ -98,6 +111,8 @@ def test_frusta_cover_the_limbs() -> None:
     assert by_name["upper_trunk"][1] == by_name["lower_trunk"][0] == MID_WAIST
     # the crown is as high as the person
     assert ends[CROWN, 1] == pytest.approx(1.75, abs=0.03)
+    head = BODY.skeleton.rest_m[INDEX["head"]] + np.array([0.0, 0.050, 0.020]) * 1.75
+    assert np.abs(0.5 * (ends[CHIN] + ends[CROWN]) - head).max() < 1e-9
     assert ends[CROWN, 1] - ends[CHIN, 1] == pytest.approx(0.13 * 1.75, abs=0.01)
 
 
