@@ -20,6 +20,7 @@ from mocapd.fit.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -207,11 +208,17 @@ class ArmSearch:
             score_arm_poses(self.fitter, state, arm, views, tries, 0.0, 0.0)
 
     def improve(
-        self, fit: Fit, views: Sequence[View], dt_s: float, turn: int, learn_shape: bool
+        self,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        learn_shape: bool,
+        terms: Sequence[PoseTerm] = (),
     ) -> tuple[Fit, tuple[str, ...]]:
         """A better fit, if another pose of an uncertain arm gives one, and the sides that changed.
 
-        turn: a running number; each turn tries another part of the low-discrepancy sets.
+        turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
         """
         p = self.params
         changed = []
@@ -235,7 +242,7 @@ class ArmSearch:
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
                 state = replace(fit.state, local_xyzw=local)
-                other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1)
+                other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1, terms=terms)
                 there = other.state.local_xyzw[arm.chain[:3]]
                 cost = other.cost + self._price(side, there, here)
                 cost -= self._hand_px(arm, other, views, empty)

@@ -35,10 +35,11 @@ def measured_distances(
     other: Camera,
     greys: tuple[Bytes, Bytes],
     turn: int,
+    corner: tuple[int, int] = (0, 0),
     params: MeasuringParams | None = None,
 ) -> MeasuredDistances:
     """Look for points of the body as expected in one camera (drawn: its ids and triangles (h,w) over the whole work
-    picture, posed by `drawing`) in the other camera's picture.
+    picture, or a region of it that begins at `corner`, posed by `drawing`) in the other camera's picture.
 
     greys: both pictures as delivered; turn: a running number, by which other points are taken. What has no
     texture, or does not look alike, is left out.
@@ -46,7 +47,9 @@ def measured_distances(
     p = params if params is not None else MeasuringParams()
     y, x = _samples(drawn, drawing.model.part, p.points, turn)
     triangle = drawn[1][y, x].astype(np.int64)
-    pixels: Floats = (np.stack([x, y], axis=1).astype(float) + 0.5) * drawing.image_scale - 0.5
+    pixels: Floats = (
+        np.stack([x, y], axis=1) + np.array(corner, dtype=float) + 0.5
+    ) * drawing.image_scale - 0.5
     origin, along = rays(drawing.camera, pixels)
     expected_m = np.einsum("ni,ni->n", _places(drawing, body, triangle) - origin, along)
     offsets_m = np.linspace(-p.reach_m, p.reach_m, p.places)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 
 
@@ -25,6 +26,8 @@ class Params:
     limbs: LimbSearchParams = field(default_factory=LimbSearchParams)
     segmentation: SegmentationParams = field(default_factory=SegmentationParams)
     shape: ShapeLearningParams = field(default_factory=ShapeLearningParams)
+    # points by the hundred share the errors of cloth and surface: together they count as three would alone
+    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(sd_m=0.3))
 
     # motion from frame to frame
     prediction_damping: float = 0.6

@@ -33,6 +33,7 @@ from mocapd.trackers.blending import Residual, blended, later, residual
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
+from mocapd.trackers.colour.texture_distance import texture_distances
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import (
     BodyState,
@@ -185,12 +186,20 @@ class ColourTracker:
             known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
             [(self._arm_columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
         )  # fmt: skip
+        terms = texture_distances(fitter, predicted, views, frames, self._turn, p.distances)
         fit = fitter.fit(
-            predicted, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion
+            predicted,
+            views,
+            dt_s,
+            p.fit.iterations,
+            learning,
+            rendered=True,
+            motion=motion,
+            terms=terms,
         )
         self.probe("fit")
         before = fit
-        fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning)
+        fit, switched = self._arms.improve(fit, views, dt_s, self._turn, learning, terms)
         self._redraw = fit is not before or any(is_uncertain(s, before, p.limbs) for s in SIDES)
         self.probe("arms")
         match = fit.match

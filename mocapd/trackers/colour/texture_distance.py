@@ -1,0 +1,39 @@
+"""How far away the shirt is, where two cameras look from about the same side and see its texture alike."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.distance_measuring import MeasuringParams, measured_distances
+from mocapd.fit.terms.distance_term import DistanceTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.types import FrameSet
+
+
+def texture_distances(
+    fitter: Fitter,
+    predicted: MotionState,
+    views: Sequence[View],
+    frames: FrameSet,
+    turn: int,
+    params: MeasuringParams,
+) -> tuple[PoseTerm, ...]:
+    """Distances of the predicted body, which the fitter drew last into every view; none where cameras see other sides.
+
+    turn: a running number, by which other points are taken.
+    """
+    if len(views) != 2 or not fitter.is_narrow(predicted, views):
+        return ()
+    drawing, other = (fitter.drawings[view.index] for view in views)
+    first, second = (
+        np.asarray(cv2.cvtColor(frames.frames[camera.name].pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+        for camera in (drawing.camera, other.camera)
+    )
+    body, roi = fitter.shaper(predicted.factors), views[0].roi
+    measured = measured_distances(
+        drawing, drawing.last(roi), body, other.camera, (first, second), turn, roi[:2], params
+    )
+    return (DistanceTerm(fitter.model, measured),)
