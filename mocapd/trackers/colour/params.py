@@ -27,7 +27,7 @@ class Params:
     segmentation: SegmentationParams = field(default_factory=SegmentationParams)
     shape: ShapeLearningParams = field(default_factory=ShapeLearningParams)
     # points by the hundred share the errors of cloth and surface: together they count as three would alone
-    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(sd_m=0.3))
+    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(sd_m=0.27))
 
     # motion from frame to frame
     prediction_damping: float = 0.6
