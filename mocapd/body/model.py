@@ -99,8 +99,7 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
     triangle_bones, triangle_weights = _strongest(surface.weights[used][triangles].mean(axis=1))
     colour = standard_shirt().colour_of_patch[surface.patch[keep]]
     part = surface.part[keep]
-    of_arms = np.flatnonzero(((part == LEFT_ARM) | (part == RIGHT_ARM)) & (colour > 0))
-    sleeves = of_arms[np.argsort(colour[of_arms], kind="stable")]
+    sleeves, sleeve_start = sleeves_by_colour(part, colour)
     return BodyModel(
         space=space,
         stature_m=stature_m,
@@ -117,7 +116,7 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
         d_vertices=np.ascontiguousarray(d_vertices[:, used]),
         d_rest=d_rest,
         sleeves=sleeves,
-        sleeve_start=np.searchsorted(colour[sleeves], np.arange(12)),
+        sleeve_start=sleeve_start,
         centres_m=surface.vertices_m[used][triangles].mean(axis=1),
         d_centres=np.ascontiguousarray(d_vertices[:, used][:, triangles].mean(axis=2)),
         parents=PARENTS,
@@ -125,6 +124,13 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
         share_of_joint=space.share_of_joint,
         joint_of_group=space.joint_of_group,
     )
+
+
+def sleeves_by_colour(part: NDArray[np.uint8], colour: NDArray[np.uint8]) -> tuple[Ints, Ints]:
+    """Coloured triangles (S,) of both arms by colour, and the first place (12,) of each colour 0..10, and the end."""
+    of_arms = np.flatnonzero(((part == LEFT_ARM) | (part == RIGHT_ARM)) & (colour > 0))
+    sleeves = of_arms[np.argsort(colour[of_arms], kind="stable")]
+    return sleeves, np.searchsorted(colour[sleeves], np.arange(12))
 
 
 def shaped(model: BodyModel, factors: Floats) -> tuple[Floats, Floats]:

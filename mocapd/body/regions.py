@@ -6,13 +6,12 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, sleeves_by_colour
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 
 _FOOT = 0.05  # of the stature, in the T-pose: what is lower is shoe
-_COLOURS = 12  # 0..10, and the end
 
 
 class Region(IntEnum):
@@ -51,7 +50,5 @@ def regions(model: BodyModel) -> NDArray[np.uint8]:
 def _coloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs to be told apart")
-    arms = np.flatnonzero((model.part == LEFT_ARM) | (model.part == RIGHT_ARM))
-    sleeves = arms[np.argsort(colour[arms], kind="stable")]
-    start = np.searchsorted(colour[sleeves], np.arange(_COLOURS))
+    sleeves, start = sleeves_by_colour(model.part, colour)
     return replace(model, colour=colour, sleeves=sleeves, sleeve_start=start)

@@ -221,6 +221,8 @@ class ArmSearch:
         turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
         """
         p = self.params
+        if not any(is_uncertain(side, fit, p) for side in self.arms):
+            return fit, ()
         changed = []
         empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
         for side, arm in self.arms.items():

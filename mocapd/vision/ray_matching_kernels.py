@@ -4,18 +4,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.vision.sampling_kernels import grey_at
+
 Array = NDArray[np.float64]
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _sample(grey: NDArray[np.uint8], x: float, y: float) -> float:
-    """Bilinear; the place must be inside."""
-    u, v = int(x), int(y)
-    s, t = x - u, y - v
-    above = (1.0 - s) * grey[v, u] + s * grey[v, u + 1]
-    below = (1.0 - s) * grey[v + 1, u] + s * grey[v + 1, u + 1]
-    value: float = (1.0 - t) * above + t * below
-    return value
 
 
 @njit(cache=True, nogil=True)
@@ -27,7 +18,7 @@ def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -
     n, total = 0, 0.0
     for j in range(-half, half + 1):
         for i in range(-half, half + 1):
-            out[n] = _sample(grey, x + i, y + j)
+            out[n] = grey_at(grey, x + i, y + j)
             total += out[n]
             n += 1
     total /= n

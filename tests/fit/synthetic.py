@@ -4,15 +4,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mocapd.body.model import build_model
+from mocapd.body.model import BodyModel, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, moved
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.key_poses import arm_rotations
-from mocapd.types import Floats
+from mocapd.types import Camera, Floats
 from tests.geometry.rigs import looking_at
 
 STATURE_M = 1.75
@@ -67,3 +68,19 @@ def views_of(
         ids = drawing.render(state, dts_s[i], roi).copy()
         out.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dts_s[i]))
     return out
+
+
+def textured_greys(
+    model: BodyModel, cameras: Sequence[Camera], state: MotionState
+) -> list[NDArray[np.uint8]]:
+    """Each camera's picture (480,640) of a body whose brightness follows its surface, triangle by triangle."""
+    brightness = np.random.default_rng(2).integers(30, 226, len(model.triangles)).astype(np.uint8)
+    greys = []
+    for drawing in Fitter(model, cameras, [1] * len(cameras), FitParams()).drawings:
+        roi = (60, 0, 540, 480)
+        drawing.render(state, 0.0, roi)
+        at = drawing.last(roi)[1]
+        picture = np.full((480, 640), 90, np.uint8)
+        picture[:, 60:540] = np.where(at >= 0, brightness[at], 90)
+        greys.append(picture)
+    return greys

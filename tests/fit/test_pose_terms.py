@@ -22,6 +22,7 @@ from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats, Ints
+from tests.fit.synthetic import textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -183,17 +184,7 @@ def test_distances_are_measured_where_the_body_has_texture() -> None:
     fitter = Fitter(BODY, CAMERAS, [2, 2], FitParams())
     still, known = np.zeros(BODY.n_pose), initial_information(BODY.space)
     truth = MotionState(ROOT, relaxed(), still, np.ones(BODY.n_shape), known)
-    rng = np.random.default_rng(2)
-    brightness = rng.integers(30, 226, len(BODY.triangles)).astype(np.uint8)
-    greys = []
-    full = Fitter(BODY, CAMERAS, [1, 1], FitParams())
-    for drawing in full.drawings:
-        roi = (60, 0, 540, 480)
-        drawing.render(truth, 0.0, roi)
-        at = drawing.last(roi)[1]
-        picture = np.full((480, 640), 90, np.uint8)
-        picture[:, 60:540] = np.where(at >= 0, brightness[at], 90)
-        greys.append(picture)
+    greys = textured_greys(BODY, CAMERAS, truth)
     start = replace(truth, root_m=ROOT + np.array([0.0, 0.0, 0.15]))
     drawing, roi = fitter.drawings[0], (0, 0, 320, 240)
     drawing.render(start, 0.0, roi)

@@ -9,7 +9,7 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.trackers.colour.texture_distance import texture_distances
 from mocapd.types import Camera, Floats, Frame, FrameSet
-from tests.fit.synthetic import CAMERAS, MODEL, standing, stepped
+from tests.fit.synthetic import CAMERAS, MODEL, standing, stepped, textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -22,17 +22,14 @@ SIDE_BY_SIDE = tuple(
 
 def textured(cameras: tuple[Camera, ...], state: MotionState) -> FrameSet:
     """Pictures of a body whose brightness follows its surface."""
-    brightness = np.random.default_rng(2).integers(30, 226, len(MODEL.triangles)).astype(np.uint8)
-    by = Fitter(MODEL, cameras, [1] * len(cameras), FitParams())
-    frames = {}
-    for drawing in by.drawings:
-        roi = (60, 0, 540, 480)
-        drawing.render(state, 0.0, roi)
-        at = drawing.last(roi)[1]
-        picture = np.full((480, 640, 3), 90, np.uint8)
-        picture[:, 60:540] = np.where(at >= 0, brightness[at], 90)[..., None]
-        frames[drawing.camera.name] = Frame(drawing.camera.name, 0, 0, picture)
-    return FrameSet(0, frames)
+    greys = textured_greys(MODEL, cameras, state)
+    return FrameSet(
+        0,
+        {
+            camera.name: Frame(camera.name, 0, 0, np.repeat(grey[..., None], 3, axis=2))
+            for camera, grey in zip(cameras, greys, strict=True)
+        },
+    )
 
 
 def shifted(by: Fitter, state: MotionState, m: Floats) -> MotionState:

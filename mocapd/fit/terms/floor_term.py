@@ -40,7 +40,7 @@ class FloorTerm:
         m, p = self._model, self._params
         cost: float = stand_on_floor(
             self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.standing_sd_m**2),
-            p.together_m, p.jump_m, m.parents, m.group_of_joint, m.share_of_joint,
-            posed.R, posed.joints, self._row, H, b,
+            p.together_m, p.jump_m, body.rest, m.parents, m.joint_of_group, m.group_of_joint,
+            m.share_of_joint, posed.R, posed.joints, self._row, H, b,
         )  # fmt: skip
         return cost

@@ -1,4 +1,4 @@
-"""Derivatives of points of the body by the pose, for terms that pull at points."""
+"""Rows of terms that pull at points of the body: at its ankles, at triangles of its surface."""
 
 import numpy as np
 from numba import njit
@@ -9,44 +9,6 @@ from mocapd.body.posing_kernels import surface_row_of_arrays
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 _FEW = 1e-12
-
-
-@njit(cache=True, nogil=True)
-def joint_row(
-    j: int,
-    g: Array,
-    parents: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
-    out: Array,
-) -> None:
-    """Derivative of g . joints[j] by the pose step: out (P,); g (3,) in the world, R (J,3,3) and joints (J,3) as posed."""
-    for k in range(out.shape[0]):
-        out[k] = g[k] if k < 3 else 0.0
-    a = parents[j]
-    while a >= 0:
-        group = group_of_joint[a]
-        if group >= 0:
-            rx, ry, rz = (
-                joints[j, 0] - joints[a, 0],
-                joints[j, 1] - joints[a, 1],
-                joints[j, 2] - joints[a, 2],
-            )
-            mx = share_of_joint[a] * (ry * g[2] - rz * g[1])
-            my = share_of_joint[a] * (rz * g[0] - rx * g[2])
-            mz = share_of_joint[a] * (rx * g[1] - ry * g[0])
-            p = parents[a]
-            first = 3 + 3 * group
-            if p < 0:
-                out[first] += mx
-                out[first + 1] += my
-                out[first + 2] += mz
-            else:
-                for i in range(3):
-                    out[first + i] += R[p, 0, i] * mx + R[p, 1, i] * my + R[p, 2, i] * mz
-        a = parents[a]
 
 
 @njit(cache=True, nogil=True)
@@ -68,7 +30,9 @@ def stand_on_floor(
     information: tuple[float, float],
     together_m: float,
     jump_m: float,
+    rest: Array,
     parents: Ints,
+    joint_of_group: Ints,
     group_of_joint: Ints,
     share_of_joint: Array,
     R: Array,
@@ -84,6 +48,9 @@ def stand_on_floor(
     standing has lost half of its weight. row (n_pose,) is scratch.
     """
     up = np.array([0.0, 1.0, 0.0])
+    carrier, whole = np.empty(1, np.int32), np.ones(1)
+    nothing = np.zeros((0, 3))
+    no_rest = np.zeros((0, rest.shape[0], 3))
     lowest = np.inf
     for f in range(feet.shape[0]):
         lowest = min(lowest, joints[feet[f], 1] - heights_m[f])
@@ -96,7 +63,11 @@ def stand_on_floor(
             weight = information[1] / (1.0 + (above / jump_m) ** 2)
         else:
             continue
-        joint_row(feet[f], up, parents, group_of_joint, share_of_joint, R, joints, row)
+        carrier[0] = parents[feet[f]]  # a joint is a point of the bone above it
+        surface_row_of_arrays(
+            rest[feet[f]], carrier, whole, nothing, up, rest, parents, joint_of_group,
+            group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
+        )  # fmt: skip
         add_row(row, -above, weight, H, b)
         cost += weight * above * above
     return cost

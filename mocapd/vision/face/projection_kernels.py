@@ -1,8 +1,6 @@
 """One point through a camera with its lens, for the kernels beside."""
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays
 
@@ -23,17 +21,3 @@ def pixel_of(camera: CameraArrays, X: float, Y: float, Z: float) -> tuple[float,
     u = x * radial + 2.0 * dist[2] * x * y + dist[3] * (r2 + 2.0 * x * x)
     v = y * radial + dist[2] * (r2 + 2.0 * y * y) + 2.0 * dist[3] * x * y
     return K[0, 0] * u + K[0, 2], K[1, 1] * v + K[1, 2], z
-
-
-@njit(cache=True, nogil=True, inline="always")
-def grey_at(grey: NDArray[np.uint8], x: float, y: float) -> float:
-    """Bilinear; negative outside the picture (h,w)."""
-    h, w = grey.shape
-    if not (0.0 <= x < w - 1.0 and 0.0 <= y < h - 1.0):
-        return -1.0
-    i, j = int(x), int(y)
-    a, b = x - i, y - j
-    top = (1.0 - a) * grey[j, i] + a * grey[j, i + 1]
-    low = (1.0 - a) * grey[j + 1, i] + a * grey[j + 1, i + 1]
-    value: float = (1.0 - b) * top + b * low
-    return value

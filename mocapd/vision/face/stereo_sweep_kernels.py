@@ -5,7 +5,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays
-from mocapd.vision.face.projection_kernels import BEHIND, grey_at, pixel_of
+from mocapd.vision.face.projection_kernels import BEHIND, pixel_of
+from mocapd.vision.sampling_kernels import grey_at
 
 Array = NDArray[np.float64]
 
