@@ -17,7 +17,7 @@ from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
-from mocapd.sim.world import Performed, World
+from mocapd.sim.world import Performed, World, is_out
 from mocapd.types import Bytes, LabelledPicture
 
 LABEL_EVERY = 15  # frames
@@ -42,17 +42,20 @@ def export_capture(
 ) -> None:
     """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`.
 
-    Every frame is there: dropped frames belong to the live source. Raises CannotCreateError.
+    Every frame is there, as dropped frames belong to the live source; those of an unplugged camera are black.
+    The pictures of the shirt and their strokes are left out when it is not worn. Raises CannotCreateError.
     """
     world = World(scenario, performed)
     job = _Job(
         scenario, world, camera_renderers(world), directory, round(seconds * scenario.fps_hz)
     )
     try:
-        for folder in ("scribble", "model", "labels", "masks"):
+        shirt = scenario.clothes.shirt != "plain"
+        for folder in (*(("scribble", "model") if shirt else ()), "labels", "masks"):
             (directory / folder).mkdir(parents=True, exist_ok=True)
         _write_texts(job)
-        _write_pictures(job)
+        if shirt:
+            _write_pictures(job)
         _write_truth(job)
         for k in range(len(job.renderers)):
             _write_video(job, k, progress)
@@ -78,15 +81,23 @@ def _write_texts(job: _Job) -> None:
         for light in scenario.lights
         if light.events
     }
-    info = {
+    info: dict[str, Any] = {
         "scenario": scenario.name,
-        "outfit": "shirt",
+        "outfit": "plain" if scenario.clothes.shirt == "plain" else "shirt",
         "seconds": job.frames / scenario.fps_hz,
         "loop_s": scenario.loop_s,
         "light_events": events,
         "shutter_s": [camera.shutter_s for camera in scenario.cameras],
         "camera_gamma": [camera.gamma for camera in scenario.cameras],
     }
+    if scenario.clothes.events:
+        info["jacket_events"] = [[event.t_s, event.jacket] for event in scenario.clothes.events]
+    if scenario.absences:
+        info["absences"] = [[span.from_s, span.to_s] for span in scenario.absences]
+    if any(camera.outages for camera in scenario.cameras):
+        info["outages"] = [
+            [[span.from_s, span.to_s] for span in camera.outages] for camera in scenario.cameras
+        ]
     rig = {"rig": scenario.name, "units": "m", "cameras": cameras}
     subject = {"stature_m": scenario.body.stature_m}
     for name, content in (("rig", rig), ("info", info), ("subject", subject)):
@@ -153,8 +164,11 @@ def _write_video(job: _Job, k: int, progress: Progress | None) -> None:
     video = cv2.VideoWriter(str(path), fourcc, job.scenario.fps_hz, renderer.camera.size_px)
     if not video.isOpened():
         raise CannotCreateError("the video cannot be written", str(path), "check OpenCV's codecs")
+    width, height = renderer.camera.size_px
+    black = np.zeros((height, width, 3), dtype=np.uint8)
     for f in range(job.frames):
-        video.write(renderer.frame(f))
+        out = is_out(job.scenario, renderer.spec, f)
+        video.write(black if out else renderer.frame(f))
         if f % LABEL_EVERY == 0:
             _write_label(job, k, f)
         if progress is not None:
@@ -164,12 +178,8 @@ def _write_video(job: _Job, k: int, progress: Progress | None) -> None:
 
 def _write_label(job: _Job, k: int, f: int) -> None:
     renderer = job.renderers[k]
-    width, height = renderer.camera.size_px
-    state = job.world.at(renderer.exposure_s(f))
-    patch, mask = np.zeros((2, height, width), dtype=np.uint8)
-    if state.person_present:
-        patch, mask = renderer.labels(state.pose)
+    patch, mask, other = renderer.labels_at(renderer.exposure_s(f))
     name = f"cam{k}_{f:06d}"
     write_png(job.directory / "labels" / f"{name}.png", patch)
     write_png(job.directory / "masks" / f"{name}.png", mask)
-    write_png(job.directory / "masks" / f"{name}_other.png", np.zeros_like(mask))
+    write_png(job.directory / "masks" / f"{name}_other.png", other)

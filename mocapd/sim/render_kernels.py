@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.sim.person.dress_kernels import FLAT, Dress, surface_colour
 from mocapd.types import Floats, Singles
 
 _NEAR_M = 0.10
@@ -96,13 +97,15 @@ def rasterise(
 def accumulate(
     triangles: NDArray[np.int32], albedo: Floats, irradiance: Singles, nearness: Singles,
     owner: NDArray[np.int32], weights: Singles, box: tuple[int, int, int, int], share: float,
-    colour: Singles, cover: Singles,
+    dress: Dress, jackets: Floats, colour: Singles, cover: Singles,
 ) -> None:  # fmt: skip
     """Add one drawing, worth `share`, to colour (H,W,3) and cover (H,W) within box x0 y0 x1 y1.
 
-    Leaves nearness and owner empty for the next drawing.
+    jackets (N,): how far each person's is on. Leaves nearness and owner empty for the next drawing.
     """
     x0, y0, x1, y1 = box
+    rgb = np.empty(3)
+    rest, rule, under_jacket, person, outfits = dress
     for y in range(y0, y1):
         for x in range(x0, x1):
             k = owner[y, x]
@@ -112,8 +115,17 @@ def accumulate(
             q, r = weights[y, x, 0], weights[y, x, 1]
             p = 1.0 - q - r
             for i in range(3):
+                rgb[i] = albedo[k, i]
+            if rule[k] != FLAT or under_jacket[k] != FLAT:
+                surface_colour(
+                    p * rest[a, 0] + q * rest[b, 0] + r * rest[c, 0],
+                    p * rest[a, 1] + q * rest[b, 1] + r * rest[c, 1],
+                    p * rest[a, 2] + q * rest[b, 2] + r * rest[c, 2],
+                    rule[k], under_jacket[k], person[k], jackets[person[k]], outfits, rgb,
+                )  # fmt: skip
+            for i in range(3):
                 light = p * irradiance[a, i] + q * irradiance[b, i] + r * irradiance[c, i]
-                colour[y, x, i] += share * albedo[k, i] * light
+                colour[y, x, i] += share * rgb[i] * light
             cover[y, x] += share
             nearness[y, x] = 0.0
             owner[y, x] = -1

@@ -11,7 +11,8 @@ import msgspec
 import numpy as np
 
 from mocapd.evaluate.simulated.motion_clip import MotionClip, Placement, within
-from mocapd.sim.scenario import BodySpec, LightEvent, MotionSpec, PoseKeyframe, Scenario
+from mocapd.sim.person_spec import BodySpec, MotionSpec, PoseKeyframe
+from mocapd.sim.scenario import LightEvent, Scenario
 
 SESSIONS = 24
 SECONDS = 7.0
