@@ -1,6 +1,7 @@
 """Write a scenario as a recorded session with exact ground truth, in the capture format."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,8 +40,10 @@ def export_capture(
     seconds: float,
     progress: Progress | None = None,
     performed: Performed | None = None,
+    notes: Mapping[str, float] | None = None,
 ) -> None:
-    """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`.
+    """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`; notes:
+    more for info.json.
 
     Every frame is there, as dropped frames belong to the live source; those of an unplugged camera are black.
     The pictures of the shirt and their strokes are left out when it is not worn. Raises CannotCreateError.
@@ -53,7 +56,7 @@ def export_capture(
         shirt = scenario.clothes.shirt != "plain"
         for folder in (*(("scribble", "model") if shirt else ()), "labels", "masks"):
             (directory / folder).mkdir(parents=True, exist_ok=True)
-        _write_texts(job)
+        _write_texts(job, notes or {})
         if shirt:
             _write_pictures(job)
         _write_truth(job)
@@ -65,7 +68,7 @@ def export_capture(
         ) from None
 
 
-def _write_texts(job: _Job) -> None:
+def _write_texts(job: _Job, notes: Mapping[str, float]) -> None:
     scenario = job.scenario
     cameras: list[dict[str, Any]] = []
     for k, renderer in enumerate(job.renderers):
@@ -98,6 +101,7 @@ def _write_texts(job: _Job) -> None:
         info["outages"] = [
             [[span.from_s, span.to_s] for span in camera.outages] for camera in scenario.cameras
         ]
+    info |= notes
     rig = {"rig": scenario.name, "units": "m", "cameras": cameras}
     subject = {"stature_m": scenario.body.stature_m}
     for name, content in (("rig", rig), ("info", info), ("subject", subject)):

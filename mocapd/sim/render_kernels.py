@@ -8,6 +8,7 @@ from mocapd.sim.person.dress_kernels import FLAT, Dress, surface_colour
 from mocapd.types import Floats, Singles
 
 _NEAR_M = 0.10
+_MOST_OUTSIDE = 1.5  # of the picture's half diagonal, from its middle
 
 
 @njit(cache=True, nogil=True)
@@ -22,9 +23,13 @@ def project_vertices(
 ) -> tuple[int, int, int, int]:
     """World points (V,3) to out (V,3): pixel x, y through the lens, and depth [m] (Brown-Conrady).
 
+    Far outside of the picture, where the lens's polynomial may fold back into it, the depth is 0.
     Returns the box x0 y0 x1 y1 [px] inside the picture of size (W, H) that holds all of them.
     """
     x0, y0, x1, y1 = 1e9, 1e9, -1e9, -1e9
+    wide = max(K[0, 2], size[0] - K[0, 2]) / K[0, 0]
+    high = max(K[1, 2], size[1] - K[1, 2]) / K[1, 1]
+    r2_most = _MOST_OUTSIDE * _MOST_OUTSIDE * (wide * wide + high * high)
     for i in range(len(vertices)):
         x = R[0, 0] * vertices[i, 0] + R[0, 1] * vertices[i, 1] + R[0, 2] * vertices[i, 2] + t[0]
         y = R[1, 0] * vertices[i, 0] + R[1, 1] * vertices[i, 1] + R[1, 2] * vertices[i, 2] + t[1]
@@ -34,6 +39,9 @@ def project_vertices(
             continue
         x, y = x / z, y / z
         r2 = x * x + y * y
+        if r2 > r2_most:
+            out[i, 2] = 0.0
+            continue
         bend = 1.0 + r2 * (dist[0] + r2 * (dist[1] + r2 * dist[4]))
         u = x * bend + 2 * dist[2] * x * y + dist[3] * (r2 + 2 * x * x)
         v = y * bend + dist[2] * (r2 + 2 * y * y) + 2 * dist[3] * x * y
