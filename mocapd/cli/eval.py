@@ -137,8 +137,7 @@ def evaluate_captures(
         if failures:
             sessions += recorded_set.failures()
         made = recorded_set.recorded(sessions, effective.cache_dir, progress)
-        if any(one.scenario.clothes.shirt == "plain" for one in sessions):
-            _refuse_shirt_tracker(name, made)
+        recorded_set.check_suits(name, sessions, made)
         folders += made
         cases = [open_case(folder) for folder in folders]
 
@@ -164,22 +163,6 @@ def evaluate_captures(
         words[2:2] = ["--failures"] if failures else []
         for path in write_page(out, findings, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
-
-
-def _refuse_shirt_tracker(name: str, recordings: list[Path]) -> None:
-    """Raises ConfigError when the tracker follows the shirt, which nobody wears in these recordings."""
-    from mocapd.trackers.registry import TRACKERS
-
-    if not TRACKERS[name].reads_shirt:
-        return
-    suited = [known for known, one in TRACKERS.items() if one.sees and not one.reads_shirt]
-    raise ConfigError(
-        f"the tracker {name!r} follows the shirt, which nobody wears in these sessions",
-        f"{len(recordings)} recordings in {recordings[0].parent}",
-        f"add --tracker {' or '.join(suited)}"
-        if suited
-        else "they are kept until a tracker suits; none does yet",
-    )
 
 
 def _prediction(cases: "list[Case]", config: "Config", build: "BuildTracker") -> str:

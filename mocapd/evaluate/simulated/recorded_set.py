@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from mocapd.assets import asset_path
-from mocapd.errors import CannotCreateError, InputError
+from mocapd.errors import CannotCreateError, ConfigError, InputError
 from mocapd.evaluate.simulated.failure_scenes import failure_sessions
 from mocapd.evaluate.simulated.motion_clip import performed, read_clip
 from mocapd.evaluate.simulated.plain_plan import plain_plan
@@ -14,6 +14,7 @@ from mocapd.session.tracker_setup import Progress
 from mocapd.sim.export import export_capture
 from mocapd.sim.film import film_key
 from mocapd.sim.scenario import load_scenario
+from mocapd.trackers.registry import TRACKERS, entry
 
 SCENES = ("living_room", "outdoor", "gym_mono")
 
@@ -45,6 +46,25 @@ def recorded(sessions: list[PlannedSession], cache_dir: Path, progress: Progress
     Raises CannotCreateError.
     """
     return [_recorded(session, cache_dir / "simulated", progress) for session in sessions]
+
+
+def check_suits(tracker: str, sessions: list[PlannedSession], recordings: list[Path]) -> None:
+    """Raises ConfigError when a tracker of this name follows the shirt, and somebody in the sessions wears none."""
+    plain = [
+        folder
+        for one, folder in zip(sessions, recordings, strict=True)
+        if one.scenario.clothes.shirt == "plain"
+    ]
+    if not plain or not entry(tracker).reads_shirt:
+        return
+    suited = [name for name, one in TRACKERS.items() if one.sees and not one.reads_shirt]
+    raise ConfigError(
+        f"the tracker {tracker!r} follows the shirt, which nobody wears in {len(plain)} of the sessions",
+        str(plain[0].parent),
+        f"add --tracker {' or '.join(suited)}"
+        if suited
+        else "the recordings are kept there; no tracker that needs no shirt is there yet",
+    )
 
 
 def _recorded(session: PlannedSession, folder: Path, progress: Progress) -> Path:
