@@ -50,7 +50,8 @@ def forearm(share: float) -> Floats:
     """A place so far along the left forearm in the T-pose."""
     rest = figure_in().skeleton.rest_m
     elbow, wrist = rest[INDEX["leftLowerArm"]], rest[INDEX["leftHand"]]
-    return elbow + share * (wrist - elbow)
+    place: Floats = elbow + share * (wrist - elbow)
+    return place
 
 
 def renderer_of(**changes: Any) -> CameraRenderer:
@@ -148,7 +149,11 @@ def test_events_need_a_jacket_and_rising_times() -> None:
 
 def _close_up(yaw_deg: float) -> tuple[Bytes, Floats]:
     """A picture of the head, turned so far, and where eye, cheek and the other eye are in it [px]."""
-    camera = {"name": "near", "position_m": [0.0, 1.6, 0.9], "look_at_m": [0.0, 1.6, 0.0]}
+    camera: dict[str, Any] = {
+        "name": "near",
+        "position_m": [0.0, 1.6, 0.9],
+        "look_at_m": [0.0, 1.6, 0.0],
+    }
     camera |= {"size_px": [160, 160], "shutter_s": 0.0, "gain": 2.0}
     s = scenario(
         cameras=[camera],
