@@ -125,6 +125,7 @@ def accumulate(
             for i in range(3):
                 rgb[i] = albedo[k, i]
             if rule[k] != FLAT or under_jacket[k] != FLAT:
+                # compiled into this kernel: the cache of compiled code knows of a change there by this file alone
                 surface_colour(
                     p * rest[a, 0] + q * rest[b, 0] + r * rest[c, 0],
                     p * rest[a, 1] + q * rest[b, 1] + r * rest[c, 1],

@@ -142,8 +142,8 @@ def interruptions(scene: Scenario, cameras: list[CameraSpec]) -> PlannedSession:
     scenario = msgspec.structs.replace(
         scene, name="interruptions", seed=3100, loop_s=24.0, person_appears_s=EMPTY_S, scribble_s=1.0,
         cameras=[cameras[0], lost], body=_BODY, clothes=clothes, motion=MotionSpec(keyframes=keys),
-        lights=[msgspec.structs.replace(light, events=dark) for light in scene.lights],
-        absences=(Span(from_s=16.4, to_s=18.0),),
+        lights=tuple(msgspec.structs.replace(light, events=dark) for light in scene.lights),
+        absences=(Span(from_s=15.6, to_s=18.4),),
     )  # fmt: skip
     return PlannedSession("interruptions", scenario)
 
@@ -152,5 +152,5 @@ def _placed(camera: CameraSpec, name: str, at_m: tuple[float, float, float]) -> 
     return msgspec.structs.replace(camera, name=name, position_m=at_m, look_at_m=(0.0, 0.95, 0.0))
 
 
-def _steady(scene: Scenario) -> list[Light]:
-    return [msgspec.structs.replace(light, events=()) for light in scene.lights]
+def _steady(scene: Scenario) -> tuple[Light, ...]:
+    return tuple(msgspec.structs.replace(light, events=()) for light in scene.lights)

@@ -150,7 +150,7 @@ def _scenario(name: str, number: int, scene: Scenario, rig: PlainRig, where: Pla
         motion=MotionSpec(keyframes=[stance], sway_deg=0.0),
         others=(_walks_behind(vary, number),) if behind else (),
         room=msgspec.structs.replace(
-            scene.room, things=[*scene.room.things, *_portrait(scene, number)]
+            scene.room, things=(*scene.room.things, *_portrait(scene, number))
         ),
     )
 

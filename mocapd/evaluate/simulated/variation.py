@@ -39,15 +39,15 @@ def varied_body(vary: Variation, **more: Any) -> BodySpec:
     )  # fmt: skip
 
 
-def varied_lights(scene: Scenario, vary: Variation, first_off_s: float | None) -> list[Light]:
+def varied_lights(scene: Scenario, vary: Variation, first_off_s: float | None) -> tuple[Light, ...]:
     """The scene's lights, each a little brighter or darker. first_off_s: when the first goes out, if it does."""
-    off = [] if first_off_s is None else [LightEvent(t_s=first_off_s, level=0.0, over_s=0.05)]
-    return [
+    off = () if first_off_s is None else (LightEvent(t_s=first_off_s, level=0.0, over_s=0.05),)
+    return tuple(
         msgspec.structs.replace(
-            light, intensity=light.intensity * vary(0.1), events=tuple(off) if i == 0 else ()
+            light, intensity=light.intensity * vary(0.1), events=off if i == 0 else ()
         )
         for i, light in enumerate(scene.lights)
-    ]
+    )
 
 
 def varied_clothes(vary: Variation, number: int) -> Clothes:
