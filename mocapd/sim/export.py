@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,7 @@ def export_capture(
     """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`; notes:
     more for info.json.
 
-    Every frame is there, as dropped frames belong to the live source; those of an unplugged camera are black.
+    Every frame is there, as dropped frames belong to the live source; those of an unplugged camera are black, and named.
     The pictures of the shirt and their strokes are left out when it is not worn. Raises CannotCreateError.
     """
     world = World(scenario, performed)
@@ -78,6 +79,9 @@ def _write_texts(job: _Job, notes: Mapping[str, float]) -> None:
             "fps": scenario.fps_hz,
             "time_offset_s": renderer.spec.clock_offset_s,
         }
+        out = [f for f in range(job.frames) if is_out(scenario, renderer.spec, f)]
+        if out:
+            entry["lost_frames"] = _runs(out)
         cameras.append(entry)
     events = {
         light.name: [[event.t_s, event.level] for event in light.events]
@@ -97,15 +101,18 @@ def _write_texts(job: _Job, notes: Mapping[str, float]) -> None:
         info["jacket_events"] = [[event.t_s, event.jacket] for event in scenario.clothes.events]
     if scenario.absences:
         info["absences"] = [[span.from_s, span.to_s] for span in scenario.absences]
-    if any(camera.outages for camera in scenario.cameras):
-        info["outages"] = [
-            [[span.from_s, span.to_s] for span in camera.outages] for camera in scenario.cameras
-        ]
     info |= notes
     rig = {"rig": scenario.name, "units": "m", "cameras": cameras}
     subject = {"stature_m": scenario.body.stature_m}
     for name, content in (("rig", rig), ("info", info), ("subject", subject)):
         (job.directory / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n")
+
+
+def _runs(frames: list[int]) -> list[list[int]]:
+    """First and last, exclusive, of each run of consecutive frames."""
+    cuts = [i for i in range(1, len(frames)) if frames[i] != frames[i - 1] + 1]
+    edges = [0, *cuts, len(frames)]
+    return [[frames[a], frames[b - 1] + 1] for a, b in pairwise(edges)]
 
 
 def _write_pictures(job: _Job) -> None:
