@@ -25,7 +25,8 @@ STATURES_M = (0.5, 2.6)
 @dataclass(frozen=True, slots=True)
 class RecordedCamera:
     """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble`: an image with strokes beside
-    it; None when there is none."""
+    it; None when there is none. lost: first and last frame, exclusive, of each time it was unplugged, which its
+    video only fills."""
 
     name: str
     video: Path
@@ -34,6 +35,11 @@ class RecordedCamera:
     time_offset_s: float
     frames: int
     scribble: Path | None
+    lost: tuple[tuple[int, int], ...] = ()
+
+    def has(self, frame: int) -> bool:
+        """Whether the camera was there for a frame."""
+        return not any(first <= frame < last for first, last in self.lost)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +116,19 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
         time_offset_s=_number(offset_s, "time_offset_s", -_MOST_OFFSET_S, _MOST_OFFSET_S, where),
         frames=info.frames,
         scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
+        lost=_lost(entry.get("lost_frames", []), info.frames, where),
     )
+
+
+def _lost(value: object, frames: int, where: str) -> tuple[tuple[int, int], ...]:
+    """Pairs of frames of a video of so many."""
+    spans: list[Any] = value if isinstance(value, list) else [value]
+    if not all(isinstance(span, list) and len(span) == 2 for span in spans):
+        raise ConfigError(
+            f"'lost_frames' must be pairs of frames, is {brief(value)}", where, "correct the file"
+        )
+    pairs = ([int(_number(one, "lost_frames", 0, frames, where)) for one in span] for span in spans)
+    return tuple((first, last) for first, last in pairs)
 
 
 def _stature_m(path: Path) -> float | None:
@@ -159,10 +177,15 @@ def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -
 def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
     """Frame f of every camera, for f = 0, 1, ...: every frame, from time 0, as fast as they decode.
 
-    Each frame carries its own time f / fps + time_offset_s; a camera that ended early is absent.
+    Each frame carries its own time f / fps + time_offset_s; a camera that ended early, or was unplugged then,
+    is absent.
     """
     pace = Pace(live=False)
-    return sources_in_step([folder_source(camera, pace) for camera in folder.cameras])
+    cameras = {camera.name: camera for camera in folder.cameras}
+    for found in sources_in_step([folder_source(camera, pace) for camera in folder.cameras]):
+        there = {name: one for name, one in found.frames.items() if cameras[name].has(one.seq)}
+        if there:
+            yield as_set(there)
 
 
 def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:

@@ -4,7 +4,7 @@ import shlex
 import shutil
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mocapd.config.effective import Effective
     from mocapd.config.sections import Config
 
-SCENARIO = "sim:living_room"
+SCENARIO = "living_room"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -23,17 +23,27 @@ def add_to(app: typer.Typer) -> None:
     app.command("demo")(demo)
 
 
-def demo(config: ConfigOption = None, settings: SetOption = None, vrm: VrmOption = None) -> None:
+def demo(
+    config: ConfigOption = None,
+    settings: SetOption = None,
+    vrm: VrmOption = None,
+    scenario: Annotated[
+        str, typer.Option(help="Another scene, such as jacket, or a scenario file (.toml).")
+    ] = SCENARIO,
+) -> None:
     """Run the daemon on two simulated webcams.
 
     They show a person in the shirt in a furnished room with two coloured lamps, one of which goes
-    out in each loop. Publishes on Zenoh and OSC on 127.0.0.1.
+    out in each loop; in the scene `jacket` a jacket is put on over the shirt. Publishes on Zenoh
+    and OSC on 127.0.0.1.
 
-    Example: mocapd demo
+    Example: mocapd demo --scenario jacket
     """
+    from mocapd.capture.simulated.sim_kind import scenario_address
 
     def read() -> "Effective":
-        return effective_config(config, settings, None, SCENARIO, **vrm_flags(vrm))
+        origin = scenario_address(scenario)
+        return effective_config(config, settings, None, origin, **vrm_flags(vrm))
 
     watch = watch_command(read().config)
     raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))

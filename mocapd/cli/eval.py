@@ -34,6 +34,13 @@ class Joints(StrEnum):
     LEGS = "legs"
 
 
+class Worn(StrEnum):
+    """What the people of simulated sessions wear."""
+
+    SHIRT = "shirt"
+    PLAIN = "plain"
+
+
 class Compare(StrEnum):
     """With what the full method is compared."""
 
@@ -65,6 +72,17 @@ def evaluate_captures(
             help="A folder of clips of real motion (.npz): sessions of them are simulated, kept in the cache and scored."
         ),
     ] = None,
+    clothes: Annotated[
+        Worn,
+        typer.Option(help="What the people of --simulated wear: the shirt, or plain clothes."),
+    ] = Worn.SHIRT,
+    failures: Annotated[
+        bool,
+        typer.Option(
+            "--failures",
+            help="Simulate and score scenes that are known to be hard: seen from the side, legs that cross, a jacket.",
+        ),
+    ] = False,
     prediction: Annotated[
         bool,
         typer.Option("--prediction", help="Score poses predicted for the time of display instead."),
@@ -104,17 +122,23 @@ def evaluate_captures(
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.compare import FULL
     from mocapd.evaluate.page import write_page
-    from mocapd.evaluate.simulated.recorded_set import planned, recorded
+    from mocapd.evaluate.simulated import recorded_set
     from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 
     folders = list(captures or ())
-    if not folders and simulated is None:
+    if not folders and simulated is None and not failures:
         raise ConfigError(
-            "no capture is given", "mocapd eval", "name one, or add --simulated CLIPS"
+            "no capture is given", "mocapd eval", "name one, or add --simulated CLIPS or --failures"
         )
     with ProgressBars() as progress:
+        sessions = []
         if simulated is not None:
-            folders += recorded(planned(simulated), effective.cache_dir, progress)
+            sessions += recorded_set.planned(simulated, plain=clothes is Worn.PLAIN)
+        if failures:
+            sessions += recorded_set.failures()
+        made = recorded_set.recorded(sessions, effective.cache_dir, progress)
+        recorded_set.check_suits(name, sessions, made)
+        folders += made
         cases = [open_case(folder) for folder in folders]
 
         def build(known: Calibration, method: str) -> ReadyTracker:
@@ -135,6 +159,8 @@ def evaluate_captures(
     _print(findings, as_json)
     if out is not None:
         words = _command(captures or [], simulated, name, compare, joints, out)
+        words[2:2] = ["--clothes", clothes.value] if simulated and clothes is Worn.PLAIN else []
+        words[2:2] = ["--failures"] if failures else []
         for path in write_page(out, findings, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
 

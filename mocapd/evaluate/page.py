@@ -29,10 +29,11 @@ Distances of the joint centres ({joints}) to the ground truth, in metres of the 
 aligned, scaled or smoothed before. Half a second after the person comes in is left out. *Ghosts*:
 frames with a person before there was one. *Angle*: mean error of the angles between the bones at
 neck, shoulders and elbows, or at the joints scored. *Back after*: frames from a lamp going out until
-the RMS error of a frame is under 6 cm for good; 0: it never left; `-`: steady light. *Step*: median
-time of the tracker for one frame set, on the machine that ran this and beside whatever else ran there
-(`mocapd bench` is the measure of speed). *Jitter*: median second difference from frame to frame, as a
-ratio to that of the truth. *Step* p99, max: how far a joint moves from frame to frame beyond its true
+the RMS error of a frame is under 6 cm for good, or, where something hid the person, from its end until it
+is under 10 cm; 0: it never left; `-`: nothing of both. *Step*: median time of the tracker for one frame
+set, on the machine that ran this and beside whatever else ran there (`mocapd bench` is the measure of
+speed). *Jitter*: median second difference from frame to frame, as a ratio to that of the truth. *Step*
+p99, max: how far a joint moves from frame to frame beyond its true
 motion. *Believed*: the joints of confidence 0.4 and more.
 """
 

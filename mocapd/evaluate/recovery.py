@@ -1,4 +1,4 @@
-"""How long a change of the light throws the tracker off."""
+"""How long a change of the light, or what hides the person, throws the tracker off."""
 
 import math
 
@@ -10,6 +10,7 @@ from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 LIMIT_M = 0.06
+CLEAR_LIMIT_M = 0.10  # of whole bodies that were hidden, the best of which are off by more
 STEADY_FRAMES = 3
 # An error that rises later than this after the change has another cause, such as a fast throw.
 _BLAMED_FRAMES = 10
@@ -28,13 +29,13 @@ def frame_errors_m(truth: Truth, track: RecordedTrack, joints: str = "upper") ->
     return errors
 
 
-def recovery_frames(errors_m: Floats) -> float:
-    """Frames until the error is back under 6 cm for good, of errors_m (N,) from the change on.
+def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M) -> float:
+    """Frames until the error is back under the limit for good, of errors_m (N,) from the change on.
 
     0 when it never left in the frames after the change that can be blamed on it, infinite when it
-    did not come back. Back means under 6 cm for three frames, or to the end of the recording.
+    did not come back. Back means under the limit for three frames, or to the end of the recording.
     """
-    over = ~(errors_m < LIMIT_M)
+    over = ~(errors_m < limit_m)
     if not over[:_BLAMED_FRAMES].any():
         return 0.0
     left = int(over.argmax())
@@ -45,9 +46,12 @@ def recovery_frames(errors_m: Floats) -> float:
 
 
 def recovery(truth: Truth, track: RecordedTrack, joints: str = "upper") -> float | None:
-    """`recovery_frames` after the capture's change of light; None when its light is steady."""
-    if truth.light_change_s is None:
+    """`recovery_frames` after the capture's change of light, or since nothing hides the person any more, whose
+    limit is 10 cm; None when its light is steady and nothing ever did."""
+    since_s = truth.light_change_s if truth.clear_s is None else truth.clear_s
+    if since_s is None:
         return None
     errors = frame_errors_m(truth, track, joints)
-    after = np.isfinite(truth.times_s) & (truth.times_s >= truth.light_change_s)
-    return recovery_frames(errors[after & ~np.isnan(errors)])
+    after = np.isfinite(truth.times_s) & (truth.times_s >= since_s)
+    limit_m = LIMIT_M if truth.clear_s is None else CLEAR_LIMIT_M
+    return recovery_frames(errors[after & ~np.isnan(errors)], limit_m)

@@ -20,13 +20,15 @@ _RESTORE = "copy the capture again"
 @dataclass(frozen=True, slots=True, eq=False)
 class Truth:
     """times_s (F,): middle of the exposure since the capture's start [s]; joints_m (F,J,3) [m, world],
-    NaN while nobody is there; visible (F,); light_change_s: when a lamp goes out, None if none does."""
+    NaN while nobody is there; visible (F,); light_change_s: when a lamp goes out, None if none does; clear_s: from
+    when on nothing hides the person any more, None if that is not known."""
 
     names: tuple[str, ...]
     times_s: Floats
     joints_m: Floats
     visible: NDArray[np.bool_]
     light_change_s: float | None
+    clear_s: float | None = None
 
 
 def load_truth(capture: Path) -> Truth:
@@ -38,6 +40,8 @@ def load_truth(capture: Path) -> Truth:
             str(path),
             "choose a capture with a truth.npz, or use `mocapd track`",
         )
+    info_path = capture / "info.json"
+    info = read_json(info_path) if info_path.is_file() else {}
     try:
         with np.load(path, allow_pickle=False) as data:
             missing = [field for field in _FIELDS if field not in data.files]
@@ -48,7 +52,8 @@ def load_truth(capture: Path) -> Truth:
                 times_s=data["times"].astype(float),
                 joints_m=data["joints"].astype(float),
                 visible=data["visible"].astype(bool),
-                light_change_s=_light_change_s(capture / "info.json"),
+                light_change_s=_light_change_s(info),
+                clear_s=float(info["clear_s"]) if "clear_s" in info else None,
             )
     except (OSError, ValueError, zipfile.BadZipFile) as error:
         raise InputError(f"cannot be read ({error})", str(path), _RESTORE) from None
@@ -80,11 +85,8 @@ def read_label(capture: Path, video: Path, frame: int) -> Bytes:
     return np.asarray(label, dtype=np.uint8)
 
 
-def _light_change_s(path: Path) -> float | None:
+def _light_change_s(info: dict[str, Any]) -> float | None:
     """`light_event.lamp_off_s` of a recorded capture, or the first lamp that the simulator dims."""
-    if not path.is_file():
-        return None
-    info = read_json(path)
     event: Any = info.get("light_event")
     if event:
         return float(event["lamp_off_s"])

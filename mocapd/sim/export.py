@@ -1,7 +1,9 @@
 """Write a scenario as a recorded session with exact ground truth, in the capture format."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
-from mocapd.sim.world import Performed, World
+from mocapd.sim.world import Performed, World, is_out
 from mocapd.types import Bytes, LabelledPicture
 
 LABEL_EVERY = 15  # frames
@@ -39,20 +41,25 @@ def export_capture(
     seconds: float,
     progress: Progress | None = None,
     performed: Performed | None = None,
+    notes: Mapping[str, float] | None = None,
 ) -> None:
-    """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`.
+    """Record `seconds` of the scenario into a directory, which is made if need be. performed: see `World`; notes:
+    more for info.json.
 
-    Every frame is there: dropped frames belong to the live source. Raises CannotCreateError.
+    Every frame is there, as dropped frames belong to the live source; those of an unplugged camera are black, and named.
+    The pictures of the shirt and their strokes are left out when it is not worn. Raises CannotCreateError.
     """
     world = World(scenario, performed)
     job = _Job(
         scenario, world, camera_renderers(world), directory, round(seconds * scenario.fps_hz)
     )
     try:
-        for folder in ("scribble", "model", "labels", "masks"):
+        shirt = scenario.clothes.shirt != "plain"
+        for folder in (*(("scribble", "model") if shirt else ()), "labels", "masks"):
             (directory / folder).mkdir(parents=True, exist_ok=True)
-        _write_texts(job)
-        _write_pictures(job)
+        _write_texts(job, notes or {})
+        if shirt:
+            _write_pictures(job)
         _write_truth(job)
         for k in range(len(job.renderers)):
             _write_video(job, k, progress)
@@ -62,7 +69,7 @@ def export_capture(
         ) from None
 
 
-def _write_texts(job: _Job) -> None:
+def _write_texts(job: _Job, notes: Mapping[str, float]) -> None:
     scenario = job.scenario
     cameras: list[dict[str, Any]] = []
     for k, renderer in enumerate(job.renderers):
@@ -72,25 +79,40 @@ def _write_texts(job: _Job) -> None:
             "fps": scenario.fps_hz,
             "time_offset_s": renderer.spec.clock_offset_s,
         }
+        out = [f for f in range(job.frames) if is_out(scenario, renderer.spec, f)]
+        if out:
+            entry["lost_frames"] = _runs(out)
         cameras.append(entry)
     events = {
         light.name: [[event.t_s, event.level] for event in light.events]
         for light in scenario.lights
         if light.events
     }
-    info = {
+    info: dict[str, Any] = {
         "scenario": scenario.name,
-        "outfit": "shirt",
+        "outfit": "plain" if scenario.clothes.shirt == "plain" else "shirt",
         "seconds": job.frames / scenario.fps_hz,
         "loop_s": scenario.loop_s,
         "light_events": events,
         "shutter_s": [camera.shutter_s for camera in scenario.cameras],
         "camera_gamma": [camera.gamma for camera in scenario.cameras],
     }
+    if scenario.clothes.events:
+        info["jacket_events"] = [[event.t_s, event.jacket] for event in scenario.clothes.events]
+    if scenario.absences:
+        info["absences"] = [[span.from_s, span.to_s] for span in scenario.absences]
+    info |= notes
     rig = {"rig": scenario.name, "units": "m", "cameras": cameras}
     subject = {"stature_m": scenario.body.stature_m}
     for name, content in (("rig", rig), ("info", info), ("subject", subject)):
         (job.directory / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n")
+
+
+def _runs(frames: list[int]) -> list[list[int]]:
+    """First and last, exclusive, of each run of consecutive frames."""
+    cuts = [i for i in range(1, len(frames)) if frames[i] != frames[i - 1] + 1]
+    edges = [0, *cuts, len(frames)]
+    return [[frames[a], frames[b - 1] + 1] for a, b in pairwise(edges)]
 
 
 def _write_pictures(job: _Job) -> None:
@@ -153,8 +175,11 @@ def _write_video(job: _Job, k: int, progress: Progress | None) -> None:
     video = cv2.VideoWriter(str(path), fourcc, job.scenario.fps_hz, renderer.camera.size_px)
     if not video.isOpened():
         raise CannotCreateError("the video cannot be written", str(path), "check OpenCV's codecs")
+    width, height = renderer.camera.size_px
+    black = np.zeros((height, width, 3), dtype=np.uint8)
     for f in range(job.frames):
-        video.write(renderer.frame(f))
+        out = is_out(job.scenario, renderer.spec, f)
+        video.write(black if out else renderer.frame(f))
         if f % LABEL_EVERY == 0:
             _write_label(job, k, f)
         if progress is not None:
@@ -164,12 +189,8 @@ def _write_video(job: _Job, k: int, progress: Progress | None) -> None:
 
 def _write_label(job: _Job, k: int, f: int) -> None:
     renderer = job.renderers[k]
-    width, height = renderer.camera.size_px
-    state = job.world.at(renderer.exposure_s(f))
-    patch, mask = np.zeros((2, height, width), dtype=np.uint8)
-    if state.person_present:
-        patch, mask = renderer.labels(state.pose)
+    patch, mask, other = renderer.labels_at(renderer.exposure_s(f))
     name = f"cam{k}_{f:06d}"
     write_png(job.directory / "labels" / f"{name}.png", patch)
     write_png(job.directory / "masks" / f"{name}.png", mask)
-    write_png(job.directory / "masks" / f"{name}_other.png", np.zeros_like(mask))
+    write_png(job.directory / "masks" / f"{name}_other.png", other)

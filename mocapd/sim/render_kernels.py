@@ -4,9 +4,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.sim.person.dress_kernels import FLAT, Dress, surface_colour
 from mocapd.types import Floats, Singles
 
 _NEAR_M = 0.10
+_MOST_OUTSIDE = 1.5  # of the picture's half diagonal, from its middle
 
 
 @njit(cache=True, nogil=True)
@@ -21,9 +23,13 @@ def project_vertices(
 ) -> tuple[int, int, int, int]:
     """World points (V,3) to out (V,3): pixel x, y through the lens, and depth [m] (Brown-Conrady).
 
+    Far outside of the picture, where the lens's polynomial may fold back into it, the depth is 0.
     Returns the box x0 y0 x1 y1 [px] inside the picture of size (W, H) that holds all of them.
     """
     x0, y0, x1, y1 = 1e9, 1e9, -1e9, -1e9
+    wide = max(K[0, 2], size[0] - K[0, 2]) / K[0, 0]
+    high = max(K[1, 2], size[1] - K[1, 2]) / K[1, 1]
+    r2_most = _MOST_OUTSIDE * _MOST_OUTSIDE * (wide * wide + high * high)
     for i in range(len(vertices)):
         x = R[0, 0] * vertices[i, 0] + R[0, 1] * vertices[i, 1] + R[0, 2] * vertices[i, 2] + t[0]
         y = R[1, 0] * vertices[i, 0] + R[1, 1] * vertices[i, 1] + R[1, 2] * vertices[i, 2] + t[1]
@@ -33,6 +39,9 @@ def project_vertices(
             continue
         x, y = x / z, y / z
         r2 = x * x + y * y
+        if r2 > r2_most:
+            out[i, 2] = 0.0
+            continue
         bend = 1.0 + r2 * (dist[0] + r2 * (dist[1] + r2 * dist[4]))
         u = x * bend + 2 * dist[2] * x * y + dist[3] * (r2 + 2 * x * x)
         v = y * bend + dist[2] * (r2 + 2 * y * y) + 2 * dist[3] * x * y
@@ -96,13 +105,15 @@ def rasterise(
 def accumulate(
     triangles: NDArray[np.int32], albedo: Floats, irradiance: Singles, nearness: Singles,
     owner: NDArray[np.int32], weights: Singles, box: tuple[int, int, int, int], share: float,
-    colour: Singles, cover: Singles,
+    dress: Dress, jackets: Floats, colour: Singles, cover: Singles,
 ) -> None:  # fmt: skip
     """Add one drawing, worth `share`, to colour (H,W,3) and cover (H,W) within box x0 y0 x1 y1.
 
-    Leaves nearness and owner empty for the next drawing.
+    jackets (N,): how far each person's is on. Leaves nearness and owner empty for the next drawing.
     """
     x0, y0, x1, y1 = box
+    rgb = np.empty(3)
+    rest, rule, under_jacket, person, outfits = dress
     for y in range(y0, y1):
         for x in range(x0, x1):
             k = owner[y, x]
@@ -112,8 +123,18 @@ def accumulate(
             q, r = weights[y, x, 0], weights[y, x, 1]
             p = 1.0 - q - r
             for i in range(3):
+                rgb[i] = albedo[k, i]
+            if rule[k] != FLAT or under_jacket[k] != FLAT:
+                # compiled into this kernel: the cache of compiled code knows of a change there by this file alone
+                surface_colour(
+                    p * rest[a, 0] + q * rest[b, 0] + r * rest[c, 0],
+                    p * rest[a, 1] + q * rest[b, 1] + r * rest[c, 1],
+                    p * rest[a, 2] + q * rest[b, 2] + r * rest[c, 2],
+                    rule[k], under_jacket[k], person[k], jackets[person[k]], outfits, rgb,
+                )  # fmt: skip
+            for i in range(3):
                 light = p * irradiance[a, i] + q * irradiance[b, i] + r * irradiance[c, i]
-                colour[y, x, i] += share * albedo[k, i] * light
+                colour[y, x, i] += share * rgb[i] * light
             cover[y, x] += share
             nearness[y, x] = 0.0
             owner[y, x] = -1

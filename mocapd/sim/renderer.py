@@ -1,13 +1,16 @@
 """Pictures of the world: a pure function of scenario, camera and frame."""
 
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from mocapd.sim.person.figure import Figure, build_figure, posed_figure
+from mocapd.sim.person.figure import Figure, build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, vertex_normals
+from mocapd.sim.person.group import Body, Group, group_of, patches_seen, posed_group
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response import noise_table, response_curve
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
@@ -17,7 +20,7 @@ from mocapd.sim.scenery.furniture import Primitives, furnish
 from mocapd.sim.scenery.lamps import Lamps, lamps_of
 from mocapd.sim.scenery.shadows import lamp_views, shadow_maps
 from mocapd.sim.world import World, light_levels, rig_of
-from mocapd.types import Bytes, Camera, Floats, Pose, Singles
+from mocapd.types import Bytes, Camera, Floats, Ints, Pose, Singles
 
 # Drawings per exposure: instants of the open shutter (-1..1) and offsets [px], which also smooth edges
 _DRAWINGS = ((-0.667, -0.167, -0.333), (0.0, 0.333, 0.0), (0.667, -0.167, 0.333))
@@ -42,10 +45,17 @@ class CameraRenderer:
     """Draws one camera's pictures. Keeps the empty room and work buffers; used by one thread."""
 
     def __init__(
-        self, world: World, figure: Figure, stage: Set, index: int, samples: int = 3
+        self,
+        world: World,
+        figures: Sequence[Figure],
+        stage: Set,
+        index: int,
+        samples: int = 3,
     ) -> None:
+        """figures: of the person, then of the world's others."""
         scenario = world.scenario
-        self._world, self._figure, self._set = world, figure, stage
+        self._world, self._figures, self._set = world, tuple(figures), stage
+        self._groups: dict[tuple[int, ...], Group] = {}
         self.spec: CameraSpec = scenario.cameras[index]
         self.camera: Camera = rig_of(scenario).cameras[index]
         self.background: Background = render_background(
@@ -63,12 +73,12 @@ class CameraRenderer:
         self._weights = np.zeros((height, width, 2), dtype=np.float32)
         self._colour = np.zeros((height, width, 3), dtype=np.float32)
         self._cover = np.zeros((height, width), dtype=np.float32)
-        self._points = np.zeros_like(figure.vertices_m)
+        self._points = np.zeros((sum(len(one.vertices_m) for one in figures), 3))
 
     @property
     def figure(self) -> Figure:
         """The person that is drawn."""
-        return self._figure
+        return self._figures[0]
 
     def exposure_s(self, frame: int) -> float:
         """World time of the middle of the exposure of a frame [s]."""
@@ -78,25 +88,63 @@ class CameraRenderer:
         """The picture (H,W,3) BGR of frame number `frame` >= 0, with the person once she is there."""
         t = self.exposure_s(frame)
         levels = light_levels(self._world.scenario, t)
-        if t < self._world.scenario.person_appears_s:
-            return self.picture(None, levels, frame)
         half = 0.5 * self.spec.shutter_s
-        poses = (self._world.pose(t - half), self._world.pose(t + half))
-        return self.picture(poses, levels, frame)
+        there = self._there(t)
+        return self._picture(
+            there, self._bodies(there, t - half), self._bodies(there, t + half), levels, frame
+        )
 
-    def picture(self, shutter: tuple[Pose, Pose] | None, levels: Floats, noise_key: int) -> Bytes:
-        """A picture of the person moving between two poses, None: the empty room."""
+    def picture(
+        self,
+        shutter: tuple[Pose, Pose] | None,
+        levels: Floats,
+        noise_key: int,
+        jacket: float = 0.0,
+    ) -> Bytes:
+        """A picture of the person alone moving between two poses, None: the empty room."""
+        there = (0,) if shutter is not None else ()
+        opened, closed = ([Body(pose, jacket)] for pose in shutter) if shutter else ([], [])
+        return self._picture(there, opened, closed, levels, noise_key)
+
+    def _there(self, t_s: float) -> tuple[int, ...]:
+        """Who is in the picture: 0 the person, from 1 on the others."""
+        others = range(1, len(self._figures))
+        return (0, *others) if self._world.present(t_s) else tuple(others)
+
+    def _bodies(self, there: tuple[int, ...], t_s: float) -> list[Body]:
+        worlds = (self._world, *self._world.others)
+        return [Body(worlds[i].pose(t_s), worlds[i].jacket(t_s)) for i in there]
+
+    def _group(self, there: tuple[int, ...]) -> Group:
+        if there not in self._groups:
+            self._groups[there] = group_of([self._figures[i] for i in there])
+        return self._groups[there]
+
+    def _picture(
+        self,
+        there: tuple[int, ...],
+        at_opening: list[Body],
+        at_closing: list[Body],
+        levels: Floats,
+        noise_key: int,
+    ) -> Bytes:
         lamps = self._set.lamps
         width, height = self.camera.size_px
         shade = np.zeros((len(levels), height, width), dtype=np.float32)
         box = (0, 0, 0, 0)
-        if shutter is not None:
-            opened, closed = (posed_figure(self._figure, pose) for pose in shutter)
+        if there:
+            group = self._group(there)
+            opened, closed = (posed_group(group, bodies) for bodies in (at_opening, at_closing))
             middle = 0.5 * (opened + closed)
-            views = lamp_views(lamps, middle.mean(axis=0))
-            depths = shadow_maps(middle, self._figure.triangles, views, levels)
+            # the person alone throws a shadow
+            own = middle[: len(self._figures[0].vertices_m) if there[0] == 0 else 0]
+            views = lamp_views(lamps, own.mean(axis=0) if len(own) else np.zeros(3))
+            triangles = self._figures[0].triangles[: None if len(own) else 0]
+            depths = shadow_maps(own, triangles, views, levels)
             self._shade(views, depths, shade)
-            box = self._draw(opened, closed, self._irradiance(middle, levels, views, depths))
+            irradiance = self._irradiance(group, middle, levels, views, depths)
+            jackets = np.array([body.jacket for body in at_opening])
+            box = self._draw(group, opened, closed, irradiance, jackets)
         out = self._expose(levels, shade, self._colour, self._cover, box, noise_key)
         self._colour[:] = 0.0
         self._cover[:] = 0.0
@@ -120,32 +168,43 @@ class CameraRenderer:
         )  # fmt: skip
         return out
 
-    def labels(self, pose: Pose) -> tuple[Bytes, Bytes]:
-        """Exact labels at one instant: patch index (H,W) 0..20, and 255 where the person is."""
-        vertices = posed_figure(self._figure, pose)
-        self._project(vertices)
-        rasterise(
-            self._points,
-            self._figure.triangles,
-            0.0,
-            0.0,
-            self._nearness,
-            self._owner,
-            self._weights,
-        )
-        owner = self._owner.copy()
+    def labels(self, pose: Pose, jacket: float = 0.0) -> tuple[Bytes, Bytes]:
+        """Exact labels of the person alone: patch index (H,W) 0..20, and 255 where she is."""
+        owner = self._owners((0,), [Body(pose, jacket)])
+        seen = owner >= 0
+        patch = np.where(seen, patches_seen(self.figure, jacket)[np.maximum(owner, 0)], 0)
+        return patch.astype(np.uint8), _mask(seen)
+
+    def labels_at(self, t_s: float) -> tuple[Bytes, Bytes, Bytes]:
+        """Exact labels at one instant: patch index (H,W) 0..20, 255 where the person is seen, and where another is."""
+        there = self._there(t_s)
+        width, height = self.camera.size_px
+        if not there:
+            nothing = np.zeros((height, width), dtype=np.uint8)
+            return nothing, nothing, nothing
+        owner = self._owners(there, self._bodies(there, t_s))
+        own = len(self.figure.triangles) if there[0] == 0 else 0
+        person = (owner >= 0) & (owner < own)
+        patches = patches_seen(self.figure, self._world.jacket(t_s))
+        patch = np.where(person, patches[np.clip(owner, 0, len(patches) - 1)], 0)
+        return patch.astype(np.uint8), _mask(person), _mask(owner >= own)
+
+    def _owners(self, there: tuple[int, ...], bodies: list[Body]) -> Ints:
+        """The triangle (H,W) of the group that each pixel sees, -1: none."""
+        group = self._group(there)
+        points, _ = self._project(posed_group(group, bodies))
+        rasterise(points, group.triangles, 0.0, 0.0, self._nearness, self._owner, self._weights)
+        owner = self._owner.astype(np.int64)
         self._nearness[:] = 0.0
         self._owner[:] = -1
-        seen = owner >= 0
-        patch = np.where(seen, self._figure.patch[np.maximum(owner, 0)], 0).astype(np.uint8)
-        return patch, np.where(seen, 255, 0).astype(np.uint8)
+        return owner
 
     def _irradiance(
-        self, vertices_m: Floats, levels: Floats, views: Floats, depths: Singles
+        self, group: Group, vertices_m: Floats, levels: Floats, views: Floats, depths: Singles
     ) -> Singles:
         lamps = self._set.lamps
         normals = np.empty_like(vertices_m)
-        vertex_normals(vertices_m, self._figure.triangles, normals)
+        vertex_normals(vertices_m, group.triangles, normals)
         out = np.empty(vertices_m.shape, dtype=np.float32)
         light_vertices(
             vertices_m, normals, lamps.at_m, lamps.rgb * levels[:, None], lamps.sun,
@@ -168,38 +227,45 @@ class CameraRenderer:
             if part.any():
                 cv2.resize(part, (width, height), dst=full, interpolation=cv2.INTER_LINEAR)
 
-    def _project(self, vertices_m: Floats) -> tuple[int, int, int, int]:
-        camera = self.camera
+    def _project(self, vertices_m: Floats) -> tuple[Floats, tuple[int, int, int, int]]:
+        camera, points = self.camera, self._points[: len(vertices_m)]
         box: tuple[int, int, int, int] = project_vertices(
-            vertices_m, camera.R, camera.t_m, camera.K, camera.dist, camera.size_px, self._points
+            vertices_m, camera.R, camera.t_m, camera.K, camera.dist, camera.size_px, points
         )
-        return box
+        return points, box
 
     def _draw(
-        self, opened: Floats, closed: Floats, irradiance: Singles
+        self, group: Group, opened: Floats, closed: Floats, irradiance: Singles, jackets: Floats
     ) -> tuple[int, int, int, int]:
-        """Draw the person into colour and cover; returns the box that was touched."""
-        figure = self._figure
+        """Draw the group into colour and cover; returns the box that was touched."""
         boxes = []
         for u, dx, dy in _DRAWINGS:
-            box = self._project(0.5 * ((1 - u) * opened + (1 + u) * closed))
-            rasterise(
-                self._points, figure.triangles, -dx, -dy, self._nearness, self._owner, self._weights
-            )
+            points, box = self._project(0.5 * ((1 - u) * opened + (1 + u) * closed))
+            rasterise(points, group.triangles, -dx, -dy, self._nearness, self._owner, self._weights)
             accumulate(
-                figure.triangles, figure.albedo, irradiance, self._nearness, self._owner,
-                self._weights, box, 1.0 / len(_DRAWINGS), self._colour, self._cover,
+                group.triangles, group.albedo, irradiance, self._nearness, self._owner,
+                self._weights, box, 1.0 / len(_DRAWINGS), group.dress, jackets, self._colour, self._cover,
             )  # fmt: skip
             boxes.append(box)
         low, high = np.min(boxes, axis=0), np.max(boxes, axis=0)
         return int(low[0]), int(low[1]), int(high[2]), int(high[3])
 
 
+def _mask(where: NDArray[np.bool_]) -> Bytes:
+    return np.where(where, 255, 0).astype(np.uint8)
+
+
 def camera_renderers(world: World, samples: int = 3) -> list[CameraRenderer]:
     """One renderer per camera of the scenario."""
     scenario = world.scenario
-    figure = build_figure(world.shape, scenario.clothes, scenario.seed)
+    figures = [figure_of(one) for one in (world, *world.others)]
     stage = furnished_set(scenario)
     n = len(scenario.cameras)
     with ThreadPoolExecutor(n) as pool:  # each casts its room, which takes two seconds
-        return list(pool.map(lambda i: CameraRenderer(world, figure, stage, i, samples), range(n)))
+        return list(pool.map(lambda i: CameraRenderer(world, figures, stage, i, samples), range(n)))
+
+
+def figure_of(world: World) -> Figure:
+    """The person of a world."""
+    scenario = world.scenario
+    return build_figure(world.shape, scenario.clothes, scenario.seed, whole=scenario.body.whole)

@@ -1,6 +1,7 @@
 """The scenario file: one TOML from which everything the simulated webcams show follows."""
 
 import difflib
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,31 +14,35 @@ from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import check_numbers
 from mocapd.errors import ConfigError, MalformedError
 from mocapd.sim.person.poses import POSES
+from mocapd.sim.person_spec import (
+    BodySpec,
+    Bystander,
+    Clothes,
+    ClothesEvent,
+    Jacket,
+    MotionSpec,
+    Oscillation,
+    PoseKeyframe,
+    Weave,
+)
+from mocapd.sim.scenario_values import (
+    Fraction,
+    Name,
+    NotNegative,
+    Number,
+    Pixels,
+    Positive,
+    Span,
+    Srgb,
+    Table,
+    Vec2,
+    Vec3,
+)
 
 _MOST_BYTES = 1 << 20
 
-# in metres, degrees, seconds or signal: what is beyond these limits is no room that a camera shows
-Number = Annotated[float, msgspec.Meta(ge=-1e4, le=1e4)]
-Vec2 = tuple[Number, Number]
-Vec3 = tuple[Number, Number, Number]
-Srgb = tuple[
-    Annotated[int, msgspec.Meta(ge=0, le=255)],
-    Annotated[int, msgspec.Meta(ge=0, le=255)],
-    Annotated[int, msgspec.Meta(ge=0, le=255)],
-]
-Positive = Annotated[float, msgspec.Meta(ge=1e-6, le=1e4)]
-NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e4)]
-Fraction = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
-Ratio = Annotated[float, msgspec.Meta(ge=0.7, le=1.4)]
-Name = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
-Pixels = Annotated[int, msgspec.Meta(ge=16, le=8192)]
 
-
-class _Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A table of the file: frozen, and a key that is not a field is an error."""
-
-
-class CameraSpec(_Table, frozen=True, kw_only=True):
+class CameraSpec(Table, frozen=True, kw_only=True):
     """One simulated webcam: where it stands, its lens, its sensor and its faults."""
 
     name: Name
@@ -65,65 +70,10 @@ class CameraSpec(_Table, frozen=True, kw_only=True):
     vignetting: Fraction = 0.12  # light lost in the corner
     clock_offset_s: Number = 0.0  # how much later than the first camera this one exposes
     dropped: Fraction = 0.0  # fraction of frames that never arrive
+    outages: tuple[Span, ...] = ()  # when it is unplugged
 
 
-class BodySpec(_Table, frozen=True, kw_only=True):
-    """The person: stature, and factors on the mean body of that stature."""
-
-    stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.3)] = 1.75
-    torso_length: Ratio = 1.0
-    shoulder_width: Ratio = 1.0
-    upper_arm_length: Ratio = 1.0
-    forearm_length: Ratio = 1.0
-    torso_width: Ratio = 1.0
-    torso_depth: Ratio = 1.0
-    arm_girth: Ratio = 1.0
-
-
-class PoseKeyframe(_Table, frozen=True, kw_only=True):
-    """A pose that the motion passes through. Arm directions are in the frame of the chest."""
-
-    t_s: NotNegative
-    pose: str = "relaxed"
-    at_m: Vec2 | None = None  # x, z of the hips on the floor; as in the keyframe before when absent
-    yaw_deg: Number | None = None  # about +Y, 0 faces +Z; as in the keyframe before when absent
-    lean_deg: Vec2 = (0.0, 0.0)  # forwards, to the person's left
-    twist_deg: Number = 0.0  # of the chest against the hips, to the person's left
-    left_arm: tuple[Vec3, Vec3] | None = None  # directions of upper arm and forearm
-    right_arm: tuple[Vec3, Vec3] | None = None
-
-
-class Oscillation(_Table, frozen=True, kw_only=True):
-    """A joint that swings about its keyframed rotation between two times of the loop."""
-
-    joint: str
-    amplitude_deg: Vec3  # rotation vector in the parent bone's frame
-    frequency_hz: Positive
-    from_s: NotNegative
-    to_s: Positive
-
-
-class MotionSpec(_Table, frozen=True, kw_only=True):
-    """What the person does in one loop; the end runs into the beginning without a jump."""
-
-    keyframes: Annotated[list[PoseKeyframe], msgspec.Meta(min_length=1)]
-    oscillations: list[Oscillation] = []
-    sway_deg: NotNegative = 1.0  # slow movement of a person who stands
-
-
-class Clothes(_Table, frozen=True, kw_only=True):
-    """Dyes and cloth. `dye_variation`: how far the printed colours are off the standard's."""
-
-    shirt: Literal["standard-v1"] = "standard-v1"
-    dye_variation: NotNegative = 0.03
-    wrinkles_m: NotNegative = 0.006
-    trousers_srgb: Srgb = (70, 72, 84)
-    skin_srgb: Srgb = (196, 150, 122)
-    hair_srgb: Srgb = (52, 38, 30)
-    shoes_srgb: Srgb = (40, 40, 44)
-
-
-class LightEvent(_Table, frozen=True, kw_only=True):
+class LightEvent(Table, frozen=True, kw_only=True):
     """From `t_s` on the light burns at `level` of its intensity, reached after `over_s`."""
 
     t_s: NotNegative
@@ -131,7 +81,7 @@ class LightEvent(_Table, frozen=True, kw_only=True):
     over_s: Positive = 0.03
 
 
-class Light(_Table, frozen=True, kw_only=True):
+class Light(Table, frozen=True, kw_only=True):
     """A lamp. The level at the start of the loop is that of the last event, so that it closes."""
 
     name: Name
@@ -140,27 +90,27 @@ class Light(_Table, frozen=True, kw_only=True):
     intensity: NotNegative  # irradiance [signal] at 1 m, or everywhere when it is a sun
     radius_m: NotNegative = 0.08  # softness of the shadows
     sun: bool = False  # far away: parallel light without falloff, `position_m` is its direction
-    events: list[LightEvent] = []
+    events: tuple[LightEvent, ...] = ()
 
 
-class Ambient(_Table, frozen=True, kw_only=True):
+class Ambient(Table, frozen=True, kw_only=True):
     """Light from everywhere; `up` falls from above, `down` is what the floor gives back."""
 
     up: Vec3 = (0.20, 0.20, 0.20)
     down: Vec3 = (0.10, 0.09, 0.08)
 
 
-class SurfaceSpec(_Table, frozen=True, kw_only=True):
+class SurfaceSpec(Table, frozen=True, kw_only=True):
     """A wall, floor or ceiling."""
 
     srgb: Srgb
     pattern: Literal["plain", "plaster", "planks", "checks", "grass", "bricks"] = "plain"
 
 
-class Thing(_Table, frozen=True, kw_only=True):
+class Thing(Table, frozen=True, kw_only=True):
     """A piece of furniture: middle of its base, extent along x y z before it is turned."""
 
-    kind: Literal["box", "ball", "bookshelf", "table", "poster", "sofa", "tree"] = "box"
+    kind: Literal["box", "ball", "bookshelf", "table", "poster", "portrait", "sofa", "tree"] = "box"
     base_m: Vec3
     size_m: tuple[Positive, Positive, Positive]
     yaw_deg: Number = 0.0
@@ -170,7 +120,7 @@ class Thing(_Table, frozen=True, kw_only=True):
     lamp: str = ""
 
 
-class Room(_Table, frozen=True, kw_only=True):
+class Room(Table, frozen=True, kw_only=True):
     """The background. Outdoors there is only the floor, under a sky; walls and ceiling are ignored."""
 
     outdoors: bool = False
@@ -180,10 +130,10 @@ class Room(_Table, frozen=True, kw_only=True):
     floor: SurfaceSpec = SurfaceSpec(srgb=(150, 110, 72), pattern="planks")
     ceiling: SurfaceSpec = SurfaceSpec(srgb=(220, 218, 212))
     sky: Vec3 = (0.45, 0.62, 0.95)  # linear R G B, seen where nothing stands
-    things: list[Thing] = []
+    things: tuple[Thing, ...] = ()
 
 
-class Scenario(_Table, frozen=True, kw_only=True):
+class Scenario(Table, frozen=True, kw_only=True):
     """A whole scenario file."""
 
     name: Name
@@ -191,13 +141,15 @@ class Scenario(_Table, frozen=True, kw_only=True):
     fps_hz: Annotated[float, msgspec.Meta(ge=1.0, le=1000.0)] = 30.0
     loop_s: Annotated[float, msgspec.Meta(gt=0.2, le=120.0)] = 12.0
     person_appears_s: NotNegative = 0.0  # recordings show an empty room until then
+    absences: tuple[Span, ...] = ()  # when the person is not there, best while out of every picture
     scribble_s: NotNegative = 0.0  # instant of the picture that the user labels with strokes
     jpeg_quality: Annotated[int, msgspec.Meta(ge=40, le=100)] = 88
     cameras: Annotated[list[CameraSpec], msgspec.Meta(min_length=1, max_length=32)]
     body: BodySpec = BodySpec()
     motion: MotionSpec
     clothes: Clothes = Clothes()
-    lights: list[Light] = []
+    others: Annotated[tuple[Bystander, ...], msgspec.Meta(max_length=4)] = ()
+    lights: tuple[Light, ...] = ()
     ambient: Ambient = Ambient()
     room: Room = Room()
 
@@ -248,7 +200,12 @@ def _all_keys() -> list[str]:
         PoseKeyframe,
         Oscillation,
         MotionSpec,
+        Weave,
+        Jacket,
+        ClothesEvent,
         Clothes,
+        Bystander,
+        Span,
         LightEvent,
         Light,
         Ambient,
@@ -269,13 +226,18 @@ def _check(s: Scenario, where: str) -> None:
             f"{where}, loop_s",
             f"use {round(frames) / s.fps_hz:g}",
         )
-    _check_motion(s, where)
+    _check_motion(s.motion, s.loop_s, f"{where}, motion")
+    _check_clothes(s.clothes, s.loop_s, f"{where}, clothes")
+    for i, other in enumerate(s.others):
+        key = f"{where}, others[{i}]"
+        _check_motion(other.motion, s.loop_s, f"{key}.motion")
+        _check_clothes(other.clothes, s.loop_s, f"{key}.clothes")
+    _check_spans(s.absences, s.loop_s, f"{where}, absences")
+    for i, camera in enumerate(s.cameras):
+        _check_spans(camera.outages, s.loop_s, f"{where}, cameras[{i}].outages")
     lamps = [light.name for light in s.lights]
     for i, light in enumerate(s.lights):
-        times = [event.t_s for event in light.events]
-        key = f"{where}, lights[{i}].events"
-        if times != sorted(times) or any(t >= s.loop_s for t in times):
-            raise ConfigError("the times do not rise inside the loop", key, "sort them")
+        _check_events([e.t_s for e in light.events], s.loop_s, f"{where}, lights[{i}].events")
     for i, thing in enumerate(s.room.things):
         if thing.lamp and thing.lamp not in lamps:
             raise ConfigError(
@@ -285,29 +247,45 @@ def _check(s: Scenario, where: str) -> None:
             )
 
 
-def _check_motion(s: Scenario, where: str) -> None:
-    times = [key.t_s for key in s.motion.keyframes]
-    if any(b <= a for a, b in pairwise(times)) or times[-1] >= s.loop_s:
+def _check_events(times_s: list[float], loop_s: float, where: str) -> None:
+    if times_s != sorted(times_s) or any(t >= loop_s for t in times_s):
+        raise ConfigError("the times do not rise inside the loop", where, "sort them")
+
+
+def _check_clothes(clothes: Clothes, loop_s: float, where: str) -> None:
+    _check_events([event.t_s for event in clothes.events], loop_s, f"{where}.events")
+    if clothes.events and clothes.jacket is None:
+        raise ConfigError("there is no jacket to put on", f"{where}.events", f"add {where}.jacket")
+
+
+def _check_spans(spans: Sequence[Span], loop_s: float, where: str) -> None:
+    if any(not span.from_s < span.to_s <= loop_s for span in spans):
+        raise ConfigError("from_s < to_s <= loop_s does not hold", where, "change the times")
+
+
+def _check_motion(motion: MotionSpec, loop_s: float, where: str) -> None:
+    times = [key.t_s for key in motion.keyframes]
+    if any(b <= a for a, b in pairwise(times)) or times[-1] >= loop_s:
         raise ConfigError(
-            "the times do not rise inside the loop", f"{where}, motion.keyframes", "sort them"
+            "the times do not rise inside the loop", f"{where}.keyframes", "sort them"
         )
-    for i, key in enumerate(s.motion.keyframes):
+    for i, key in enumerate(motion.keyframes):
         if key.pose not in POSES:
             raise ConfigError(
                 f"unknown pose {key.pose!r}",
-                f"{where}, motion.keyframes[{i}].pose",
+                f"{where}.keyframes[{i}].pose",
                 f"use one of {sorted(POSES)}",
             )
-    for i, swing in enumerate(s.motion.oscillations):
+    for i, swing in enumerate(motion.oscillations):
         if swing.joint not in INDEX:
             raise ConfigError(
                 f"unknown joint {swing.joint!r}",
-                f"{where}, motion.oscillations[{i}].joint",
+                f"{where}.oscillations[{i}].joint",
                 f"use one of {sorted(INDEX)}",
             )
-        if not swing.from_s < swing.to_s <= s.loop_s:
+        if not swing.from_s < swing.to_s <= loop_s:
             raise ConfigError(
                 "from_s < to_s <= loop_s does not hold",
-                f"{where}, motion.oscillations[{i}]",
+                f"{where}.oscillations[{i}]",
                 "change the times",
             )

@@ -3,9 +3,9 @@
 import msgspec
 import numpy as np
 
-from mocapd.sim.person.figure import build_figure
-from mocapd.sim.renderer import CameraRenderer, Set
-from mocapd.sim.scenario import CameraSpec, MotionSpec, PoseKeyframe, Scenario
+from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
+from mocapd.sim.renderer import CameraRenderer, Set, figure_of
+from mocapd.sim.scenario import CameraSpec, Scenario
 from mocapd.sim.scenery.furniture import backdrop
 from mocapd.sim.scenery.lamps import studio_lamps
 from mocapd.sim.scribbles import scribble
@@ -20,20 +20,25 @@ MODEL_POSES = (
 
 
 def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:
-    """Calibrate on a scenario, whose cameras are at hand."""
+    """Calibrate on a scenario, whose cameras are at hand. Who wears no shirt has no pictures of it."""
+    shirt = scenario.clothes.shirt != "plain"
     return SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
-        scribbles={r.camera.name: scribble_picture(scenario, r) for r in renderers},
-        model=model_pictures(scenario),
+        scribbles={r.camera.name: scribble_picture(scenario, r) for r in renderers}
+        if shirt
+        else {},
+        model=model_pictures(scenario) if shirt else (),
     )
 
 
 def scribble_picture(scenario: Scenario, renderer: CameraRenderer) -> LabelledPicture:
     """The picture of one camera at `scribble_s`, with strokes."""
     state = World(scenario).at(scenario.scribble_s)
-    pixels = renderer.picture((state.pose, state.pose), state.light_levels, noise_key=-1)
-    patch, _ = renderer.labels(state.pose)
+    pixels = renderer.picture(
+        (state.pose, state.pose), state.light_levels, noise_key=-1, jacket=state.jacket
+    )
+    patch, _ = renderer.labels(state.pose, state.jacket)
     return LabelledPicture(pixels, scribble(patch, np.random.default_rng([scenario.seed, 5])))
 
 
@@ -49,10 +54,9 @@ def model_pictures(scenario: Scenario) -> tuple[LabelledPicture, ...]:
         motion = MotionSpec(
             keyframes=[PoseKeyframe(t_s=0.0, pose=pose, yaw_deg=yaw_deg)], sway_deg=0.0
         )
-        world = World(msgspec.structs.replace(scenario, cameras=[camera], motion=motion))
+        world = World(msgspec.structs.replace(scenario, cameras=[camera], motion=motion, others=[]))
         if renderer is None:
-            figure = build_figure(world.shape, scenario.clothes, scenario.seed)
-            renderer = CameraRenderer(world, figure, stage, 0, samples=1)
+            renderer = CameraRenderer(world, [figure_of(world)], stage, 0, samples=1)
         at_rest = world.at(0.0).pose
         pixels = renderer.picture((at_rest, at_rest), np.ones(2), noise_key=i)
         patch, _ = renderer.labels(at_rest)

@@ -3,13 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
-from mocapd.body.shape import FACTORS, BodyShape, skeleton_of
+from mocapd.body.shape import FACTORS, WHOLE_FACTORS, BodyShape, skeleton_of
 from mocapd.body.skeleton import joint_positions
 from mocapd.geometry import rotations
 from mocapd.sim.person.motion import Motion, compile_motion, pose_at
 from mocapd.sim.scenario import CameraSpec, Light, Scenario
+from mocapd.sim.scenario_values import within
 from mocapd.types import Camera, Floats, Pose, Rig, Skeleton
 
 PoseAt = Callable[[float], Pose]  # of a time [s]
@@ -18,13 +20,15 @@ Performed = Callable[[Skeleton], PoseAt]  # by a person of this skeleton
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldState:
-    """Truth at one instant: pose, joints_m (J,3), level of each light (L,), whether she is there."""
+    """Truth at one instant: pose, joints_m (J,3), level of each light (L,), whether she is there, how far
+    her jacket is on, 0..1."""
 
     t_s: float
     pose: Pose
     joints_m: Floats
     light_levels: Floats
     person_present: bool
+    jacket: float
 
 
 class World:
@@ -36,6 +40,7 @@ class World:
         self.shape = body_shape(scenario)
         self.skeleton: Skeleton = skeleton_of(self.shape)
         self._pose_at = performed(self.skeleton) if performed else _looped(scenario, self.skeleton)
+        self.others = tuple(World(_of_bystander(scenario, i)) for i in range(len(scenario.others)))
 
     def at(self, t_s: float) -> WorldState:
         """The truth at t_s [s]; motion and lights repeat every `loop_s`."""
@@ -45,8 +50,23 @@ class World:
             pose=pose,
             joints_m=joint_positions(self.skeleton, pose),
             light_levels=light_levels(self.scenario, t_s),
-            person_present=t_s >= self.scenario.person_appears_s,
+            person_present=self.present(t_s),
+            jacket=self.jacket(t_s),
         )
+
+    def present(self, t_s: float) -> bool:
+        """Whether the person is there."""
+        scenario = self.scenario
+        t = float(np.mod(t_s, scenario.loop_s))
+        return t_s >= scenario.person_appears_s and not within(scenario.absences, t)
+
+    def jacket(self, t_s: float) -> float:
+        """How far the person's jacket is on, 0..1."""
+        clothes = self.scenario.clothes
+        if clothes.jacket is None:
+            return 0.0
+        steps = [(event.t_s, event.jacket, event.over_s) for event in clothes.events]
+        return _level(steps, float(np.mod(t_s, self.scenario.loop_s)))
 
     def pose(self, t_s: float) -> Pose:
         """The pose alone."""
@@ -61,21 +81,41 @@ def _looped(scenario: Scenario, skeleton: Skeleton) -> PoseAt:
 def body_shape(scenario: Scenario) -> BodyShape:
     """The wearer's shape."""
     body = scenario.body
-    return BodyShape(body.stature_m, np.array([getattr(body, name) for name in FACTORS]))
+    names = WHOLE_FACTORS if body.whole else FACTORS
+    return BodyShape(body.stature_m, np.array([getattr(body, name) for name in names]))
+
+
+def _of_bystander(scenario: Scenario, i: int) -> Scenario:
+    other = scenario.others[i]
+    return msgspec.structs.replace(
+        scenario, seed=scenario.seed + 101 * (i + 1), body=other.body, clothes=other.clothes, motion=other.motion,
+        others=[], absences=[], person_appears_s=0.0,
+    )  # fmt: skip
+
+
+def is_out(scenario: Scenario, camera: CameraSpec, frame: int) -> bool:
+    """Whether a camera is unplugged when it would expose a frame of the world."""
+    t_s = frame / scenario.fps_hz + camera.clock_offset_s
+    return within(camera.outages, float(np.mod(t_s, scenario.loop_s)))
 
 
 def light_levels(scenario: Scenario, t_s: float) -> Floats:
     """Level (L,) of each light at t_s, as a factor on its intensity."""
     t = float(np.mod(t_s, scenario.loop_s))
-    return np.array([_level(light, t) for light in scenario.lights])
+    return np.array([_level(_steps(light), t) for light in scenario.lights])
 
 
-def _level(light: Light, t_s: float) -> float:
-    level = light.events[-1].level if light.events else 1.0
-    for event in light.events:
-        if t_s >= event.t_s:
-            progress = min((t_s - event.t_s) / event.over_s, 1.0)
-            level += progress * (event.level - level)
+def _steps(light: Light) -> list[tuple[float, float, float]]:
+    return [(event.t_s, event.level, event.over_s) for event in light.events]
+
+
+def _level(steps: list[tuple[float, float, float]], t_s: float) -> float:
+    """Where the steps, each a time, a level and how long it takes, have led; the last one begins the loop."""
+    level = steps[-1][1] if steps else 1.0
+    for from_s, goal, over_s in steps:
+        if t_s >= from_s:
+            progress = min((t_s - from_s) / over_s, 1.0)
+            level += progress * (goal - level)
     return level
 
 

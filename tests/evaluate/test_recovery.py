@@ -46,6 +46,13 @@ def test_frames_are_counted_from_the_change_of_light(bad: int) -> None:
     assert recovery(truth, track_of(truth, error_m)) == bad
 
 
+def test_who_was_hidden_is_found_again_when_under_ten_centimetres() -> None:
+    truth = moving_truth(clear_s=CHANGE / 30.0 - 0.01)
+    error_m = np.full(FRAMES, 0.08)
+    error_m[20 : CHANGE + 7] = BAD
+    assert recovery(truth, track_of(truth, error_m)) == 7
+
+
 def test_a_lost_person_is_an_infinite_error() -> None:
     truth = moving_truth(light_change_s=CHANGE / 30.0)
     keep = [f for f in range(EMPTY, FRAMES) if not CHANGE <= f < CHANGE + 3]

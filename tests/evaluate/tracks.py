@@ -11,7 +11,7 @@ from mocapd.types import Floats
 EMPTY, FRAMES = 10, 70  # frames before the person comes, and in all
 
 
-def moving_truth(light_change_s: float | None = None) -> Truth:
+def moving_truth(light_change_s: float | None = None, clear_s: float | None = None) -> Truth:
     """A person who comes in frame 10, sways, and waves its left hand."""
     times_s = np.arange(FRAMES) / 30.0
     joints = np.tile(standard_skeleton(1.7).rest_m, (FRAMES, 1, 1))
@@ -19,7 +19,7 @@ def moving_truth(light_change_s: float | None = None) -> Truth:
     joints[:, INDEX["leftHand"], 1] += 0.2 * np.sin(9.0 * times_s)
     joints[:, INDEX["leftLowerArm"], 2] += 0.1 * np.cos(7.0 * times_s)
     joints[:EMPTY] = np.nan
-    return Truth(NAMES, times_s, joints, np.arange(FRAMES) >= EMPTY, light_change_s)
+    return Truth(NAMES, times_s, joints, np.arange(FRAMES) >= EMPTY, light_change_s, clear_s)
 
 
 def track_of(

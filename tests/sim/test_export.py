@@ -9,12 +9,14 @@ import cv2
 import numpy as np
 import pytest
 
+from mocapd.calibration.from_origin import from_capture
+from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.errors import CannotCreateError
 from mocapd.geometry.camera_model import project
 from mocapd.geometry.rig_file import load_rig
 from mocapd.sim.export import export_capture
 from mocapd.sim.world import World
-from tests.sim.small import renderers, scenario
+from tests.sim.small import renderers, scenario, table
 
 SECONDS, APPEARS_S = 1.2, 0.3
 
@@ -122,3 +124,30 @@ def test_a_directory_that_cannot_be_made_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(CannotCreateError, match="another directory"):
         export_capture(scenario(), tmp_path / "file" / "capture", 0.1)
+
+
+def test_without_the_shirt_there_are_no_pictures_of_it_and_a_lost_camera_is_black(
+    tmp_path: Path,
+) -> None:
+    cameras = [dict(camera) for camera in table()["cameras"]]
+    cameras[1]["outages"] = [{"from_s": 0.205, "to_s": 0.405}]
+    s = scenario(cameras=cameras, clothes={"shirt": "plain"}, body={"whole": True})
+    export_capture(s, tmp_path / "plain", 0.5, notes={"clear_s": 0.3})
+    assert not (tmp_path / "plain" / "scribble").exists()
+    assert not (tmp_path / "plain" / "model").exists()
+    assert from_capture(load_folder(tmp_path / "plain")).wearer.stature_m == 1.75
+    info = json.loads((tmp_path / "plain" / "info.json").read_text())
+    assert info["outfit"] == "plain"
+    assert info["clear_s"] == 0.3
+    sets = list(frame_sets(load_folder(tmp_path / "plain")))
+    assert [len(one.frames) for one in sets] == [1 if 6 <= f < 12 else 2 for f in range(15)]
+    bright = []
+    for k in range(2):
+        video = cv2.VideoCapture(str(tmp_path / "plain" / f"cam{k}.mp4"))
+        bright.append([float(video.read()[1].mean()) > 10 for _ in range(15)])
+    assert all(bright[0])
+    # frames of the second camera are exposed 11 ms later, and so 6 is lost and 12 is there
+    assert bright[1] == [not 6 <= f < 12 for f in range(15)]
+    truth = np.load(tmp_path / "plain" / "truth.npz")
+    assert np.isfinite(truth["joints"]).all()
+    assert len(truth["names"]) == 22

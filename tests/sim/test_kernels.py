@@ -9,12 +9,13 @@ from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.body.surface import posed_vertices
 from mocapd.body.surface_building import build_surface
 from mocapd.geometry import rotations
+from mocapd.sim.person.dress_kernels import Dress
 from mocapd.sim.person.figure import build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, skin_vertices, vertex_normals
 from mocapd.sim.person.legs import leg_rotations
+from mocapd.sim.person_spec import Clothes
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose
-from mocapd.sim.scenario import Clothes
 from mocapd.sim.scenery.lamps import lamps_of
 from mocapd.sim.scenery.shadows import lamp_views, shadow_maps
 from mocapd.sim.world import World
@@ -144,9 +145,11 @@ def test_accumulate_shades_by_corner_weights_and_cleans_up() -> None:
     weights = np.zeros((2, 2, 2), np.float32)
     nearness[1, 0], owner[1, 0], weights[1, 0] = 0.5, 0, (0.25, 0.5)
     colour, cover = np.zeros((2, 2, 3), np.float32), np.zeros((2, 2), np.float32)
+    nothing = np.zeros(1, dtype=np.uint8)
+    dress = Dress(np.zeros((3, 3)), nothing, nothing, np.zeros(1, np.int32), np.zeros((1, 46)))
     accumulate(
         triangles, albedo, irradiance.astype(np.float32), nearness, owner, weights, (0, 0, 2, 2),
-        0.5, colour, cover,
+        0.5, dress, np.zeros(1), colour, cover,
     )  # fmt: skip
     light = 0.25 * 1.0 + 0.25 * 2.0 + 0.5 * 4.0
     assert np.allclose(colour[1, 0], 0.5 * light * albedo[0])

@@ -12,7 +12,7 @@ from mocapd.sim.world import World
 from tests.sim.small import table
 
 
-@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono", "first_setup"])
+@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono", "first_setup", "jacket"])
 def test_shipped_scenarios_load_and_move_on_the_floor(name: str) -> None:
     scenario = load_scenario(asset_path(f"scenarios/{name}.toml"))
     world = World(scenario)

@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapd.capture.simulated.film_origin import FilmOrigin
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, CannotCreateError, ConfigError
 from mocapd.sim.film import Film, film_key, first_frame, load_film
-from tests.sim.small import renderers, scenario
+from tests.sim.small import renderers, scenario, table
 
 PERIOD_NS = 1e9 / 30
 
@@ -160,3 +161,24 @@ def _tiny() -> dict[str, object]:
         "look_at_m": [0.0, 1.0, 0.0],
         "size_px": [32, 24],
     }
+
+
+def test_an_unplugged_camera_is_lost_and_comes_back(cache: Path) -> None:
+    cameras = [dict(camera) for camera in table()["cameras"]]
+    cameras[0]["outages"] = [{"from_s": 0.3, "to_s": 1.9}]
+    film = load_film(scenario(name="outage", cameras=cameras, loop_s=2.0), cache)
+    # frame n is exposed n periods after the epoch, so that frame 6 is due now
+    source = SimSource(film, "left", epoch_ns=monotonic_ns() - round(6.5 * PERIOD_NS))
+    source.open()
+    assert [source.read().seq for _ in range(2)] == [0, 1]
+    with pytest.raises(CameraLost, match="unplugged"):
+        source.read()
+    source.close()
+    source = SimSource(film, "left", epoch_ns=monotonic_ns() - round(56.5 * PERIOD_NS))
+    source.open()
+    source.read()
+    source.close()
+    sets = list(FilmOrigin("sim:outage", film).frame_sets())
+    alone = [i for i, one in enumerate(sets) if "left" not in one.frames]
+    assert alone == list(range(9, 57))
+    assert all("right" in one.frames for one in sets)

@@ -29,7 +29,7 @@ def test_same_time_same_world_whatever_was_asked_before(a: float, b: float) -> N
     assert np.array_equal(first.light_levels, again.light_levels)
 
 
-@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono"])
+@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono", "jacket"])
 def test_the_loop_closes_without_a_jump(name: str) -> None:
     s = load_scenario(asset_path(f"scenarios/{name}.toml"))
     world = World(s)
@@ -99,7 +99,7 @@ def test_cameras_look_at_their_target_with_y_down() -> None:
         assert np.allclose(theirs[:, 0], project(camera, points), atol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono"])
+@pytest.mark.parametrize("name", ["living_room", "outdoor", "gym_mono", "jacket"])
 def test_shipped_motions_stay_within_the_limits_of_joints(name: str) -> None:
     s = load_scenario(asset_path(f"scenarios/{name}.toml"))
     world, limits = World(s), upper_body().limits

@@ -17,6 +17,7 @@ from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
 from mocapd.sim.scenario import Scenario
+from mocapd.sim.world import is_out
 from mocapd.types import Frame, FrameSet, LabelledPicture, Rig
 
 _LOG = logging.getLogger(__name__)
@@ -60,11 +61,15 @@ class FilmOrigin:
 
     def frame_sets(self) -> Iterator[FrameSet]:
         """See Origin. One loop, as the bundler would pair it: each frame at its camera's own time."""
+        scenario = self._film.scenario
         for i in range(self.count):
             frames = {
                 spec.name: self._frame(spec.name, i, spec.clock_offset_s)
-                for spec in self._film.scenario.cameras
+                for spec in scenario.cameras
+                if not is_out(scenario, spec, self._film.first + i)
             }
+            if not frames:
+                continue
             times_ns = [frame.t_ns for frame in frames.values()]
             yield FrameSet(max(times_ns), frames, max(times_ns) - min(times_ns))
 

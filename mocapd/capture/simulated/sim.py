@@ -12,6 +12,7 @@ from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError
 from mocapd.sim.film import Film
 from mocapd.sim.scenario import Scenario
+from mocapd.sim.world import is_out
 from mocapd.types import Frame
 
 
@@ -21,16 +22,23 @@ class SimCamera:
     Frame n is exposed at epoch_ns + n / fps + the camera's clock offset; with one epoch for all of
     them, the cameras of a scenario show one world without further coordination. As with a webcam
     that buffers a single frame, a reader that is late gets the newest one, and `seq` shows the gap;
-    so do frames that the scenario drops. `t_ns` is the middle of the exposure; a frame is handed
-    out when its exposure ends. Decoding happens in `read`.
+    so do frames that the scenario drops. In the scenario's outages `read` says that the camera is lost.
+    `t_ns` is the middle of the exposure; a frame is handed out when its exposure ends. Decoding happens
+    in `read`.
     """
 
     recorded = False
 
     def __init__(
-        self, scenario: Scenario, camera: str, jpeg: Callable[[int], bytes], epoch_ns: int
+        self,
+        scenario: Scenario,
+        camera: str,
+        jpeg: Callable[[int], bytes],
+        epoch_ns: int,
+        first_shown: int = 0,
     ) -> None:
-        """jpeg: the file that frame n >= 0 comes in; called by `read` when its exposure has ended."""
+        """jpeg: the file that frame n >= 0 comes in; called by `read` when its exposure has ended. first_shown:
+        which frame of the world frame 0 shows."""
         specs = {spec.name: (i, spec) for i, spec in enumerate(scenario.cameras)}
         if camera not in specs:
             raise ConfigError(
@@ -41,6 +49,7 @@ class SimCamera:
         self.name = camera
         index, self._spec = specs[camera]
         self._jpeg = jpeg
+        self._scenario, self._first_shown = scenario, first_shown
         self._fps_hz = scenario.fps_hz
         self._seed = (scenario.seed, 7, index)
         self._epoch_ns = epoch_ns
@@ -54,7 +63,7 @@ class SimCamera:
         self._next = None
 
     def read(self) -> Frame:
-        """The next frame, when its exposure ends. Raises CameraLost once closed."""
+        """The next frame, when its exposure ends. Raises CameraLost once closed, or in an outage."""
         n = self._due(monotonic_ns())
         if self._next is None:
             n = self._first = self._next = max(n + 1, 0)
@@ -65,6 +74,8 @@ class SimCamera:
         wait_ns = self._ready_ns(n) - monotonic_ns()
         if self._closed.wait(seconds(max(wait_ns, 0))):
             raise CameraLost("the simulated camera was closed", self.name, "open it again")
+        if is_out(self._scenario, self._spec, self._first_shown + n):
+            raise CameraLost("was unplugged", self.name, "the scenario plugs it in again")
         jpeg = self._jpeg(n)
         try:
             pixels = decode_picture(jpeg, cv2.IMREAD_COLOR)
@@ -104,4 +115,6 @@ class SimSource(SimCamera):
 
     def __init__(self, film: Film, camera: str, epoch_ns: int = 0) -> None:
         jpegs = film.frames.get(camera, ())
-        super().__init__(film.scenario, camera, lambda n: jpegs[n % len(jpegs)], epoch_ns)
+        super().__init__(
+            film.scenario, camera, lambda n: jpegs[n % len(jpegs)], epoch_ns, film.first
+        )

@@ -7,39 +7,46 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.bones import NAMES, PARENT_OF
-from mocapd.body.skeleton import INDEX
+from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
+from mocapd.sim.person.motion import standing_pose
 from mocapd.sim.world import Performed, PoseAt
 from mocapd.types import Floats, Pose, Skeleton
 
 _FIELDS = ("fps", "names", "rest_offsets", "global_quats", "hips_pos")
 _MENDED = "give a folder of clips of motion"
 _LEG = ("LowerLeg", "Foot")
+_SIDES = ("left", "right")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionClip:
-    """hips_m (F,3); global_xyzw (F,J,4) since the T-pose, of all our joints; leg_m: from hip to ankle."""
+    """hips_m (F,3); global_xyzw (F,J,4) since the T-pose, of all our joints; leg_m: from hip to ankle; ankle_m (F,):
+    height of the lower ankle."""
 
     name: str
     rate_hz: float
     hips_m: Floats
     global_xyzw: Floats
     leg_m: float
+    ankle_m: Floats
 
 
 @dataclass(frozen=True, slots=True)
 class Placement:
     """Which part of a clip is done, and where. begin, frames: of the clip; yaw_deg: to where the person then looks on
-    average, 0 is +Z; the middle of the way is the world's origin. Before, it stands for `stand_s` in the T-pose, and
-    goes over to the clip in `blend_s`."""
+    average, 0 is +Z; the middle of the way is the world's origin. Before, it stands for `stand_s` in the T-pose or
+    another named pose, `stance`, and goes over to the clip in `blend_s`. grounded: raised or lowered so that
+    the lower ankle is as high as the clip's, which legs of other proportions would not keep."""
 
     begin: int
     frames: int
     yaw_deg: float
     stand_s: float
     blend_s: float
+    stance: str = "t_pose"
+    grounded: bool = False
 
 
 def read_clip(path: Path) -> MotionClip:
@@ -54,7 +61,7 @@ def read_clip(path: Path) -> MotionClip:
             quats, rate_hz = data["global_quats"].astype(float), float(data["fps"])
     except (OSError, ValueError, zipfile.BadZipFile) as error:
         raise InputError(f"cannot be read ({error})", str(path), _MENDED) from None
-    asked = ("hips", *(side + bone for side in ("left", "right") for bone in _LEG))
+    asked = ("hips", *(side + bone for side in _SIDES for bone in _LEG))
     if (
         any(name not in names for name in asked)
         or quats.shape != (len(hips_m), len(names), 4)
@@ -65,7 +72,21 @@ def read_clip(path: Path) -> MotionClip:
     ):
         raise InputError("is no clip of a humanoid", str(path), _MENDED)
     leg_m = sum(float(np.linalg.norm(offsets_m[names.index("left" + bone)])) for bone in _LEG)
-    return MotionClip(path.stem, rate_hz, hips_m, _all_joints(names, quats), leg_m)
+    ours = _all_joints(names, quats)
+    ankle_m = np.min([_ankle_m(side, names, offsets_m, hips_m, ours) for side in _SIDES], axis=0)
+    return MotionClip(path.stem, rate_hz, hips_m, ours, leg_m, ankle_m)
+
+
+def _ankle_m(
+    side: str, names: list[str], offsets_m: Floats, hips_m: Floats, quats: Floats
+) -> Floats:
+    """Height (F,) of one ankle by the clip's own bones."""
+    chain = [bone for bone in ("UpperLeg", *_LEG) if side + bone in names]
+    height: Floats = hips_m[:, 1].copy()
+    for above, bone in zip(["hips", *(side + one for one in chain)], chain, strict=False):
+        offset = offsets_m[names.index(side + bone)]
+        height += rotations.rotate(quats[:, INDEX[above]], offset)[:, 1]
+    return height
 
 
 def _all_joints(names: list[str], quats_xyzw: Floats) -> Floats:
@@ -105,9 +126,14 @@ def performed(clip: MotionClip, where: Placement) -> Performed:
         chain = [INDEX["left" + bone] for bone in ("UpperLeg", *_LEG)]
         leg_m = float(np.linalg.norm(np.diff(rest_m[chain], axis=0), axis=1).sum())
         way_m = hips_m * (leg_m / clip.leg_m)
+        if where.grounded:
+            over_m = clip.ankle_m[where.begin : last] - np.quantile(clip.ankle_m, 0.05)
+            way_m[:, 1] += over_m * (leg_m / clip.leg_m) - _over_floor_m(skeleton, way_m, quats)
         standing_m = np.array([way_m[0, 0], rest_m[0, 1], way_m[0, 2]])
         heading_rad = np.radians(where.yaw_deg)
         upright = np.tile(rotations.exp(np.array([0.0, heading_rad, 0.0])), (len(NAMES), 1))
+        if where.stance != "t_pose":
+            upright = standing_pose(skeleton, where.stance, heading_rad).quats_xyzw
 
         def pose_at(t_s: float) -> Pose:
             frame = np.clip(
@@ -127,6 +153,17 @@ def performed(clip: MotionClip, where: Placement) -> Performed:
         return pose_at
 
     return by
+
+
+def _over_floor_m(skeleton: Skeleton, hips_m: Floats, quats: Floats) -> Floats:
+    """How much higher the lower ankle is than when standing (F,) [m]."""
+    ankles = [INDEX[side + "Foot"] for side in _SIDES]
+    heights = [
+        joint_positions(skeleton, Pose(hips, turned))[ankles, 1].min()
+        for hips, turned in zip(hips_m, quats, strict=True)
+    ]
+    over: Floats = np.array(heights) - skeleton.rest_m[ankles[0], 1]
+    return over
 
 
 def _between(a_xyzw: Floats, b_xyzw: Floats, share: float) -> Floats:

@@ -11,11 +11,14 @@ import msgspec
 import numpy as np
 
 from mocapd.evaluate.simulated.motion_clip import MotionClip, Placement, within
-from mocapd.sim.scenario import BodySpec, LightEvent, MotionSpec, PoseKeyframe, Scenario
+from mocapd.evaluate.simulated.variation import Variation, varied_body, varied_lights
+from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
+from mocapd.sim.scenario import Scenario
 
 SESSIONS = 24
 SECONDS = 7.0
-_EMPTY_S, _STAND_S, _BLEND_S = 0.67, 0.5, 0.67  # before the clip, as in recorded captures
+EMPTY_S, STAND_S, BLEND_S = 0.67, 0.5, 0.67  # before the clip, as in recorded captures
+LAMP_OFF_S = 4.2
 _MOST_WAY_M = 1.6  # that the clips' person goes; the cameras stand where they see all of it
 _LOOK_AT_M = (0.0, 1.0, 0.0)
 
@@ -54,21 +57,23 @@ YAWS_DEG = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlannedSession:
-    """One session to be recorded."""
+    """One session to be recorded, as long as the scenario's loop. clip, where: what the person does, in place of
+    the scenario's motion; clear_s: from when on nothing stands in a tracker's way any more, where that is known."""
 
     name: str
     scenario: Scenario
-    clip: MotionClip
-    where: Placement
+    clip: MotionClip | None = None
+    where: Placement | None = None
+    clear_s: float | None = None
 
 
 def plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[PlannedSession]:
     """The sessions, by number; fewer when few clips are long enough and stay in one place."""
-    clip_s = SECONDS - _EMPTY_S - _STAND_S - _BLEND_S
+    clip_s = SECONDS - EMPTY_S - STAND_S - BLEND_S
     starts = [(clip, within(clip, clip_s, _MOST_WAY_M)) for clip in clips]
     usable = [(clip, begin) for clip, begin in starts if begin is not None]
     picked = np.unique(np.linspace(0, len(usable) - 1, SESSIONS).round().astype(int)).tolist()
-    wide = [scene for scene in scenes if scene.room.outdoors or min(scene.room.size_m[::2]) > 8.0]
+    wide = [scene for scene in scenes if is_wide(scene)]
     rooms, halls = cycle(scenes), cycle(wide or scenes)
     sessions = []
     for number, which in enumerate(picked if usable else ()):
@@ -79,8 +84,8 @@ def plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[Planne
             begin,
             round(clip_s * clip.rate_hz),
             YAWS_DEG[number % len(YAWS_DEG)],
-            _EMPTY_S + _STAND_S,
-            _BLEND_S,
+            EMPTY_S + STAND_S,
+            BLEND_S,
         )
         name = f"{number:02d}_{rig.name}_{scene.name}_{clip.name}"
         sessions.append(
@@ -89,17 +94,15 @@ def plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[Planne
     return sessions
 
 
+def is_wide(scene: Scenario) -> bool:
+    """Whether cameras have room all around."""
+    return scene.room.outdoors or min(scene.room.size_m[::2]) > 8.0
+
+
 def _scenario(name: str, number: int, scene: Scenario, rig: RigPlan, where: Placement) -> Scenario:
     rng = np.random.default_rng([2026, number])
-
-    def vary(spread: float) -> float:
-        return float(np.clip(rng.normal(1.0, spread), 0.88, 1.14))
-
-    body = BodySpec(
-        stature_m=round(float(rng.uniform(1.55, 1.92)), 3),
-        torso_length=vary(0.03), shoulder_width=vary(0.05), upper_arm_length=vary(0.04),
-        forearm_length=vary(0.04), torso_width=vary(0.06), torso_depth=vary(0.06), arm_girth=vary(0.08),
-    )  # fmt: skip
+    vary = Variation(rng)
+    body = varied_body(vary)
     seen = scene.cameras[0]
     cameras = []
     for k, azimuth_deg in enumerate(rig.azimuths_deg):
@@ -117,19 +120,10 @@ def _scenario(name: str, number: int, scene: Scenario, rig: RigPlan, where: Plac
                 gain=seen.gain * vary(0.05), clock_offset_s=0.0 if k == 0 else float(rng.uniform(0.0, 0.016)),
             )
         )  # fmt: skip
-    lights = [
-        msgspec.structs.replace(
-            light,
-            intensity=light.intensity * vary(0.1),
-            events=[LightEvent(t_s=4.2, level=0.0 if i == 0 else 1.0, over_s=0.05)]
-            if number % 3 == 1 and i == 0
-            else [],
-        )
-        for i, light in enumerate(scene.lights)
-    ]
+    lights = varied_lights(scene, vary, LAMP_OFF_S if number % 3 == 1 else None)
     clothes = msgspec.structs.replace(scene.clothes, dye_variation=0.03 + 0.02 * rng.uniform())
     stance = PoseKeyframe(t_s=0.0, pose="t_pose", yaw_deg=where.yaw_deg)
     return msgspec.structs.replace(
-        scene, name=name, seed=1000 + number, loop_s=SECONDS, scribble_s=0.2, person_appears_s=_EMPTY_S,
+        scene, name=name, seed=1000 + number, loop_s=SECONDS, scribble_s=0.2, person_appears_s=EMPTY_S,
         cameras=cameras, body=body, clothes=clothes, lights=lights, motion=MotionSpec(keyframes=[stance], sway_deg=0.0),
     )  # fmt: skip

@@ -10,7 +10,8 @@ from mocapd.geometry import rotations
 from mocapd.sim.person.footsteps import FootTrack, foot_tracks
 from mocapd.sim.person.legs import leg_rotations
 from mocapd.sim.person.poses import POSES, ArmDirections
-from mocapd.sim.scenario import PoseKeyframe, Scenario
+from mocapd.sim.person_spec import PoseKeyframe
+from mocapd.sim.scenario import Scenario
 from mocapd.types import Floats, Pose, Skeleton
 
 if TYPE_CHECKING:  # takes half a second to import, which playing a film does not need
@@ -34,6 +35,7 @@ class Motion:
     swings: tuple[tuple[int, Floats, float, float, float], ...]  # joint, vector, Hz, from, to
     sway: Floats  # (3, 4): cycles per loop, phase [rad], amplitude about x and z [rad]
     feet: tuple[FootTrack, FootTrack]  # left, right
+    lifted: "PchipInterpolator | None"  # (2*4,) per foot: how far it is off the floor, 0..1, and where [m]
 
 
 def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
@@ -60,7 +62,18 @@ def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
         ),
         sway=sway,
         feet=foot_tracks(root_of_t, skeleton, loop_s, turn),
+        lifted=_lifted(keys, times, loop_s),
     )
+
+
+def _lifted(keys: list[PoseKeyframe], times: Floats, loop_s: float) -> "PchipInterpolator | None":
+    """Where the keyframes place the feet themselves; None: nowhere."""
+    feet = [(key.left_foot_m, key.right_foot_m) for key in keys]
+    if not any(place is not None for both in feet for place in both):
+        return None
+    rows = [[(0.0, 0.0, 0.0, 0.0) if p is None else (1.0, *p) for p in both] for both in feet]
+    values = np.array(rows).reshape(len(keys), 8)
+    return _periodic(times, values, loop_s, np.zeros(8))
 
 
 def pose_at(motion: Motion, t_s: float) -> Pose:
@@ -85,14 +98,32 @@ def pose_at(motion: Motion, t_s: float) -> Pose:
     return Pose(root, rotations.canonical(quats))
 
 
+def standing_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
+    """One of POSES at the origin, with straight legs."""
+    local = rotations.exp(_local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
+    local[0] = rotations.exp(np.array([0.0, heading_rad, 0.0]))
+    root = np.array([0.0, skeleton.rest_m[0, 1], 0.0])
+    return Pose(root, rotations.canonical(global_from_local(skeleton, local)))
+
+
 def _plant_feet(motion: Motion, t_s: float, root_m: Floats, quats: Floats) -> None:
     """Turn the legs (in place in quats) so that the feet are where they stand or step."""
     rest = motion.skeleton.rest_m
     hips = rotations.to_matrix(quats[0])
-    for side, foot in zip(("left", "right"), motion.feet, strict=True):
+    lifted = np.zeros((2, 4)) if motion.lifted is None else motion.lifted(t_s).reshape(2, 4)
+    for side, foot, lift in zip(("left", "right"), motion.feet, lifted, strict=True):
         joints = [INDEX[side + bone] for bone in _LEGS]
         hip, knee, ankle = rest[joints[:3]]
         at, yaw = foot.at(t_s)
+        if lift[0] > 0.0:
+            heading = float(np.arctan2(hips[0, 2], hips[2, 2]))
+            place = rotations.exp(np.array([0.0, heading, 0.0]))
+            wanted = rotations.rotate(
+                place, np.array([ankle[0], 0.0, ankle[2]]) + lift[1:] / lift[0]
+            )
+            wanted += [root_m[0], ankle[1], root_m[2]]
+            at = (1.0 - lift[0]) * at + lift[0] * wanted
+            yaw += lift[0] * np.remainder(heading - yaw + np.pi, 2 * np.pi) - lift[0] * np.pi
         R = leg_rotations(
             root_m + hips @ (hip - rest[0]), knee - hip, ankle - knee, at, hips[:, 2], yaw
         )

@@ -10,7 +10,7 @@ from mocapd.sim.scenario import Room, Scenario, SurfaceSpec, Thing
 from mocapd.types import Floats, Ints
 
 PATTERNS = {
-    "plain": 0, "plaster": 1, "planks": 2, "checks": 3, "grass": 4, "bricks": 5, "poster": 6,
+    "plain": 0, "plaster": 1, "planks": 2, "checks": 3, "grass": 4, "bricks": 5, "poster": 6, "portrait": 7,
 }  # fmt: skip
 BOX, BALL = 0, 1
 _BOOK_COLOURS = (
@@ -143,8 +143,8 @@ def _build(thing: Thing, lamp: int, rng: np.random.Generator) -> list[_Piece]:
             x, y, z = rng.uniform((-0.3, 0.42, -0.3), (0.3, 0.85, 0.3)) * (w, h, d)
             size = rng.uniform(0.35, 0.6) * np.array([w, 0.45 * h, d])
             local.append(_Piece((x, y, z), tuple(size), 0.0, thing.srgb, "grass", BALL))
-    elif thing.kind == "poster":
-        local = [_Piece((0, h / 2, 0), (w, h, d), 0.0, thing.srgb, "poster")]
+    elif thing.kind in ("poster", "portrait"):
+        local = [_Piece((0, h / 2, 0), (w, h, d), 0.0, thing.srgb, thing.kind)]
     else:
         kind = BALL if thing.kind == "ball" else BOX
         local = [

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from mocapd.sim.person.face_kernels import portrait
 from mocapd.types import Floats
 
 
@@ -80,5 +81,7 @@ def pattern_albedo(
         factor *= 0.9 + 0.2 * value_noise(50 * u_m, 50 * v_m, seed + 1)
     elif pattern == 6:
         _poster(u, v, seed, rgb)
+    elif pattern == 7:
+        portrait(u, v, rgb)
     for c in range(3):
         rgb[c] *= factor

@@ -137,6 +137,7 @@ def cast_room(
                 points[y, x, c] = hit[c]
                 rgb[c] = albedo[best, c]
             _face(shapes, best, hit, normal, uv)
+            # compiled into this kernel: the cache of compiled code knows of a change there by this file alone
             pattern_albedo(pattern[best], uv[0], uv[1], uv[2], uv[3], seed[best], rgb)
             up = 0.5 + 0.5 * normal[1]
             # corners and the space under furniture get less of the light from everywhere

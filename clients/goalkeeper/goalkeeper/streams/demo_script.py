@@ -13,7 +13,8 @@ import tomli_w
 
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX
-from mocapd.sim.scenario import MotionSpec, PoseKeyframe, Scenario, load_scenario
+from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
+from mocapd.sim.scenario import Scenario, load_scenario
 from mocapd.sim.world import World
 from mocapd.types import Skeleton
 
@@ -61,7 +62,7 @@ def demo_scenario() -> Scenario:
         loop_s=LOOP_S,
         fps_hz=FPS_HZ,
         motion=MotionSpec(keyframes=_keyframes(World(room).skeleton), sway_deg=1.0),
-        lights=[replace(light, events=[]) for light in room.lights],
+        lights=tuple(replace(light, events=()) for light in room.lights),
     )
 
 

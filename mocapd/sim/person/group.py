@@ -1,0 +1,61 @@
+"""Everybody in a picture as one mesh."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.sim.person.dress_kernels import REACH, Dress, covered
+from mocapd.sim.person.dressing import joined_dresses
+from mocapd.sim.person.figure import Figure, posed_figure
+from mocapd.types import Bytes, Floats, Pose
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """How somebody is at one instant. jacket: how far it is on, 0..1."""
+
+    pose: Pose
+    jacket: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
+    """figures, one after the other in triangles (T,3), albedo (T,3) and dress; vertices: how many the first has."""
+
+    figures: tuple[Figure, ...]
+    triangles: NDArray[np.int32]
+    albedo: Floats
+    dress: Dress
+
+
+def group_of(figures: Sequence[Figure]) -> Group:
+    """One person or several."""
+    begins = np.cumsum([0] + [len(one.vertices_m) for one in figures])
+    shifted = [one.triangles + begin for one, begin in zip(figures, begins, strict=False)]
+    return Group(
+        figures=tuple(figures),
+        triangles=np.concatenate(shifted).astype(np.int32),
+        albedo=np.concatenate([one.albedo for one in figures]),
+        dress=joined_dresses([one.dress for one in figures]),
+    )
+
+
+def posed_group(group: Group, bodies: Sequence[Body]) -> Floats:
+    """Vertices (V,3) in the world [m]."""
+    posed = [
+        posed_figure(figure, body.pose, body.jacket)
+        for figure, body in zip(group.figures, bodies, strict=True)
+    ]
+    return posed[0] if len(posed) == 1 else np.concatenate(posed)
+
+
+def patches_seen(figure: Figure, jacket: float) -> Bytes:
+    """The shirt's patch of each triangle (T,), 0 also where the jacket is over it."""
+    if jacket <= 0.0:
+        return figure.patch
+    dress = figure.dress
+    x = dress.rest_m[figure.triangles, 0].mean(axis=1)
+    hidden = (dress.under_jacket > 0) & (covered(x, dress.outfits[0, REACH], jacket) > 0.0)
+    return np.where(hidden, 0, figure.patch).astype(np.uint8)
