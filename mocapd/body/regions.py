@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.model import BodyModel, sleeves_by_colour
 from mocapd.body.pose_space import SIDES
+from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 
@@ -22,6 +23,17 @@ class Region(IntEnum):
     FOREARM = 3
     LEG = 4
     FOOT = 5
+
+
+class Label(IntEnum):
+    """Where pixels are counted (`Fit.visible`, `matched`); sleeves keep the labels of the shirt's patches."""
+
+    TRUNK = 1
+    HEAD = 2
+    LEFT_THIGH = 3
+    LEFT_SHIN = 4  # and foot
+    RIGHT_THIGH = 5
+    RIGHT_SHIN = 6
 
 
 def by_region(model: BodyModel) -> BodyModel:
@@ -47,8 +59,25 @@ def regions(model: BodyModel) -> NDArray[np.uint8]:
     return out
 
 
+def labels(model: BodyModel) -> NDArray[np.uint8]:
+    """The label (T,) of each triangle: a `Label`, or a sleeve's patch; hands count as cuffs."""
+    out = np.full(len(model.colour), Label.TRUNK, np.uint8)
+    out[model.part == HEAD] = Label.HEAD
+    main = model.triangle_bones[:, 0]
+    for side, arm, leg, cuff, thigh, shin in (
+        ("left", LEFT_ARM, LEFT_LEG, ShirtPatch.LEFT_CUFF, Label.LEFT_THIGH, Label.LEFT_SHIN),
+        ("right", RIGHT_ARM, RIGHT_LEG, ShirtPatch.RIGHT_CUFF, Label.RIGHT_THIGH, Label.RIGHT_SHIN),
+    ):
+        sleeve = model.part == arm
+        out[sleeve] = np.where(model.patch[sleeve] > 0, model.patch[sleeve], cuff)
+        lower = np.isin(main, [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX])
+        out[(model.part == leg) & ~lower] = thigh
+        out[(model.part == leg) & lower] = shin
+    return out
+
+
 def _coloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs to be told apart")
     sleeves, start = sleeves_by_colour(model.part, colour)
-    return replace(model, colour=colour, sleeves=sleeves, sleeve_start=start)
+    return replace(model, colour=colour, patch=labels(model), sleeves=sleeves, sleeve_start=start)

@@ -30,11 +30,14 @@ def initial_information(space: PoseSpace) -> Floats:
 
 
 def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
-    """The factors (n_shape,) that a space has, of a wearer's shape, and their information matrix."""
-    n = space.n_shape
-    if shape.information is None:
-        return shape.factors[:n].copy(), initial_information(space)
-    return shape.factors[:n].copy(), shape.information[:n, :n].copy()
+    """The factors (n_shape,) that a space has, of a wearer's shape, and their information matrix; the mean body's where the
+    shape tells none."""
+    n = min(space.n_shape, len(shape.factors))
+    factors, information = np.ones(space.n_shape), initial_information(space)
+    factors[:n] = shape.factors[:n]
+    if shape.information is not None:
+        information[:n, :n] = shape.information[:n, :n]
+    return factors, information
 
 
 def learned(shape: BodyShape, factors: Floats, information: Floats, taught_s: float) -> BodyShape:

@@ -1,9 +1,11 @@
 """What is published glides to where the tracker found that the body really is, rather than jump."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -34,6 +36,19 @@ def residual(
     away = rotations.log(rotations.multiply(local_xyzw, rotations.inverse(true_local_xyzw)))
     frames = int(np.clip(np.ceil(farthest_m / step_m), 1, _MOST_FRAMES))
     return Residual(root_m - true_root_m, away, frames)
+
+
+def residual_of(
+    fitter: Fitter, shown: MotionState, true: MotionState, left: Residual | None, step_m: float
+) -> Residual:
+    """From what would be shown now, had nothing been found (with what is left of an older residual), to what is true."""
+    root, local = shown.root_m, shown.local_xyzw
+    if left is not None:
+        root, local = blended(root, local, left)
+    was, _ = fitter.joints(replace(true, root_m=root, local_xyzw=local))
+    now, _ = fitter.joints(true)
+    farthest_m = float(np.linalg.norm(was - now, axis=1).max())
+    return residual(root, local, true.root_m, true.local_xyzw, farthest_m, step_m)
 
 
 def blended(root_m: Floats, local_xyzw: Floats, left: Residual) -> tuple[Floats, Floats]:

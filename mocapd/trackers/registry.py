@@ -6,19 +6,26 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mocapd.calibration.record import Calibration
 from mocapd.errors import ConfigError
+from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
+from mocapd.trackers.flex.section import FlexSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
+
+
+_LEAST_BASELINE_M = 0.02
 
 
 def _quiet(_: object) -> None:
@@ -75,6 +82,22 @@ def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     return ""
 
 
+def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+    """For trackers that two calibrated cameras in different places suffice."""
+    missing = _rig_lacks(calibration, cameras)
+    if missing or calibration.rig is None:
+        return missing
+    seeing = [camera for camera in calibration.rig.cameras if camera.name in cameras]
+    if len(seeing) < 2:
+        return f"needs two of the calibrated cameras ({', '.join(calibration.rig.names)})"
+    apart_m = max(
+        float(np.linalg.norm(centre(a) - centre(b))) for i, a in enumerate(seeing) for b in seeing[:i]
+    )
+    if apart_m < _LEAST_BASELINE_M:
+        return "needs cameras in two places: by the calibration all are in one"
+    return ""
+
+
 def _canned(_calibration: Calibration, section: CannedSection, _resources: Resources) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
@@ -109,6 +132,12 @@ def _colour_paper(
     return build_paper_tracker(calibration, _database(resources), section, resources.tracking)
 
 
+def _flex(calibration: Calibration, section: FlexSection, resources: Resources) -> Tracker:
+    from mocapd.trackers.flex.build import build_flex_tracker
+
+    return build_flex_tracker(calibration, section, resources.tracking)
+
+
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
@@ -134,6 +163,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
+        "flex": TrackerEntry(_flex, FlexSection, _pair_lacks, sees=True),
     }
 )
 

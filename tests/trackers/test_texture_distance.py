@@ -7,7 +7,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import MeasuringParams
-from mocapd.trackers.colour.texture_distance import texture_distances
+from mocapd.trackers.texture_distance import texture_distances
 from mocapd.types import Camera, Floats, Frame, FrameSet
 from tests.fit.synthetic import CAMERAS, MODEL, standing, stepped, textured_greys
 from tests.geometry.rigs import looking_at

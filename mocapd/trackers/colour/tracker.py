@@ -29,11 +29,11 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.trackers.blending import Residual, blended, later, residual
+from mocapd.trackers.blending import Residual, blended, later, residual_of
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
-from mocapd.trackers.colour.texture_distance import texture_distances
+from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import (
     BodyState,
@@ -230,20 +230,10 @@ class ColourTracker:
         names = tuple(self.rig.cameras[v.index].name for v in views)
         left = later(known.left) if known.left is not None else None
         if switched:
-            left = self._residual(predicted, state, known.left)
+            left = residual_of(fitter, predicted, state, known.left, p.blend_m)
         return _Memory(
             frames.t_ns, replace(state, velocity=velocity), fit, taught_s, names, left
         ), views
-
-    def _residual(self, shown: MotionState, true: MotionState, left: Residual | None) -> Residual:
-        """From what would be shown now, had nothing been found, to what is true."""
-        root, local = shown.root_m, shown.local_xyzw
-        if left is not None:
-            root, local = blended(root, local, left)
-        was, _ = self._fitter.joints(replace(true, root_m=root, local_xyzw=local))
-        now, _ = self._fitter.joints(true)
-        farthest_m = float(np.linalg.norm(was - now, axis=1).max())
-        return residual(root, local, true.root_m, true.local_xyzw, farthest_m, self.params.blend_m)
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, present: dict[int, float], frames: FrameSet
@@ -292,7 +282,11 @@ class ColourTracker:
             if held is None or fit.match > held.match + p.uncertain_gain:
                 self._next_search_ns = frames.t_ns
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
-                left = None if known is None else self._residual(known.state, fit.state, known.left)
+                left = None
+                if known is not None:
+                    left = residual_of(
+                        self._fitter, known.state, fit.state, known.left, p.blend_m
+                    )
                 return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names, left), seen
         for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
             segmenter.memory.appearance = appearance

@@ -1,4 +1,4 @@
-"""How far away the shirt is, where two cameras look from about the same side and see its texture alike."""
+"""How far away the body is, where two cameras look from about the same side and see its cloth alike."""
 
 from collections.abc import Sequence
 

@@ -1,0 +1,1 @@
+"""A person in any clothes before a background that was seen, by two calibrated cameras or more."""

@@ -1,0 +1,111 @@
+"""What the wearer looks like to one camera: the colours of each region, and of what is before the background beside them.
+
+The paper learns ten colours along each limb over the first frames and then keeps them (Hecht et al. 2009, III.E). Here they are
+histograms of regions, learned slowly on, since light changes and people turn; what else stands before the background is learned
+as a class of its own.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.body.regions import Region
+from mocapd.trackers.flex.appearance_kernels import (
+    BITS,
+    N_BINS,
+    N_CLASSES,
+    classify_regions,
+    count_colours,
+    log_table,
+)
+from mocapd.types import Bytes, Singles
+
+_UNCOUNTED = 255
+_CORE = np.ones((3, 3), np.uint8)  # a drawn region's inside: its edge may be off by a pixel
+_BESIDE = np.ones((7, 7), np.uint8)  # what is farther from the drawn body than half of this is not the body
+
+
+@dataclass(frozen=True, slots=True)
+class AppearanceParams:
+    """How colours are learned, and what they decide."""
+
+    keep: float = 0.97  # share of what was counted that a frame leaves
+    share: float = 0.03  # of a pixel that a frame adds
+    new_light: float = 0.02  # share of what was counted that is left when a lamp goes on or off
+    least_share: float = 2e-5  # of a colour that a region never had
+    per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
+    longest_px: float = 40.0
+    reach_px: float = 26.0  # beyond, nothing belongs to the body
+    other_cost: float = 1.0  # of being none of the body
+    other_per_px: float = 0.5
+    other_px: float = 8.0
+    least_other_px: float = 50.0  # seen beside the body before it is a class
+
+
+class Appearance:
+    """Histograms of one camera and what is computed from them; the only state is theirs."""
+
+    def __init__(self, params: AppearanceParams) -> None:
+        self._params = params
+        self._counts = np.zeros((N_CLASSES, N_BINS), np.float32)
+        self._table = np.zeros_like(self._counts)
+        n = 1 << BITS
+        self._scratch = np.empty((n, n, n), np.float32)
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing was seen."""
+        self._counts[:] = 0.0
+        self._refresh()
+
+    @property
+    def is_learned(self) -> bool:
+        """Whether the body was seen."""
+        return bool(self._counts[1:].sum() > 0.0)
+
+    def forget_light(self) -> None:
+        """Give way quickly to colours in another light."""
+        self._counts *= self._params.new_light
+
+    def learn(self, picture: Bytes, drawn: Bytes, before: Bytes, first: bool = False) -> None:
+        """Count the colours of a picture (h,w,3) where the body is drawn (h,w), as far as it is before the background.
+
+        first: nothing was learned before, so that this picture counts in full.
+        """
+        classes = np.full(drawn.shape, _UNCOUNTED, np.uint8)
+        seen = before > 0
+        classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
+        lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
+        core = (lowest == highest) & (drawn > 0) & seen
+        classes[core] = drawn[core]
+        p = self._params
+        if not first:
+            self._counts *= p.keep
+        count_colours(picture, classes, _UNCOUNTED, 1.0 if first else p.share, self._counts)
+        self._refresh()
+
+    def classify(self, picture: Bytes, before: Bytes, distance_px: Singles) -> Bytes:
+        """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
+        p = self._params
+        ids = np.empty(before.shape, np.uint8)
+        classify_regions(
+            picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, ids,
+        )  # fmt: skip
+        return ids
+
+    def _refresh(self) -> None:
+        log_table(self._counts, self._params.least_share, self._scratch, self._table)
+
+
+def region_distances(drawn: Bytes) -> Singles:
+    """Distances (5,h,w) [px] from each pixel to where each region is drawn (h,w); large where it is not."""
+    out = np.empty((len(Region), *drawn.shape), np.float32)
+    for region in Region:
+        away = (drawn != region).astype(np.uint8)
+        if away.all():
+            out[region - 1] = 1e3
+        else:
+            out[region - 1] = cv2.distanceTransform(away, cv2.DIST_L2, cv2.DIST_MASK_3)
+    return out

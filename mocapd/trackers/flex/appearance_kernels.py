@@ -1,0 +1,108 @@
+"""Colours of the body's regions as histograms, and which region a pixel belongs to."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Singles = NDArray[np.float32]
+N_CLASSES = 6  # the five regions, and 0: none of them
+BITS = 4  # of each channel
+N_BINS = 1 << 3 * BITS
+
+
+@njit(cache=True, nogil=True, inline="always")
+def colour_bin(picture: NDArray[np.uint8], y: int, x: int) -> int:
+    """The histogram's bin of a pixel."""
+    shift = 8 - BITS
+    b, g, r = picture[y, x, 0] >> shift, picture[y, x, 1] >> shift, picture[y, x, 2] >> shift
+    return (int(b) << 2 * BITS) | (int(g) << BITS) | int(r)
+
+
+@njit(cache=True, nogil=True)
+def count_colours(
+    picture: NDArray[np.uint8],
+    classes: NDArray[np.uint8],
+    nothing: int,
+    rate: float,
+    counts: Singles,
+) -> None:
+    """Add `rate` to counts (6,4096) for each pixel of the picture (h,w,3), by its class (h,w); `nothing`: a class that is not
+    counted."""
+    h, w = classes.shape
+    for y in range(h):
+        for x in range(w):
+            k = classes[y, x]
+            if k != nothing:
+                counts[k, colour_bin(picture, y, x)] += np.float32(rate)
+
+
+@njit(cache=True, nogil=True)
+def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
+    """out (6,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
+    in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
+    n = 1 << BITS
+    for k in range(len(counts)):
+        total = np.float32(1e-3)
+        for i in range(N_BINS):
+            total += counts[k, i]
+        old, new = counts[k].reshape(n, n, n), out[k].reshape(n, n, n)
+        quarter, half = np.float32(0.25), np.float32(0.5)
+        for b in range(n):
+            for g in range(n):
+                for r in range(n):
+                    below, above = max(r - 1, 0), min(r + 1, n - 1)
+                    new[b, g, r] = quarter * (old[b, g, below] + old[b, g, above]) + half * old[b, g, r]
+        for b in range(n):
+            for g in range(n):
+                below, above = max(g - 1, 0), min(g + 1, n - 1)
+                for r in range(n):
+                    scratch[b, g, r] = quarter * (new[b, below, r] + new[b, above, r]) + half * new[b, g, r]
+        for b in range(n):
+            below, above = max(b - 1, 0), min(b + 1, n - 1)
+            for g in range(n):
+                for r in range(n):
+                    smooth = quarter * (scratch[below, g, r] + scratch[above, g, r]) + half * scratch[b, g, r]
+                    new[b, g, r] = -np.log(smooth / total + np.float32(least))
+
+
+@njit(cache=True, nogil=True)
+def classify_regions(
+    picture: NDArray[np.uint8],
+    before: NDArray[np.uint8],
+    distance_px: Singles,
+    table: Singles,
+    per_px: float,
+    longest_px: float,
+    reach_px: float,
+    other_cost: float,
+    other_per_px: float,
+    other_px: float,
+    out: NDArray[np.uint8],
+) -> None:
+    """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
+
+    before (h,w): 0 where the background shows; distance_px (5,h,w): to where each region is expected; table (6,4096)
+    of `log_table`. A region pays per_px for each pixel of distance, up to longest_px; what is no region pays other_cost, and
+    other_per_px for each pixel that it is away from the body, up to other_px: things beside it are learned there, and
+    not what hides it. Beyond reach_px from all regions nothing is.
+    """
+    h, w = before.shape
+    for y in range(h):
+        for x in range(w):
+            out[y, x] = 0
+            if before[y, x] == 0:
+                continue
+            i = colour_bin(picture, y, x)
+            nearest = np.float32(1e9)
+            best, found = np.float32(1e9), 0
+            for k in range(1, N_CLASSES):
+                d = distance_px[k - 1, y, x]
+                nearest = min(nearest, d)
+                cost = table[k, i] + np.float32(per_px) * min(d, np.float32(longest_px))
+                if cost < best:
+                    best, found = cost, k
+            if nearest > reach_px:
+                continue
+            other = table[0, i] + np.float32(other_cost) + np.float32(other_per_px) * min(nearest, np.float32(other_px))
+            if best < other:
+                out[y, x] = found

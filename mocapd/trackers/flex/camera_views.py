@@ -1,0 +1,182 @@
+"""What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
+
+from collections.abc import Mapping
+
+import cv2
+import numpy as np
+
+from mocapd.clock import seconds
+from mocapd.errors import ConfigError
+from mocapd.fit.body_drawing import Roi
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.trackers.flex.appearance import Appearance, region_distances
+from mocapd.trackers.flex.params import Params
+from mocapd.types import Bytes, FrameSet
+from mocapd.vision.foreground_kernels import UNKNOWN
+from mocapd.vision.room_background import RoomBackground
+
+
+class CameraView:
+    """One camera: its newest work picture, background and appearance."""
+
+    def __init__(self, name: str, size_px: tuple[int, int], image_scale: int, params: Params) -> None:
+        """size_px: of its frames, width and height; image_scale: by how much they are averaged down."""
+        self.name, self.size_px, self.image_scale = name, size_px, image_scale
+        w, h = self.work_size = size_px[0] // image_scale & ~1, size_px[1] // image_scale & ~1
+        self.picture = np.zeros((h, w, 3), np.uint8)
+        self.before = np.zeros((h, w), np.uint8)
+        self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be
+        self.background = RoomBackground(h, w, params.background)
+        self.appearance = Appearance(params.appearance)
+        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+
+    def reset(self) -> None:
+        """Forget background and appearance."""
+        self.background.reset()
+        self.appearance.reset()
+        self.body[:] = 0
+
+    def look(self, pixels: Bytes) -> None:
+        """Take a frame's pixels (h,w,3). Raises ConfigError when it is not of its calibration's size."""
+        h, w = pixels.shape[:2]
+        if (w, h) != self.size_px:
+            raise ConfigError(
+                f"delivers {w}x{h}, its calibration is for {self.size_px[0]}x{self.size_px[1]}",
+                f"camera {self.name!r}",
+                "set that size, or calibrate again",
+            )
+        w, h = self.work_size
+        k = self.image_scale
+        cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
+
+    def mark_body(self, drawn: Bytes | None, roi: Roi) -> None:
+        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is known."""
+        self.body[:] = 0
+        if drawn is not None:
+            x0, y0, x1, y1 = roi
+            self.body[y0:y1, x0:x1] = drawn > 0
+            cv2.dilate(self.body, self._beside, dst=self.body)
+
+    def stand_before(self) -> bool:
+        """Renew what stands before the background; whether its light jumped."""
+        relit = self.background.follow_light(self.picture, self.body)
+        if relit:
+            self.appearance.forget_light()
+        self.before = self.background.before(self.picture)
+        return relit
+
+
+class CameraViews:
+    """All cameras of a fitter; `present` is each seeing camera's own time after the frame set's [s], by its index."""
+
+    def __init__(self, fitter: Fitter, params: Params) -> None:
+        self._fitter, self._params = fitter, params
+        self.each = [
+            CameraView(d.camera.name, d.camera.size_px, d.image_scale, params) for d in fitter.drawings
+        ]
+        self._index = {view.name: i for i, view in enumerate(self.each)}
+        self.present: dict[int, float] = {}
+
+    def reset(self) -> None:
+        """Forget background and appearance."""
+        for view in self.each:
+            view.reset()
+
+    def look(self, frames: FrameSet) -> None:
+        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
+        for i, frame in mine:
+            self.each[i].look(frame.pixels)
+        self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
+
+    @property
+    def are_new(self) -> bool:
+        """Whether some background is not known yet."""
+        return any(self.each[i].background.is_new for i in self.present)
+
+    @property
+    def know_appearance(self) -> bool:
+        """Whether every present camera learned what the wearer looks like."""
+        return all(self.each[i].appearance.is_learned for i in self.present)
+
+    def mark_body(self, state: MotionState | None) -> None:
+        """Where somebody is expected, drawn into every present picture."""
+        for i, dt_s in self.present.items():
+            drawing = self._fitter.drawings[i]
+            roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
+            if state is None or roi is None:
+                self.each[i].mark_body(None, (0, 0, 0, 0))
+            else:
+                self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
+
+    def stand_before(self) -> None:
+        """Renew what stands before each background; in all cameras colours give way when the light jumps in one."""
+        for i in self.present:
+            self.each[i].stand_before()
+
+    def classified(self, state: MotionState) -> list[View]:
+        """Every present picture by the regions of the body as predicted, which is drawn last into each."""
+        p = self._params
+        views = []
+        for i, dt_s in self.present.items():
+            drawing, camera = self._fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, p.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
+            drawn = drawing.render(state, dt_s, roi)
+            ids = camera.appearance.classify(
+                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]), before, region_distances(drawn)
+            )
+            soft = int(255 * p.soft)
+            views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
+        return views
+
+    def learn_appearance(self, state: MotionState, first: bool = False) -> None:
+        """Learn the colours of a body that agrees with the pictures; first: nothing was learned before."""
+        for i, dt_s in self.present.items():
+            drawing, camera = self._fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, self._params.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            camera.appearance.learn(
+                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+                drawing.render(state, dt_s, roi),
+                np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
+                first,
+            )
+
+    def learn_background(self) -> None:
+        """Follow each background where nobody is marked."""
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.learn(camera.picture, camera.body)
+
+    def seed_background(self) -> None:
+        """Take what is beside the marked body for the background."""
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.seed(camera.picture, camera.body)
+
+    def evidence(self, views: list[View]) -> tuple[Mapping[str, Bytes], Mapping[str, Roi]]:
+        """What was classified, and where in the frames, by camera."""
+        ids = {self.each[v.index].name: v.ids for v in views}
+        where = {}
+        for v in views:
+            k = self.each[v.index].image_scale
+            x0, y0, x1, y1 = v.roi
+            where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
+        return ids, where
+
+    def unknown_share(self, views: list[View]) -> float:
+        """Of the classified pixels, how many have no known background behind."""
+        unknown = seen = 0
+        for v in views:
+            x0, y0, x1, y1 = v.roi
+            before = self.each[v.index].before[y0:y1, x0:x1]
+            seen += int(np.count_nonzero(v.ids))
+            unknown += int(np.count_nonzero((v.ids > 0) & (before == UNKNOWN)))
+        return unknown / max(seen, 1)

@@ -1,0 +1,66 @@
+"""The numbers of this tracker's own decisions, and those of its parts, with units and reasons."""
+
+from dataclasses import dataclass, field
+
+from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.terms.distance_measuring import MeasuringParams
+from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.trackers.flex.appearance import AppearanceParams
+from mocapd.vision.room_background import BackgroundParams
+
+
+@dataclass(frozen=True, slots=True)
+class StartParams:
+    """When somebody before the background is taken for a person, and how the first pose is found."""
+
+    least_px: int = 400  # of a blob, in work pixels
+    least_height_px: int = 50
+    nearest_m: float = 1.2
+    farthest_m: float = 6.0
+    step_m: float = 0.05
+    blobs: int = 3  # in each picture, the largest
+    arms_rad: tuple[float, ...] = (0.0, -0.7, -1.2)  # how far below the T-pose both are tried
+    iterations: int = 8
+    loose_s: float = 0.4  # how far the fit may move from where it begins, as a time of motion
+    accept_explained: float = 0.75  # of silhouette and body together
+    pause_s: float = 0.2  # between attempts that failed
+
+
+@dataclass(frozen=True, slots=True)
+class Params:
+    """Parameters of the tracker without a shirt."""
+
+    fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
+    motion: MotionPriorParams = field(default_factory=MotionPriorParams)
+    # colours that are learned confirm less than the shirt's; hands are of the forearm's region
+    limbs: LimbSearchParams = field(
+        default_factory=lambda: LimbSearchParams(uncertain_arm=0.7, hand_px=0.0, hand_cost=0.0)
+    )
+    background: BackgroundParams = field(default_factory=BackgroundParams)
+    appearance: AppearanceParams = field(default_factory=AppearanceParams)
+    start: StartParams = field(default_factory=StartParams)
+    floor: FloorParams = field(default_factory=FloorParams)
+    distances: MeasuringParams = field(default_factory=MeasuringParams)
+
+    margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
+    beside_px: int = 15  # about the body nothing is learned as background
+    soft: float = 60.0 / 255.0  # weight of a drawn pixel where something else stands before the background
+
+    # motion from frame to frame
+    prediction_damping: float = 0.6
+    fastest_rad_s: float = 15.0
+    fastest_m_s: float = 4.0
+    arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
+    hidden_arm_glide: float = 0.7  # share of its velocity that such an arm keeps from frame to frame
+
+    blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
+
+    # decisions
+    live_explained: float = 0.45  # share of drawn and seen pixels that agree, for the pose to be believed
+    least_body_px: int = 300  # confirmed work px, all cameras together
+    learn_explained: float = 0.6  # of a frame that teaches colours
+
+    # with the upper body known from another tracker
+    guided_iterations: int = 3
+    guided_sd_m: float = 0.01
+    guided_sd_rad: float = 0.03

@@ -1,0 +1,142 @@
+"""The first pose: a silhouette before the known background, as somebody who faces the cameras and stands on the floor."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import centre, project, rays
+from mocapd.trackers.flex.params import StartParams
+from mocapd.types import Bytes, Camera, Floats
+from mocapd.vision.foreground_kernels import BEFORE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blob:
+    """A connected piece before the background of one camera: mask (h,w) uint8, its box [work px], its middle column."""
+
+    mask: Bytes
+    top: float
+    bottom: float
+    middle_x: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """Somebody of the known height at a place (3,) on the floor, as the blobs of some cameras, by index, show; error [work px^2]."""
+
+    place_m: Floats
+    blobs: Mapping[int, Blob]
+    error: float
+
+
+def blobs_of(before: Bytes, params: StartParams) -> list[Blob]:
+    """The largest pieces of a picture (h,w) that may be people, largest first."""
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats((before == BEFORE).astype(np.uint8))
+    order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
+    out = []
+    for k in order:
+        top, height = int(stats[k, cv2.CC_STAT_TOP]), int(stats[k, cv2.CC_STAT_HEIGHT])
+        if stats[k, cv2.CC_STAT_AREA] >= params.least_px and height >= params.least_height_px:
+            mask = (numbered == k).astype(np.uint8)
+            out.append(Blob(mask, top, top + height, float(middles[k, 0])))
+    return out
+
+
+def standing(
+    blobs: Mapping[int, Sequence[Blob]],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    stature_m: float,
+    params: StartParams,
+) -> list[Standing]:
+    """Where people of this height may stand, best first: for each blob of the first camera one, joined with the blobs of the
+    others that agree most."""
+    if not blobs or any(not one for one in blobs.values()):
+        return []
+    first = next(iter(blobs))
+    found = [
+        best
+        for blob in blobs[first]
+        if (best := _best_place(first, blob, blobs, cameras, image_scales, stature_m, params)) is not None
+    ]
+    return sorted(found, key=lambda one: one.error)
+
+
+def _best_place(
+    first: int,
+    blob: Blob,
+    blobs: Mapping[int, Sequence[Blob]],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    stature_m: float,
+    params: StartParams,
+) -> Standing | None:
+    camera, scale = cameras[first], image_scales[first]
+    pixel = np.array([(blob.middle_x + 0.5) * scale - 0.5, camera.size_px[1] / 2.0])
+    ray = rays(camera, pixel)[1].reshape(3)
+    ahead = np.array([ray[0], 0.0, ray[2]])
+    ahead /= np.linalg.norm(ahead)
+    eye = centre(camera) * np.array([1.0, 0.0, 1.0])
+    best: Standing | None = None
+    for away_m in np.arange(params.nearest_m, params.farthest_m, params.step_m):
+        place = eye + away_m * ahead
+        error, mine = 0.0, {}
+        for i, some in blobs.items():
+            height_px = cameras[i].size_px[1] / image_scales[i]
+            top, foot = (project(cameras[i], place + np.array([[0.0, stature_m, 0.0], [0.0, 0.0, 0.0]])) + 0.5) / image_scales[i] - 0.5  # fmt: skip
+            one = blob if i == first else min(some, key=lambda b: _misfit(b, top, foot, height_px))
+            mine[i] = one
+            error += _misfit(one, top, foot, height_px)
+        if best is None or error < best.error:
+            best = Standing(place, mine, error)
+    return best
+
+
+def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
+    """Of a person between top (2,) and foot (2,) [work px] as this blob; feet below the picture are not missed. The head is
+    sharper than the shoes with their shadow."""
+    across = blob.middle_x - 0.5 * (top[0] + foot[0])
+    below = blob.bottom - min(float(foot[1]), height_px)
+    return float((blob.top - top[1]) ** 2 + across**2 + 0.5 * below**2)
+
+
+def first_fit(
+    fitter: Fitter,
+    who: Standing,
+    offsets_s: Mapping[int, float],
+    factors: Floats,
+    information: Floats,
+    terms: Sequence[PoseTerm],
+    params: StartParams,
+) -> Fit:
+    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette.
+
+    offsets_s: each camera's own time after the frame set's, by index.
+    """
+    views = [
+        View(i, (0, 0, blob.mask.shape[1] & ~1, blob.mask.shape[0] & ~1), blob.mask, np.full(blob.mask.shape, 255, np.uint8), offsets_s[i])
+        for i, blob in who.blobs.items()
+    ]  # fmt: skip
+    model = fitter.model
+    eye = np.mean([centre(fitter.drawings[i].camera) for i in who.blobs], axis=0)
+    to_cameras = eye - who.place_m
+    yaw = float(np.arctan2(to_cameras[0], to_cameras[2]))
+    rest = fitter.shaper(factors).rest
+    fits = []
+    for arm in params.arms_rad:
+        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+        local[0] = rotations.exp(np.array([0.0, yaw, 0.0]))
+        for side, mirror in (("left", 1.0), ("right", -1.0)):
+            local[INDEX[side + "UpperArm"]] = rotations.exp(np.array([0.0, 0.0, mirror * arm]))
+        state = MotionState(rest[0] + who.place_m, local, np.zeros(model.n_pose), factors, information)
+        fits.append(
+            fitter.fit(state, views, params.loose_s, params.iterations, learn_shape=False, terms=terms)
+        )
+    return min(fits, key=lambda fit: fit.cost)

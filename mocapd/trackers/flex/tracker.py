@@ -1,0 +1,290 @@
+"""The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import SIDES, full_body
+from mocapd.body.regions import as_silhouette, by_region
+from mocapd.body.shape import BodyShape
+from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.clock import nanoseconds, seconds
+from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
+from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.motion_prior import predicted_information
+from mocapd.fit.motion_state import MotionState, known_of, moved, step_between
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.trackers.blending import Residual, blended, later, residual_of
+from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.confidence import joint_confidence
+from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
+from mocapd.trackers.texture_distance import texture_distances
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.types import BodyState, Floats, FrameSet, Pose, Rig, Tracking
+
+_TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
+_TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Memory:
+    """What is carried from frame to frame while somebody is tracked."""
+
+    t_ns: int
+    state: MotionState
+    fit: Fit
+    cameras: tuple[str, ...]
+    left: Residual | None = None  # of what was shown wrongly before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Wearer:
+    """The proportions as handed in, in the tracker's space."""
+
+    factors: Floats
+    information: Floats
+
+
+class FlexTracker:
+    """Two calibrated cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
+
+    name = "flex"
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        params: Params | None = None,
+        tracking: TrackingStateParams | None = None,
+    ) -> None:
+        self.params = p = params if params is not None else Params()
+        self.rig = rig
+        body = build_model(stature_m, full_body())
+        smaller = image_scales(rig.cameras, p.fit.work_width_px)
+        self._fitter = Fitter(by_region(body), rig.cameras, smaller, p.fit)
+        self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit)
+        self._model = self._fitter.model
+        self._floor = FloorTerm(self._model, p.floor)
+        self._arms = ArmSearch(self._fitter, p.limbs)
+        self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
+        self._cameras = CameraViews(self._fitter, p)
+        self._tracking = TrackingState(tracking)
+        self.probe: Probe = unprobed
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""
+        self._cameras.reset()
+        self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
+        self._known: _Memory | None = None
+        self._near = near
+        self._next_start_ns = 0
+        self._turn = 0
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
+        self._turn += 1
+        require_stature(shape, self._model.stature_m)
+        wearer = _Wearer(*known_of(shape, self._model.space))
+        self._cameras.look(frames)
+        self.probe("picture")
+        known = self._known
+        if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
+            known = None  # too old to predict from
+        views: list[View] = []
+        if self._cameras.present:
+            if known is not None:
+                known, views = self._follow(_with(known, wearer), frames)
+            elif self._near is not None:
+                known, views = self._take_over(self._near, wearer, frames)
+                self._near = None
+            else:
+                known, views = self._start(wearer, frames)
+        evidence = known is not None and known.t_ns == frames.t_ns
+        tracking = self._tracking.step(frames.t_ns, evidence)
+        if tracking is Tracking.LOST and not evidence:
+            known = None
+        self._known = known
+        self._learn(known if evidence else None, nobody=known is None)
+        self.probe("learn")
+        return self._track(tracking, frames, views, shape)
+
+    # --- stages ---
+
+    def _follow(self, known: _Memory, frames: FrameSet) -> tuple[_Memory, list[View]]:
+        """One frame of tracking; a frame without evidence leaves `known` at its old time."""
+        p, fitter, last = self.params, self._fitter, known.state
+        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
+        root, local = moved(self._model, last, dt_s, p.prediction_damping)
+        predicted = replace(last, root_m=root, local_xyzw=local)
+        self._cameras.mark_body(predicted)
+        self._cameras.stand_before()
+        self.probe("background")
+        views = self._cameras.classified(predicted)
+        self.probe("classify")
+        if not views:
+            return known, views
+        confirmed = known.fit.confirmed_arms
+        motion = predicted_information(
+            known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
+            [(self._arm_columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
+        )  # fmt: skip
+        terms = self._terms(predicted, views, frames)
+        self.probe("distances")
+        fit = fitter.fit(
+            predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms,
+        )  # fmt: skip
+        self.probe("fit")
+        fit, switched = self._arms.improve(fit, views, dt_s, self._turn, False, terms)
+        self.probe("arms")
+        if not self._believed(fit):
+            return known, views
+        state = fit.state
+        velocity = self._velocity(fit, last, dt_s, switched)
+        left = later(known.left) if known.left is not None else None
+        if switched:
+            left = residual_of(fitter, predicted, state, known.left, p.blend_m)
+        return _Memory(
+            frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), left
+        ), views
+
+    def _terms(
+        self, predicted: MotionState, views: Sequence[View], frames: FrameSet
+    ) -> tuple[PoseTerm, ...]:
+        """What holds the pose beside the regions: the floor, and distances where two cameras look from one side."""
+        measured = texture_distances(
+            self._fitter, predicted, views, frames, self._turn, self.params.distances
+        )
+        return (self._floor, *measured)
+
+    def _velocity(
+        self, fit: Fit, last: MotionState, dt_s: float, switched: Sequence[str]
+    ) -> Floats:
+        """Of the pose (n_pose,) per second, from the step since the last one."""
+        p, state = self.params, fit.state
+        before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
+        velocity = step_between(self._model, now, before) / dt_s
+        velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
+        velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
+        for side in SIDES:
+            # what is hardly seen is hardly known to move; what was changed over jumped
+            trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
+            columns = self._arm_columns[side]
+            glide = p.hidden_arm_glide * last.velocity[columns]
+            velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
+            if side in switched:
+                velocity[columns] = 0.0
+        return velocity
+
+    def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
+        """Look for somebody who stands before the background."""
+        p, cameras = self.params, self._cameras
+        cameras.mark_body(None)
+        if cameras.are_new or frames.t_ns < self._next_start_ns:
+            return None, []
+        self._next_start_ns = frames.t_ns + nanoseconds(p.start.pause_s)
+        cameras.stand_before()
+        blobs = {i: blobs_of(cameras.each[i].before, p.start) for i in cameras.present}
+        smaller = [one.image_scale for one in cameras.each]
+        people = standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p.start)
+        self.probe("look")
+        for who in people[:1]:
+            fit = first_fit(
+                self._silhouettes, who, cameras.present, wearer.factors, wearer.information, (self._floor,), p.start,
+            )  # fmt: skip
+            self.probe("start")
+            if fit.explained >= p.start.accept_explained:
+                names = tuple(cameras.each[i].name for i in who.blobs)
+                cameras.learn_appearance(fit.state, first=True)
+                return _Memory(frames.t_ns, fit.state, fit, names), []
+        return None, []
+
+    def _take_over(
+        self, near: BodyState, wearer: _Wearer, frames: FrameSet
+    ) -> tuple[_Memory | None, list[View]]:
+        """Begin from another tracker's body, if the pictures confirm it: what is beside it is the background, and its regions
+        differ from that."""
+        pose = near.pose
+        if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
+            return None, []
+        local = local_from_global(standard_skeleton(self._model.stature_m), pose.quats_xyzw)
+        still = np.zeros(self._model.n_pose)
+        there = MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
+        self._cameras.mark_body(there)
+        self._cameras.seed_background()
+        self._cameras.stand_before()
+        self._cameras.learn_appearance(there, first=True)
+        views = self._cameras.classified(there)
+        if not views:
+            return None, []
+        fit = self._fitter.fit(
+            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False, terms=self._terms(there, views, frames),
+        )  # fmt: skip
+        if not self._believed(fit):
+            return None, []
+        return _Memory(frames.t_ns, fit.state, fit, self._names(views)), views
+
+    def _believed(self, fit: Fit) -> bool:
+        """Whether enough of the body agrees with the pictures."""
+        p = self.params
+        # every second pixel was counted
+        return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
+
+    def _learn(self, seen: _Memory | None, nobody: bool) -> None:
+        """Learn the look of a body that agrees well, and the background beside it, or everywhere when nobody is known."""
+        if seen is not None and seen.fit.explained >= self.params.learn_explained:
+            self._cameras.learn_appearance(seen.state)
+        if nobody:
+            self._cameras.mark_body(None)
+        self._cameras.learn_background()
+
+    def _names(self, views: Sequence[View]) -> tuple[str, ...]:
+        return tuple(self._cameras.each[v.index].name for v in views)
+
+    # --- result ---
+
+    def _track(
+        self, tracking: Tracking, frames: FrameSet, views: list[View], shape: BodyShape
+    ) -> Track:
+        known = self._known
+        if tracking is Tracking.LOST or known is None:
+            return Track(lost_body(frames.t_ns, self.name), shape)
+        state, model = known.state, self._model
+        away_s = seconds(frames.t_ns - known.t_ns)
+        if away_s > 0.0:  # coasting: it moves on for a moment, then stays
+            root, local = moved(model, state, min(away_s, 0.1), self.params.prediction_damping)
+            state = replace(state, root_m=root, local_xyzw=local)
+        if known.left is not None:
+            root, local = blended(state.root_m, state.local_xyzw, known.left)
+            state = replace(state, root_m=root, local_xyzw=local)
+        joints, globals_ = self._fitter.joints(state)
+        covariance = pose_covariance(model, known.fit.H)
+        uncertainty_m = joint_uncertainty_m(model, joints, globals_, covariance)
+        evidence, roi_px = self._cameras.evidence(views)
+        body = BodyState(
+            t_ns=frames.t_ns,
+            tracking=tracking,
+            tracker=self.name,
+            pose=Pose(joints[0], np.where(globals_[:, 3:] < 0, -globals_, globals_)),
+            joints_m=joints,
+            confidence=joint_confidence(known.fit, len(known.cameras), uncertainty_m, away_s),
+            cameras=known.cameras if away_s == 0.0 else (),
+            uncertainty_m=grown(uncertainty_m, away_s),
+        )
+        return Track(body, shape, known.fit.explained * faded(away_s), evidence, roi_px)
+
+
+def _with(known: _Memory, wearer: _Wearer) -> _Memory:
+    """What is carried on, of a wearer as known to whoever steps the tracker."""
+    return replace(
+        known,
+        state=replace(known.state, factors=wearer.factors, information=wearer.information),
+    )
