@@ -1,6 +1,6 @@
 """What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import cv2
 import numpy as np
@@ -115,6 +115,12 @@ class CameraViews:
         for i in self.present:
             self.each[i].stand_before()
 
+    def take_uncovered(self) -> None:
+        """Take for background what stands before it by mistake; see `RoomBackground`."""
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.take_uncovered(camera.picture, camera.before)
+
     def classified(self, state: MotionState) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each."""
         p = self._params
@@ -134,20 +140,29 @@ class CameraViews:
             views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
         return views
 
-    def learn_appearance(self, state: MotionState, first: bool = False) -> None:
-        """Learn the colours of a body that agrees with the pictures; first: nothing was learned before."""
+    def learn_first_appearance(self, state: MotionState) -> None:
+        """Learn the colours of a body of which none is known yet."""
         for i, dt_s in self.present.items():
-            drawing, camera = self._fitter.drawings[i], self.each[i]
-            roi = drawing.region(state, dt_s, self._params.margin_px)
-            if roi is None:
-                continue
-            x0, y0, x1, y1 = roi
-            camera.appearance.learn(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
-                drawing.render(state, dt_s, roi),
-                np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
-                first,
-            )
+            roi = self._fitter.drawings[i].region(state, dt_s, self._params.margin_px)
+            if roi is not None:
+                self._learn(i, state, dt_s, roi, None)
+
+    def learn_appearance(self, state: MotionState, views: Sequence[View]) -> None:
+        """Learn the colours of a body that agrees with what was classified."""
+        for view in views:
+            self._learn(view.index, state, view.dt_s, view.roi, view.ids)
+
+    def _learn(
+        self, index: int, state: MotionState, dt_s: float, roi: Roi, ids: Bytes | None
+    ) -> None:
+        camera = self.each[index]
+        x0, y0, x1, y1 = roi
+        camera.appearance.learn(
+            np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+            self._fitter.drawings[index].render(state, dt_s, roi),
+            np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
+            ids,
+        )
 
     def learn_background(self) -> None:
         """Follow each background where nobody is marked."""

@@ -14,7 +14,7 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, rays
 from mocapd.trackers.flex.params import StartParams
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.foreground_kernels import BEFORE
+from mocapd.vision.foreground_kernels import BEFORE, SHADOW
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,9 +36,10 @@ class Standing:
     error: float
 
 
-def blobs_of(before: Bytes, params: StartParams) -> list[Blob]:
-    """The largest pieces of a picture (h,w) that may be people, largest first."""
-    n, numbered, stats, middles = cv2.connectedComponentsWithStats((before == BEFORE).astype(np.uint8))
+def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
+    """The largest pieces of a picture (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
+    mask = (before == BEFORE) | (before == SHADOW) if shadows else before == BEFORE
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
     for k in order:

@@ -113,7 +113,7 @@ class FlexTracker:
         if tracking is Tracking.LOST and not evidence:
             known = None
         self._known = known
-        self._learn(known if evidence else None, nobody=known is None)
+        self._learn(known if evidence else None, views, nobody=known is None)
         self.probe("learn")
         return self._track(tracking, frames, views, shape)
 
@@ -192,20 +192,31 @@ class FlexTracker:
             return None, []
         self._next_start_ns = frames.t_ns + nanoseconds(p.start.pause_s)
         cameras.stand_before()
-        blobs = {i: blobs_of(cameras.each[i].before, p.start) for i in cameras.present}
+        cameras.take_uncovered()
+        fits = [
+            one for shadows in (False, True) if (one := self._standing(wearer, shadows)) is not None
+        ]
+        self.probe("start")
+        if not fits:
+            return None, []
+        fit, names = max(fits, key=lambda one: one[0].explained)
+        if fit.explained < p.start.accept_explained:
+            return None, []
+        cameras.learn_first_appearance(fit.state)
+        return _Memory(frames.t_ns, fit.state, fit, names), []
+
+    def _standing(self, wearer: _Wearer, shadows: bool) -> tuple[Fit, tuple[str, ...]] | None:
+        """The likeliest person before the background, and the cameras that show it; shadows: with what may be one."""
+        p, cameras = self.params.start, self._cameras
+        blobs = {i: blobs_of(cameras.each[i].before, shadows, p) for i in cameras.present}
         smaller = [one.image_scale for one in cameras.each]
-        people = standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p.start)
-        self.probe("look")
-        for who in people[:1]:
-            fit = first_fit(
-                self._silhouettes, who, cameras.present, wearer.factors, wearer.information, (self._floor,), p.start,
-            )  # fmt: skip
-            self.probe("start")
-            if fit.explained >= p.start.accept_explained:
-                names = tuple(cameras.each[i].name for i in who.blobs)
-                cameras.learn_appearance(fit.state, first=True)
-                return _Memory(frames.t_ns, fit.state, fit, names), []
-        return None, []
+        people = standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p)
+        if not people:
+            return None
+        fit = first_fit(
+            self._silhouettes, people[0], cameras.present, wearer.factors, wearer.information, (self._floor,), p,
+        )  # fmt: skip
+        return fit, tuple(cameras.each[i].name for i in people[0].blobs)
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
@@ -221,7 +232,7 @@ class FlexTracker:
         self._cameras.mark_body(there)
         self._cameras.seed_background()
         self._cameras.stand_before()
-        self._cameras.learn_appearance(there, first=True)
+        self._cameras.learn_first_appearance(there)
         views = self._cameras.classified(there)
         if not views:
             return None, []
@@ -238,10 +249,10 @@ class FlexTracker:
         # every second pixel was counted
         return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
 
-    def _learn(self, seen: _Memory | None, nobody: bool) -> None:
+    def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool) -> None:
         """Learn the look of a body that agrees well, and the background beside it, or everywhere when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
-            self._cameras.learn_appearance(seen.state)
+            self._cameras.learn_appearance(seen.state, views)
         if nobody:
             self._cameras.mark_body(None)
         self._cameras.learn_background()
