@@ -29,7 +29,7 @@ class CameraView:
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
-        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
 
     def reset(self) -> None:
         """Forget background and appearance."""
@@ -56,7 +56,7 @@ class CameraView:
         if drawn is not None:
             x0, y0, x1, y1 = roi
             self.body[y0:y1, x0:x1] = drawn > 0
-            cv2.dilate(self.body, self._beside, dst=self.body)
+            cv2.dilate(self.body, self.beside, dst=self.body)
 
     def stand_before(self) -> bool:
         """Renew what stands before the background; whether its light jumped."""
@@ -164,6 +164,13 @@ class CameraViews:
             ids,
         )
 
+    def mark_unknown(self) -> None:
+        """What stands before a known background may be somebody."""
+        for i in self.present:
+            camera = self.each[i]
+            if not camera.background.is_new:
+                cv2.dilate(((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8), camera.beside, dst=camera.body)
+
     def learn_background(self) -> None:
         """Follow each background where nobody is marked."""
         for i in self.present:
@@ -185,13 +192,3 @@ class CameraViews:
             x0, y0, x1, y1 = v.roi
             where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
         return ids, where
-
-    def unknown_share(self, views: list[View]) -> float:
-        """Of the classified pixels, how many have no known background behind."""
-        unknown = seen = 0
-        for v in views:
-            x0, y0, x1, y1 = v.roi
-            before = self.each[v.index].before[y0:y1, x0:x1]
-            seen += int(np.count_nonzero(v.ids))
-            unknown += int(np.count_nonzero((v.ids > 0) & (before == UNKNOWN)))
-        return unknown / max(seen, 1)
