@@ -61,11 +61,12 @@ class RoomBackground:
         self._age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
-    def take_uncovered(self, picture: Bytes, before: Bytes) -> None:
+    def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes) -> None:
         """Take for background what somebody uncovered who was learned with it: pieces of `before` (h,w) along whose outline
         the background has the stronger edges, and not the picture (h,w,3) (Cucchiara et al. 2003 call them ghosts). They
-        become BACKGROUND in `before`."""
-        n, numbered, stats, _ = cv2.connectedComponentsWithStats((before > 0).astype(np.uint8))
+        become BACKGROUND in `before`. What lies within `body` (h,w) is not looked at."""
+        asked = ((before > 0) & (before != UNKNOWN) & (body == 0)).astype(np.uint8)
+        n, numbered, stats, _ = cv2.connectedComponentsWithStats(asked)
         if n < 2:
             return
         now, known = _edges(picture), _edges(self._mean.astype(np.uint8))

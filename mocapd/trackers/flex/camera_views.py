@@ -119,7 +119,7 @@ class CameraViews:
         """Take for background what stands before it by mistake; see `RoomBackground`."""
         for i in self.present:
             camera = self.each[i]
-            camera.background.take_uncovered(camera.picture, camera.before)
+            camera.background.take_uncovered(camera.picture, camera.before, camera.body)
 
     def classified(self, state: MotionState) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each."""
