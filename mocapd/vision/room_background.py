@@ -101,17 +101,18 @@ class RoomBackground:
         self._looks += 1
 
     def before(self, picture: Bytes) -> Bytes:
-        """(h,w) of a picture (h,w,3): BEFORE, SHADOW, UNKNOWN or BACKGROUND, without specks and narrow gaps."""
+        """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps."""
         p, out = self._params, self._before
         stands_before(
             picture, self._mean, self._age, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, out
         )
         kept = out.copy()
-        one = ((out == BEFORE) | (out == SHADOW)).astype(np.uint8)
+        one = ((out == BEFORE) | (out >= SHADOW)).astype(np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK), np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
         one[kept == UNKNOWN] = UNKNOWN
-        one[(one == BEFORE) & (kept == SHADOW)] = SHADOW
+        shaded = (one == BEFORE) & (kept >= SHADOW)
+        one[shaded] = kept[shaded]
         return one
 
 

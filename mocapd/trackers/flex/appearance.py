@@ -41,7 +41,9 @@ class AppearanceParams:
     other_cost: float = 1.0  # of being none of the body
     other_per_px: float = 0.5
     other_px: float = 8.0
-    shadow_cost: float = 4.0  # of what may be a shadow, to be one
+    shadow_costs: tuple[float, float] = (1.5, 4.0)  # of a sure and a likely shadow, to be one
+    shadow_per_px: float = 0.75
+    shadow_px: float = 4.0  # from the expected body: nearer, cloth is likelier
     least_other_px: float = 50.0  # seen beside the body before it is a class
 
 
@@ -83,7 +85,7 @@ class Appearance:
         classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
         lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
         core = (lowest == highest) & (drawn > 0) & seen
-        core &= before != SHADOW if ids is None else ids == drawn
+        core &= before < SHADOW if ids is None else ids == drawn
         classes[core] = drawn[core]
         p = self._params
         if ids is not None:
@@ -97,7 +99,7 @@ class Appearance:
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_cost, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, ids,
         )  # fmt: skip
         return ids
 

@@ -44,7 +44,7 @@ class Standing:
 
 def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
     """The largest pieces of a picture (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
-    mask = (before == BEFORE) | (before == SHADOW) if shadows else before == BEFORE
+    mask = (before == BEFORE) | (before >= SHADOW) if shadows else before == BEFORE
     n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
