@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.types import Bytes, Singles
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, SHADOW, UNKNOWN, stands_before
@@ -80,15 +80,17 @@ class RoomBackground:
                 self._mean[there] = picture[there]
                 before[there] = BACKGROUND
 
-    def follow_light(self, picture: Bytes, body: Bytes) -> bool:
-        """Whether a lamp went on or off: then the background is taken in its new light. body (h,w): not 0 where
-        somebody is expected."""
+    def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
+        """By how much each channel (3,) became brighter when a lamp went on or off, and the background is taken in its new light;
+        None while the light stays. body (h,w): not 0 where somebody is expected."""
         p = self._params
         share = changed(picture, body, self._mean, self._age, p.lamp_tolerance)
         if share <= p.lamp_share:
-            return False
+            return None
+        seen = (body == 0) & (self._age >= p.known_looks)
+        before, now = self._mean[seen].mean(axis=0), picture[seen].mean(axis=0)
         relight_background(picture, body, self._mean, self._age)
-        return True
+        return np.asarray(np.clip((now + 1.0) / (before + 1.0), 0.1, 10.0), np.float64)
 
     def learn(self, picture: Bytes, body: Bytes) -> None:
         """Follow the background where `body` (h,w) is 0."""

@@ -19,7 +19,7 @@ from mocapd.trackers.flex.appearance_kernels import (
     count_colours,
     log_table,
 )
-from mocapd.types import Bytes, Singles
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW
 
 _UNCOUNTED = 255
@@ -33,7 +33,7 @@ class AppearanceParams:
 
     keep: float = 0.97  # share of what was counted that a frame leaves
     share: float = 0.03  # of a pixel that a frame adds
-    new_light: float = 0.02  # share of what was counted that is left when a lamp goes on or off
+    new_light: float = 0.3  # share of what was counted that is left when a lamp goes on or off
     least_share: float = 2e-5  # of a colour that a region never had
     per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
     longest_px: float = 40.0
@@ -68,9 +68,18 @@ class Appearance:
         """Whether the body was seen."""
         return bool(self._counts[1:].sum() > 0.0)
 
-    def forget_light(self) -> None:
-        """Give way quickly to colours in another light."""
-        self._counts *= self._params.new_light
+    def relight(self, gain: Floats) -> None:
+        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way quickly to what is
+        seen in it."""
+        n = 1 << BITS
+        middles = np.arange(n) + 0.5
+        to = [np.clip(middles * channel, 0, n - 1).astype(np.int64) for channel in gain]
+        there = (to[0][:, None, None] << 2 * BITS) | (to[1][:, None] << BITS) | to[2]
+        old = self._counts.copy()
+        self._counts[:] = 0.0
+        for counted, before in zip(self._counts, old, strict=True):
+            np.add.at(counted, there.ravel(), self._params.new_light * before)
+        self._refresh()
 
     def learn(
         self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None
