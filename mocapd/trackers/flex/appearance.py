@@ -102,13 +102,15 @@ class Appearance:
         count_colours(picture, classes, _UNCOUNTED, 1.0 if ids is None else p.share, self._counts)
         self._refresh()
 
-    def classify(self, picture: Bytes, before: Bytes, distance_px: Singles) -> Bytes:
+    def classify(
+        self, picture: Bytes, before: Bytes, distance_px: Singles, on_floor: Bytes
+    ) -> Bytes:
         """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
         p = self._params
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
         )  # fmt: skip
         return ids
 

@@ -11,9 +11,10 @@ from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.trackers.flex.appearance import Appearance, region_distances
+from mocapd.trackers.flex.floor_view import FloorView
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
-from mocapd.vision.foreground_kernels import UNKNOWN
+from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN
 from mocapd.vision.room_background import RoomBackground
 
 
@@ -77,6 +78,7 @@ class CameraViews:
             CameraView(d.camera.name, d.camera.size_px, d.image_scale, params) for d in fitter.drawings
         ]
         self._index = {view.name: i for i, view in enumerate(self.each)}
+        self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
         self.present: dict[int, float] = {}
 
     def reset(self) -> None:
@@ -135,10 +137,26 @@ class CameraViews:
             before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
             drawn = drawing.render(state, dt_s, roi)
             ids = camera.appearance.classify(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]), before, region_distances(drawn)
+                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+                before,
+                region_distances(drawn),
+                self._floors[i].near(state.root_m, roi),
             )
             soft = int(255 * p.soft)
             views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
+        return views
+
+    def silhouettes(self, state: MotionState) -> list[View]:
+        """Every present picture by what stands before the background where somebody is expected, of whom no colour is known."""
+        views = []
+        for i, dt_s in self.present.items():
+            drawing, camera = self._fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, self._params.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            ids = ((camera.before == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
+            views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dt_s))
         return views
 
     def learn_first_appearance(self, state: MotionState) -> None:
