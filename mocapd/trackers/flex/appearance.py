@@ -5,6 +5,7 @@ histograms of regions, learned slowly on, since light changes and people turn; w
 as a class of its own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -79,6 +80,24 @@ class Appearance:
         self._counts[:] = 0.0
         for counted, before in zip(self._counts, old, strict=True):
             np.add.at(counted, there.ravel(), self._params.new_light * before)
+        self._refresh()
+
+    def overlap(self, one: int, other: int) -> float:
+        """0..1: how much of two regions' colours is the same; 1 where one of them was not seen."""
+        shares = []
+        for k in (one, other):
+            share = np.exp(-self._table[k]) - self._params.least_share
+            if self._counts[k].sum() <= 0.0:
+                return 1.0
+            shares.append(share / share.sum())
+        return float(np.minimum(*shares).sum())
+
+    def join(self, look: Sequence[int]) -> None:
+        """Count what was seen of each region with the region of its look, which is learned as one from now on."""
+        for k, other in enumerate(look):
+            if other != k:
+                self._counts[other] += self._counts[k]
+                self._counts[k] = 0.0
         self._refresh()
 
     def learn(

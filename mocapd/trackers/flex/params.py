@@ -69,7 +69,8 @@ class Params:
     # decisions
     live_explained: float = 0.45  # share of drawn and seen pixels that agree, for the pose to be believed
     least_body_px: int = 300  # confirmed work px, all cameras together
-    learn_explained: float = 0.6  # of a frame that teaches colours
+    learn_explained: float = 0.45  # of a frame that teaches colours
+    alike: float = 0.55  # share of two regions' colours that is the same, above which they are one
 
     # with the upper body known from another tracker
     guided_iterations: int = 3

@@ -7,14 +7,13 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
-from mocapd.body.regions import Region, as_silhouette, by_region
+from mocapd.body.regions import Region, as_silhouette
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
-from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, known_of, moved, step_between
 from mocapd.fit.pose_prior import unusual_legs
@@ -28,6 +27,7 @@ from mocapd.trackers.blending import Residual, blended, later, residual_of
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
 from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
+from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
 from mocapd.trackers.texture_distance import texture_distances
@@ -75,12 +75,12 @@ class FlexTracker:
         self.rig = rig
         body = build_model(stature_m, full_body())
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self._fitter = Fitter(by_region(body), rig.cameras, smaller, p.fit)
+        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs)
+        self._fitter, self._arms = self._fitters.of(ALL_DIFFER)
         self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit)
         self._model = self._fitter.model
         self._skeleton = standard_skeleton(stature_m)
         self._floor = FloorTerm(self._model, p.floor)
-        self._arms = ArmSearch(self._fitter, p.limbs)
         self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
         self._cameras = CameraViews(self._fitter, p)
         self._tracking = TrackingState(tracking)
@@ -90,6 +90,7 @@ class FlexTracker:
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""
         self._cameras.reset()
+        self._dress(ALL_DIFFER)
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
         self._near = near
@@ -226,7 +227,7 @@ class FlexTracker:
         if not is_first:
             fit = self._legs_apart(fit, views, dt_s, terms)
         if is_first and fit.explained >= p.learn_explained:
-            cameras.learn_first_appearance(fit.state)
+            self._learn_first(fit.state)
         if not self._believed(fit):
             return known, views
         velocity = np.zeros(model.n_pose)
@@ -310,7 +311,7 @@ class FlexTracker:
         again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
         if fit.explained < p.start.accept_explained and not again:
             return None, []
-        cameras.learn_first_appearance(fit.state)
+        self._learn_first(fit.state)
         return _Memory(frames.t_ns, fit.state, fit, names), []
 
     def _standing(self, wearer: _Wearer, shadows: bool) -> list[tuple[Fit, tuple[str, ...]]]:
@@ -347,7 +348,7 @@ class FlexTracker:
         self._cameras.mark_body(there)
         self._cameras.seed_background()
         self._cameras.stand_before()
-        self._cameras.learn_first_appearance(there)
+        self._learn_first(there)
         views = self._cameras.classified(there)
         if not views:
             return None, []
@@ -374,6 +375,20 @@ class FlexTracker:
         elif nobody:
             self._cameras.mark_body(None)
         self._cameras.learn_background()
+
+    def _learn_first(self, state: MotionState) -> None:
+        """Learn the look of somebody who was found."""
+        self._dress(ALL_DIFFER)
+        self._cameras.learn_first_appearance(state)
+        seen = [self._cameras.each[i].appearance for i in self._cameras.present]
+        look = look_of(seen, self.params.alike)
+        for camera in self._cameras.each:
+            camera.appearance.join(look)
+        self._dress(look)
+
+    def _dress(self, look: Look) -> None:
+        self._fitter, self._arms = self._fitters.of(look)
+        self._cameras.fitter = self._fitter
 
     def _names(self, views: Sequence[View]) -> tuple[str, ...]:
         return tuple(self._cameras.each[v.index].name for v in views)
