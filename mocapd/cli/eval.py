@@ -143,7 +143,9 @@ def evaluate_captures(
 
         def build(known: Calibration, method: str) -> ReadyTracker:
             tracker, section = rivals.get(method, (name, sections[name]))
-            return ready_tracker(tracker, known, cached(effective.cache_dir, progress), section)
+            chosen = {**sections, tracker: section}
+            resources = cached(effective.cache_dir, progress, sections=chosen)
+            return ready_tracker(tracker, known, resources)
 
         if prediction:
             typer.echo(_prediction(cases, effective, build))

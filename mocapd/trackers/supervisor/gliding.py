@@ -1,0 +1,67 @@
+"""What is told glides to what another tracker knows, no joint farther in a frame than it may.
+
+`trackers/blending.py` mends what one tracker had wrong, in eight frames whatever it was. Here the bodies are two trackers',
+any distance apart, and the promise is of the joints' places: how much of the difference goes in a frame is looked for.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.skeleton import joint_positions
+from mocapd.geometry import rotations
+from mocapd.types import BodyState, Floats, Pose, Skeleton
+
+_HALVINGS = 10  # of what is left: the way of a metre is known to a millimetre
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Away:
+    """What was told, off what is known: root_m (3,), rotvec_rad (J,3) of the global rotations; `share` is left of it."""
+
+    root_m: Floats
+    rotvec_rad: Floats
+    share: float = 1.0
+
+
+def away_from(told: Pose, known: Pose) -> Away:
+    """From what is known to what was told."""
+    turn = rotations.multiply(told.quats_xyzw, rotations.inverse(known.quats_xyzw))
+    return Away(told.root_m - known.root_m, rotations.log(turn))
+
+
+def off(known: Pose, away: Away, share: float) -> Pose:
+    """The pose that is a share of the way off what is known."""
+    turned = rotations.multiply(rotations.exp(share * away.rotvec_rad), known.quats_xyzw)
+    return Pose(known.root_m + share * away.root_m, rotations.canonical(turned))
+
+
+def lessened(known: Pose, away: Away, skeleton: Skeleton, step_m: float) -> Away | None:
+    """As much less as no joint needs more than step_m for, beside its own motion; None when nothing is left."""
+    told = joint_positions(skeleton, off(known, away, away.share))
+
+    def reached(share: float) -> bool:
+        joints = joint_positions(skeleton, off(known, away, share))
+        return bool((np.linalg.norm(joints - told, axis=1) <= step_m).all())
+
+    if reached(0.0):
+        return None
+    too_little, enough = 0.0, away.share
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (too_little + enough)
+        if reached(middle):
+            enough = middle
+        else:
+            too_little = middle
+    return replace(away, share=enough)
+
+
+def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:
+    """The body as it is told, and how much less certain its joints are for that; it has a pose."""
+    assert body.pose is not None
+    pose = off(body.pose, away, away.share)
+    joints_m = joint_positions(skeleton, pose)
+    wrong_m = np.linalg.norm(joints_m - joint_positions(skeleton, body.pose), axis=1)
+    # one standard deviation along an axis
+    uncertainty_m = np.hypot(body.uncertainty_m, wrong_m / np.sqrt(3.0))
+    return replace(body, pose=pose, joints_m=joints_m, uncertainty_m=uncertainty_m)

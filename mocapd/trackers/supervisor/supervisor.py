@@ -1,0 +1,224 @@
+"""The supervisor's step machine: step those whose turn it is, judge, choose, join, glide; keep the others warm."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.clock import nanoseconds, seconds
+from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
+from mocapd.trackers.supervisor.choice import Claim, chosen
+from mocapd.trackers.supervisor.gliding import Away, away_from, glided, lessened
+from mocapd.trackers.supervisor.joining import apart_m, joined, placed
+from mocapd.trackers.supervisor.kinds import Kind
+from mocapd.trackers.supervisor.params import Params
+from mocapd.trackers.supervisor.standby import (
+    Standby,
+    compared,
+    offered,
+    overrules,
+    stepped,
+    wants_offer,
+)
+from mocapd.trackers.supervisor.standing import Standing, judged
+from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
+
+_LEAST_GLIDE_M = 0.01  # in a frame, however short
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidate:
+    """A tracker that can run, and what it is good for."""
+
+    tracker: Tracker
+    kind: Kind
+
+    @property
+    def name(self) -> str:
+        return self.tracker.name
+
+
+@dataclass(slots=True, eq=False)
+class _Known:
+    """Of one candidate. track: the last one; now: whether it is of this frame set."""
+
+    track: Track | None = None
+    now: bool = False
+    standing: Standing = field(default_factory=Standing)
+    standby: Standby = field(default_factory=Standby)
+
+    @property
+    def live(self) -> bool:
+        return self.now and self.track is not None and self.track.body.tracking is Tracking.LIVE
+
+    @property
+    def body(self) -> BodyState | None:
+        """Of this frame set; None when it is lost, or was not asked."""
+        if not self.now or self.track is None or self.track.body.pose is None:
+            return None
+        return self.track.body
+
+
+class Supervisor:
+    """Several trackers as one; see `mocapd.trackers.base.Tracker` for the promises. A body says who spoke: one
+    tracker's name, or two as in colour+flex; a lost one is the supervisor's own."""
+
+    name = "auto"
+
+    def __init__(self, candidates: Sequence[Candidate], params: Params | None = None) -> None:
+        """candidates: the one to be preferred first; at least one."""
+        self.params = params if params is not None else Params()
+        self.probe: Probe = unprobed
+        self._candidates = tuple(candidates)
+        for one in self._candidates:
+            one.tracker.probe = partial(self._heard, one.name)
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """See Tracker. near: offered to all of them."""
+        for one in self._candidates:
+            one.tracker.reset(near)
+        self._known = {one.name: _Known() for one in self._candidates}
+        self._speaker: str | None = None
+        self._told = near if near is not None and near.pose is not None else None
+        self._away: Away | None = None
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """See Tracker. Raises ConfigError as its trackers do."""
+        for known in self._known.values():
+            known.now = False
+        for one in self._candidates:
+            if self._is_due(one, frames.t_ns):
+                shape = self._step_one(one, frames, shape)
+        skeleton = skeleton_of(shape)
+        self._speaker = self._choose(frames.t_ns)
+        if self._speaker is None:
+            self._told, self._away = None, None
+            return Track(lost_body(frames.t_ns, self.name), shape)
+        track = self._spoken(self._speaker, skeleton)
+        self._mind_the_others(track.body, frames.t_ns)
+        body = self._glide(track.body, skeleton)
+        self.probe("join")
+        return replace(track, body=body, shape=shape)
+
+    # --- stages ---
+
+    def _is_due(self, one: Candidate, t_ns: int) -> bool:
+        """Whether it is stepped: who speaks, who completes that, who may take over now; others now and then."""
+        if self._speaker is None or one.name == self._speaker or one is self._lower:
+            return True
+        known = self._known[one.name]
+        is_preferred = self._rank(one.name) < self._rank(self._speaker)
+        was_live = known.track is not None and known.track.body.tracking is Tracking.LIVE
+        return (is_preferred and was_live) or t_ns >= known.standby.next_ns
+
+    def _step_one(self, one: Candidate, frames: FrameSet, shape: BodyShape) -> BodyShape:
+        """The shape as known after it."""
+        known, tracker = self._known[one.name], one.tracker
+        upper = self._guide(one)
+        if upper is not None and isinstance(tracker, GuidedTracker):
+            track = tracker.step_guided(frames, shape, upper)
+        else:
+            track = tracker.step(frames, shape)
+        known.track, known.now = track, True
+        known.standing = judged(known.standing, track, len(frames.frames), one.kind, self.params)
+        known.standby = stepped(known.standby, frames.t_ns, self.params)
+        return track.shape
+
+    def _guide(self, one: Candidate) -> BodyState | None:
+        """The upper body that leads this candidate in this frame, as another that comes before it sees it."""
+        if one.kind.upper_only:
+            return None
+        for other in self._candidates:
+            known = self._known[other.name]
+            leads = other.kind.upper_only and self._speaker in (None, other.name)
+            if leads and known.live and known.track and known.track.quality >= other.kind.poor:
+                return known.body
+        return None
+
+    def _choose(self, t_ns: int) -> str | None:
+        told = None if self._speaker is None else self._known[self._speaker].body
+        claims = []
+        for one in self._candidates:
+            known = self._known[one.name]
+            near = told is None or self._is_near(known.body, told)
+            agrees = near or overrules(known.standby, t_ns, self.params)
+            claims.append(
+                Claim(
+                    one.name,
+                    known.standing.believed and known.now,
+                    known.live,
+                    known.body is not None,
+                    agrees,
+                )
+            )
+        return chosen(self._speaker, claims)
+
+    def _spoken(self, speaker: str, skeleton: Skeleton) -> Track:
+        """The track of who speaks, completed where it tells of the upper body alone."""
+        track = self._known[speaker].track
+        assert track is not None
+        body, lower = track.body, self._lower
+        if lower is not None and lower.name != speaker and self._kind(speaker).upper_only:
+            other = self._known[lower.name].body
+            if other is not None and self._is_near(other, body):
+                return replace(track, body=joined(body, other, skeleton))
+        return replace(track, body=placed(body, skeleton))
+
+    def _mind_the_others(self, told: BodyState, t_ns: int) -> None:
+        """Who does not speak is compared with what is told, and offered that when it went astray."""
+        for one in self._candidates:
+            known = self._known[one.name]
+            if one.name == self._speaker:
+                known.standby = Standby(next_offer_ns=known.standby.next_offer_ns)
+            elif known.now:
+                near = self._is_near(known.body, told)
+                standby = compared(
+                    known.standby, t_ns, self.params, live=known.live, near=near
+                )
+                is_sure = told.tracking is Tracking.LIVE and self._is_believed(self._speaker)
+                if is_sure and wants_offer(standby, t_ns, self.params):
+                    one.tracker.reset(near=told)
+                    standby = offered(standby, t_ns, self.params)
+                known.standby = standby
+
+    def _glide(self, body: BodyState, skeleton: Skeleton) -> BodyState:
+        """No jump where another speaks than before."""
+        p, told = self.params, self._told
+        shown = body
+        if told is not None and told.pose is not None and body.pose is not None:
+            gap_ns = body.t_ns - told.t_ns
+            if gap_ns > nanoseconds(p.glide_within_s):
+                self._away = None
+            else:
+                if told.tracker != body.tracker:
+                    self._away = away_from(told.pose, body.pose)
+                step_m = min(p.glide_m, max(p.glide_m_s * seconds(gap_ns), _LEAST_GLIDE_M))
+                if self._away is not None:
+                    self._away = lessened(body.pose, self._away, skeleton, step_m)
+                if self._away is not None:
+                    shown = glided(body, self._away, skeleton)
+        self._told = shown
+        return shown
+
+    # --- who is who ---
+
+    @property
+    def _lower(self) -> Candidate | None:
+        """Who completes an upper body."""
+        return next((one for one in self._candidates if not one.kind.upper_only), None)
+
+    def _rank(self, name: str) -> int:
+        return next(i for i, one in enumerate(self._candidates) if one.name == name)
+
+    def _kind(self, name: str) -> Kind:
+        return self._candidates[self._rank(name)].kind
+
+    def _is_near(self, one: BodyState | None, other: BodyState) -> bool:
+        return one is not None and apart_m(one, other) <= self.params.near_m
+
+    def _is_believed(self, name: str | None) -> bool:
+        return name is not None and self._known[name].standing.believed
+
+    def _heard(self, tracker: str, stage: str) -> None:
+        self.probe(f"{tracker}.{stage}")
