@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-BACKGROUND, BEFORE, UNKNOWN = 0, 1, 2
+BACKGROUND, BEFORE, UNKNOWN, SHADOW = 0, 1, 2, 3
 
 
 @njit(cache=True, nogil=True)
@@ -14,16 +14,16 @@ def stands_before(
     age: NDArray[np.uint8],
     known: int,
     tolerance: float,
-    darkest: float,
-    tint: float,
+    sure: tuple[float, float],
+    likely: tuple[float, float],
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): UNKNOWN where the background was seen fewer than `known` times, BEFORE where a channel differs from it
     by more than `tolerance`, BACKGROUND elsewhere.
 
-    picture (h,w,3); mean (h,w,3) 0..255 and age (h,w) of the background. A shadow is darker in all channels alike
-    (Horprasert et al. 1999): down to `darkest` of the background, with ratios that differ by less than `tint`, and is
-    BACKGROUND.
+    picture (h,w,3); mean (h,w,3) 0..255 and age (h,w) of the background. A shadow is the background dimmed in all channels
+    alike (Horprasert et al. 1999): `sure` and `likely` are to which share at least, and how far the colour may then be off.
+    A sure one is BACKGROUND, a likely one, which may be dark cloth, SHADOW.
     """
     h, w, _ = picture.shape
     for y in range(h):
@@ -31,12 +31,23 @@ def stands_before(
             if age[y, x] < known:
                 out[y, x] = UNKNOWN
                 continue
-            most = np.float32(0.0)
-            low, high = np.float32(1e9), np.float32(0.0)
+            most, along, length2 = np.float32(0.0), np.float32(0.0), np.float32(1.0)
             for c in range(3):
                 a, m = np.float32(picture[y, x, c]), mean[y, x, c]
                 most = max(most, abs(a - m))
-                ratio = (a + np.float32(4.0)) / (m + np.float32(4.0))
-                low, high = min(low, ratio), max(high, ratio)
-            shadow = high < 1.0 and low > darkest and high - low < tint * high
-            out[y, x] = BEFORE if most > tolerance and not shadow else BACKGROUND
+                along += a * m
+                length2 += m * m
+            if most <= tolerance:
+                out[y, x] = BACKGROUND
+                continue
+            share = along / length2
+            out[y, x] = BEFORE
+            if share >= 1.0 or share < likely[0]:
+                continue
+            off = np.float32(0.0)
+            for c in range(3):
+                off = max(off, abs(np.float32(picture[y, x, c]) - share * mean[y, x, c]))
+            if share > sure[0] and off < sure[1]:
+                out[y, x] = BACKGROUND
+            elif off < likely[1]:
+                out[y, x] = SHADOW

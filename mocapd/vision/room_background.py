@@ -6,13 +6,14 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.types import Bytes
+from mocapd.types import Bytes, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background
-from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands_before
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, SHADOW, UNKNOWN, stands_before
 
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
+_OUTLINE = np.ones((3, 3), np.uint8)
 _GAP = np.ones((5, 5), np.uint8)  # what is narrower is a part of the body that looks like its background
 
 
@@ -23,8 +24,10 @@ class BackgroundParams:
     first_looks: int = 20  # in which every row is looked at
     known_looks: int = 6  # at a place
     tolerance: float = 16.0  # of a channel, 0..255: three times the noise of a dim picture
-    darkest: float = 0.5  # of a shadow, against what it falls on
-    tint: float = 0.1  # by how much its channels may be darkened unlike
+    # of a shadow: which share of the light it leaves at least, and how far a channel may be off then, 0..255
+    sure_shadow: tuple[float, float] = (0.5, 7.0)
+    likely_shadow: tuple[float, float] = (0.25, 12.0)
+    least_uncovered_px: int = 60  # of a piece whose outline says anything
     rate: float = 0.04  # share of a look, once it is known
     lamp_tolerance: float = 0.12  # of a channel, 0..1: what differs by more is in another light
     lamp_share: float = 0.15  # of the background that changes at once when a lamp does
@@ -58,6 +61,24 @@ class RoomBackground:
         self._age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
+    def take_uncovered(self, picture: Bytes, before: Bytes) -> None:
+        """Take for background what somebody uncovered who was learned with it: pieces of `before` (h,w) along whose outline
+        the background has the stronger edges, and not the picture (h,w,3) (Cucchiara et al. 2003 call them ghosts). They
+        become BACKGROUND in `before`."""
+        n, numbered, stats, _ = cv2.connectedComponentsWithStats((before > 0).astype(np.uint8))
+        if n < 2:
+            return
+        now, known = _edges(picture), _edges(self._mean.astype(np.uint8))
+        for k in range(1, n):
+            if stats[k, cv2.CC_STAT_AREA] < self._params.least_uncovered_px:
+                continue
+            mask = (numbered == k).astype(np.uint8)
+            outline = cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0
+            if now[outline].sum() < known[outline].sum():
+                there = mask > 0
+                self._mean[there] = picture[there]
+                before[there] = BACKGROUND
+
     def follow_light(self, picture: Bytes, body: Bytes) -> bool:
         """Whether a lamp went on or off: then the background is taken in its new light. body (h,w): not 0 where
         somebody is expected."""
@@ -79,14 +100,22 @@ class RoomBackground:
         self._looks += 1
 
     def before(self, picture: Bytes) -> Bytes:
-        """(h,w) of a picture (h,w,3): BEFORE, UNKNOWN or BACKGROUND, without specks and narrow gaps."""
+        """(h,w) of a picture (h,w,3): BEFORE, SHADOW, UNKNOWN or BACKGROUND, without specks and narrow gaps."""
         p, out = self._params, self._before
         stands_before(
-            picture, self._mean, self._age, p.known_looks, p.tolerance, p.darkest, p.tint, out
+            picture, self._mean, self._age, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, out
         )
-        unknown = out == UNKNOWN
-        one = (out == BEFORE).astype(np.uint8)
+        kept = out.copy()
+        one = ((out == BEFORE) | (out == SHADOW)).astype(np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK), np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
-        one[unknown] = UNKNOWN
+        one[kept == UNKNOWN] = UNKNOWN
+        one[(one == BEFORE) & (kept == SHADOW)] = SHADOW
         return one
+
+
+def _edges(picture: Bytes) -> Singles:
+    """How steep brightness is at each pixel (h,w) of a picture (h,w,3)."""
+    grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+    across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
+    return np.asarray(np.abs(across) + np.abs(down), np.float32)

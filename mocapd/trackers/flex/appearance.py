@@ -20,6 +20,7 @@ from mocapd.trackers.flex.appearance_kernels import (
     log_table,
 )
 from mocapd.types import Bytes, Singles
+from mocapd.vision.foreground_kernels import SHADOW
 
 _UNCOUNTED = 255
 _CORE = np.ones((3, 3), np.uint8)  # a drawn region's inside: its edge may be off by a pixel
@@ -40,6 +41,7 @@ class AppearanceParams:
     other_cost: float = 1.0  # of being none of the body
     other_per_px: float = 0.5
     other_px: float = 8.0
+    shadow_cost: float = 4.0  # of what may be a shadow, to be one
     least_other_px: float = 50.0  # seen beside the body before it is a class
 
 
@@ -68,21 +70,25 @@ class Appearance:
         """Give way quickly to colours in another light."""
         self._counts *= self._params.new_light
 
-    def learn(self, picture: Bytes, drawn: Bytes, before: Bytes, first: bool = False) -> None:
+    def learn(
+        self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None
+    ) -> None:
         """Count the colours of a picture (h,w,3) where the body is drawn (h,w), as far as it is before the background.
 
-        first: nothing was learned before, so that this picture counts in full.
+        ids (h,w): what was classified; where it is another region than what is drawn the pose may be wrong, and is not
+        learned from. None: nothing was learned before, and this picture counts in full.
         """
         classes = np.full(drawn.shape, _UNCOUNTED, np.uint8)
         seen = before > 0
         classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
         lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
         core = (lowest == highest) & (drawn > 0) & seen
+        core &= before != SHADOW if ids is None else ids == drawn
         classes[core] = drawn[core]
         p = self._params
-        if not first:
+        if ids is not None:
             self._counts *= p.keep
-        count_colours(picture, classes, _UNCOUNTED, 1.0 if first else p.share, self._counts)
+        count_colours(picture, classes, _UNCOUNTED, 1.0 if ids is None else p.share, self._counts)
         self._refresh()
 
     def classify(self, picture: Bytes, before: Bytes, distance_px: Singles) -> Bytes:
@@ -91,7 +97,7 @@ class Appearance:
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_cost, ids,
         )  # fmt: skip
         return ids
 

@@ -1,6 +1,6 @@
 """What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import cv2
 import numpy as np
@@ -29,7 +29,7 @@ class CameraView:
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
-        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
 
     def reset(self) -> None:
         """Forget background and appearance."""
@@ -56,7 +56,7 @@ class CameraView:
         if drawn is not None:
             x0, y0, x1, y1 = roi
             self.body[y0:y1, x0:x1] = drawn > 0
-            cv2.dilate(self.body, self._beside, dst=self.body)
+            cv2.dilate(self.body, self.beside, dst=self.body)
 
     def stand_before(self) -> bool:
         """Renew what stands before the background; whether its light jumped."""
@@ -115,6 +115,12 @@ class CameraViews:
         for i in self.present:
             self.each[i].stand_before()
 
+    def take_uncovered(self) -> None:
+        """Take for background what stands before it by mistake; see `RoomBackground`."""
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.take_uncovered(camera.picture, camera.before)
+
     def classified(self, state: MotionState) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each."""
         p = self._params
@@ -134,20 +140,36 @@ class CameraViews:
             views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
         return views
 
-    def learn_appearance(self, state: MotionState, first: bool = False) -> None:
-        """Learn the colours of a body that agrees with the pictures; first: nothing was learned before."""
+    def learn_first_appearance(self, state: MotionState) -> None:
+        """Learn the colours of a body of which none is known yet."""
         for i, dt_s in self.present.items():
-            drawing, camera = self._fitter.drawings[i], self.each[i]
-            roi = drawing.region(state, dt_s, self._params.margin_px)
-            if roi is None:
-                continue
-            x0, y0, x1, y1 = roi
-            camera.appearance.learn(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
-                drawing.render(state, dt_s, roi),
-                np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
-                first,
-            )
+            roi = self._fitter.drawings[i].region(state, dt_s, self._params.margin_px)
+            if roi is not None:
+                self._learn(i, state, dt_s, roi, None)
+
+    def learn_appearance(self, state: MotionState, views: Sequence[View]) -> None:
+        """Learn the colours of a body that agrees with what was classified."""
+        for view in views:
+            self._learn(view.index, state, view.dt_s, view.roi, view.ids)
+
+    def _learn(
+        self, index: int, state: MotionState, dt_s: float, roi: Roi, ids: Bytes | None
+    ) -> None:
+        camera = self.each[index]
+        x0, y0, x1, y1 = roi
+        camera.appearance.learn(
+            np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+            self._fitter.drawings[index].render(state, dt_s, roi),
+            np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
+            ids,
+        )
+
+    def mark_unknown(self) -> None:
+        """What stands before a known background may be somebody."""
+        for i in self.present:
+            camera = self.each[i]
+            if not camera.background.is_new:
+                cv2.dilate(((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8), camera.beside, dst=camera.body)
 
     def learn_background(self) -> None:
         """Follow each background where nobody is marked."""
@@ -170,13 +192,3 @@ class CameraViews:
             x0, y0, x1, y1 = v.roi
             where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
         return ids, where
-
-    def unknown_share(self, views: list[View]) -> float:
-        """Of the classified pixels, how many have no known background behind."""
-        unknown = seen = 0
-        for v in views:
-            x0, y0, x1, y1 = v.roi
-            before = self.each[v.index].before[y0:y1, x0:x1]
-            seen += int(np.count_nonzero(v.ids))
-            unknown += int(np.count_nonzero((v.ids > 0) & (before == UNKNOWN)))
-        return unknown / max(seen, 1)

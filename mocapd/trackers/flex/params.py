@@ -23,6 +23,9 @@ class StartParams:
     iterations: int = 8
     loose_s: float = 0.4  # how far the fit may move from where it begins, as a time of motion
     accept_explained: float = 0.75  # of silhouette and body together
+    likely_explained: float = 0.6  # the same, at two attempts in a row
+    same_place_m: float = 0.4  # between which the person moved no more than this
+    people: int = 2  # of whom the best is taken
     pause_s: float = 0.2  # between attempts that failed
 
 
@@ -44,6 +47,7 @@ class Params:
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
+    absorb_turns: int = 13  # of so many looks one learns what stands before the background, too, while nobody is known
     soft: float = 60.0 / 255.0  # weight of a drawn pixel where something else stands before the background
 
     # motion from frame to frame

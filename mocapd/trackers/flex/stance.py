@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
@@ -14,14 +15,18 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, rays
 from mocapd.trackers.flex.params import StartParams
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.foreground_kernels import BEFORE
+from mocapd.vision.foreground_kernels import BEFORE, SHADOW
+
+_ABOUT_PX = 20  # of a blob, within which its body is drawn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blob:
-    """A connected piece before the background of one camera: mask (h,w) uint8, its box [work px], its middle column."""
+    """A connected piece before the background of one camera: mask (h,w) uint8 of the region roi about it, its box's upper and
+    lower edge and its middle column [work px]."""
 
     mask: Bytes
+    roi: Roi
     top: float
     bottom: float
     middle_x: float
@@ -36,16 +41,21 @@ class Standing:
     error: float
 
 
-def blobs_of(before: Bytes, params: StartParams) -> list[Blob]:
-    """The largest pieces of a picture (h,w) that may be people, largest first."""
-    n, numbered, stats, middles = cv2.connectedComponentsWithStats((before == BEFORE).astype(np.uint8))
+def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
+    """The largest pieces of a picture (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
+    mask = (before == BEFORE) | (before == SHADOW) if shadows else before == BEFORE
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
     for k in order:
         top, height = int(stats[k, cv2.CC_STAT_TOP]), int(stats[k, cv2.CC_STAT_HEIGHT])
         if stats[k, cv2.CC_STAT_AREA] >= params.least_px and height >= params.least_height_px:
-            mask = (numbered == k).astype(np.uint8)
-            out.append(Blob(mask, top, top + height, float(middles[k, 0])))
+            left, width = int(stats[k, cv2.CC_STAT_LEFT]), int(stats[k, cv2.CC_STAT_WIDTH])
+            x0, y0 = max(left - _ABOUT_PX, 0) & ~1, max(top - _ABOUT_PX, 0) & ~1
+            x1 = min(left + width + _ABOUT_PX, before.shape[1]) & ~1
+            y1 = min(top + height + _ABOUT_PX, before.shape[0]) & ~1
+            piece = (numbered[y0:y1, x0:x1] == k).astype(np.uint8)
+            out.append(Blob(piece, (x0, y0, x1, y1), top, top + height, float(middles[k, 0])))
     return out
 
 
@@ -121,7 +131,7 @@ def first_fit(
     offsets_s: each camera's own time after the frame set's, by index.
     """
     views = [
-        View(i, (0, 0, blob.mask.shape[1] & ~1, blob.mask.shape[0] & ~1), blob.mask, np.full(blob.mask.shape, 255, np.uint8), offsets_s[i])
+        View(i, blob.roi, blob.mask, np.full(blob.mask.shape, 255, np.uint8), offsets_s[i])
         for i, blob in who.blobs.items()
     ]  # fmt: skip
     model = fitter.model

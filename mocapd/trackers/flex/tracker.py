@@ -87,6 +87,7 @@ class FlexTracker:
         self._known: _Memory | None = None
         self._near = near
         self._next_start_ns = 0
+        self._likely_m: list[Floats] = []
         self._turn = 0
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
@@ -113,7 +114,7 @@ class FlexTracker:
         if tracking is Tracking.LOST and not evidence:
             known = None
         self._known = known
-        self._learn(known if evidence else None, nobody=known is None)
+        self._learn(known if evidence else None, views, nobody=known is None)
         self.probe("learn")
         return self._track(tracking, frames, views, shape)
 
@@ -187,25 +188,39 @@ class FlexTracker:
     def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
         """Look for somebody who stands before the background."""
         p, cameras = self.params, self._cameras
-        cameras.mark_body(None)
         if cameras.are_new or frames.t_ns < self._next_start_ns:
             return None, []
         self._next_start_ns = frames.t_ns + nanoseconds(p.start.pause_s)
+        cameras.mark_body(None)
         cameras.stand_before()
-        blobs = {i: blobs_of(cameras.each[i].before, p.start) for i in cameras.present}
+        cameras.take_uncovered()
+        fits = [one for shadows in (False, True) for one in self._standing(wearer, shadows)]
+        self.probe("start")
+        likely = [one for one in fits if one[0].explained >= p.start.likely_explained]
+        last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
+        if not likely:
+            return None, []
+        fit, names = max(likely, key=lambda one: one[0].explained)
+        again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
+        if fit.explained < p.start.accept_explained and not again:
+            return None, []
+        cameras.learn_first_appearance(fit.state)
+        return _Memory(frames.t_ns, fit.state, fit, names), []
+
+    def _standing(self, wearer: _Wearer, shadows: bool) -> list[tuple[Fit, tuple[str, ...]]]:
+        """People before the background, and the cameras that show them; shadows: with what may be one."""
+        p, cameras = self.params.start, self._cameras
+        blobs = {i: blobs_of(cameras.each[i].before, shadows, p) for i in cameras.present}
         smaller = [one.image_scale for one in cameras.each]
-        people = standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p.start)
-        self.probe("look")
-        for who in people[:1]:
-            fit = first_fit(
-                self._silhouettes, who, cameras.present, wearer.factors, wearer.information, (self._floor,), p.start,
-            )  # fmt: skip
-            self.probe("start")
-            if fit.explained >= p.start.accept_explained:
-                names = tuple(cameras.each[i].name for i in who.blobs)
-                cameras.learn_appearance(fit.state, first=True)
-                return _Memory(frames.t_ns, fit.state, fit, names), []
-        return None, []
+        return [
+            (
+                first_fit(
+                    self._silhouettes, who, cameras.present, wearer.factors, wearer.information, (self._floor,), p,
+                ),
+                tuple(cameras.each[i].name for i in who.blobs),
+            )
+            for who in standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p)[: p.people]
+        ]  # fmt: skip
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
@@ -221,7 +236,7 @@ class FlexTracker:
         self._cameras.mark_body(there)
         self._cameras.seed_background()
         self._cameras.stand_before()
-        self._cameras.learn_appearance(there, first=True)
+        self._cameras.learn_first_appearance(there)
         views = self._cameras.classified(there)
         if not views:
             return None, []
@@ -238,11 +253,14 @@ class FlexTracker:
         # every second pixel was counted
         return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
 
-    def _learn(self, seen: _Memory | None, nobody: bool) -> None:
+    def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool) -> None:
         """Learn the look of a body that agrees well, and the background beside it, or everywhere when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
-            self._cameras.learn_appearance(seen.state)
-        if nobody:
+            self._cameras.learn_appearance(seen.state, views)
+        if nobody and self._turn % self.params.absorb_turns:
+            # what stays for long is furniture that was moved
+            self._cameras.mark_unknown()
+        elif nobody:
             self._cameras.mark_body(None)
         self._cameras.learn_background()
 
