@@ -44,8 +44,8 @@ def ready_tracker(
 ) -> ReadyTracker:
     """The tracker of this name, ready to step. Raises ConfigError naming what it lacks.
 
-    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own pictures, so that live frames need not
-    wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
+    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own pictures, so
+    that live frames need not wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
     """
     shape = known_shape(calibration)
     with _pooled(resources) as pooled:

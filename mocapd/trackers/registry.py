@@ -95,7 +95,9 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     if len(seeing) < 2:
         return f"needs two of the calibrated cameras ({', '.join(calibration.rig.names)})"
     apart_m = max(
-        float(np.linalg.norm(centre(a) - centre(b))) for i, a in enumerate(seeing) for b in seeing[:i]
+        float(np.linalg.norm(centre(a) - centre(b)))
+        for i, a in enumerate(seeing)
+        for b in seeing[:i]
     )
     if apart_m < _LEAST_BASELINE_M:
         return "needs cameras in two places: by the calibration all are in one"

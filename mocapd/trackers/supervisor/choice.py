@@ -6,36 +6,35 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One tracker's, in this frame. known: it has a body, if only from a moment ago; agrees: in the place of whoever
-    speaks, or so long elsewhere that it is right."""
+    """One tracker's, in this frame. known: it has a body, if only from a moment ago; live: with evidence of this frame;
+    well: and enough of it; agrees: in the place of whoever speaks, or so long elsewhere that it is right."""
 
     name: str
     believed: bool
-    live: bool
     known: bool
+    live: bool
+    well: bool
     agrees: bool
 
 
 def chosen(speaker: str | None, claims: Sequence[Claim]) -> str | None:
     """Whose body is told, of the claims in the order of preference; None when nobody knows one.
 
-    Who speaks goes on while it is believed, unless one that is preferred to it is believed too and agrees. When
-    nobody is believed it goes on while it is live, and then while it coasts, if nobody else is live.
+    Who speaks goes on while it is believed or does well, unless one that is preferred to it is believed and agrees. When
+    nobody is believed it goes on while it is live, unless a preferred one does well; then anyone who is live speaks.
+    Nobody begins with a body of a moment ago.
     """
-    by_name = {one.name: one for one in claims}
-    now = by_name.get(speaker) if speaker is not None else None
+    now = next((one for one in claims if one.name == speaker), None)
+    is_sure = now is not None and now.known and (now.believed or now.well)
     for one in claims:
-        if one is now and one.believed:
+        if one is now and is_sure:
             return one.name
-        if one.believed and (one.agrees or now is None or not now.believed):
+        if one.believed and one.live and (one.agrees or not is_sure):
             return one.name
-    if now is not None and now.live:
-        return now.name
+    for one in claims:
+        if (one is now and one.live) or one.well:
+            return one.name
     for one in claims:
         if one.live:
             return one.name
-    return now.name if now is not None and now.known else _first_known(claims)
-
-
-def _first_known(claims: Sequence[Claim]) -> str | None:
-    return next((one.name for one in claims if one.known), None)
+    return now.name if now is not None and now.known else None

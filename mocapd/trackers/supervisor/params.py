@@ -8,17 +8,27 @@ class Params:
     """Times are of the frames, never counted in them."""
 
     # belief
-    confirm_s: float = 0.25  # good for so long before it may take over: half a jacket comes and goes
-    doubt_s: float = 0.1  # poor or coasting for so long before another may: a frame that fails is no reason
+    confirm_s: float = (
+        0.25  # good for so long before it may take over: half a jacket comes and goes
+    )
+    doubt_s: float = (
+        0.1  # poor or coasting for so long before another may: a frame that fails is no reason
+    )
 
     # one place
-    near_m: float = 0.3  # trunks nearer than this are of one body: cloth, shape and lag together stay below it
+    near_m: float = (
+        0.3  # trunks nearer than this are of one body: cloth, shape and lag together stay below it
+    )
     # somewhere else for so long, and the tracker that is preferred is right: it was offered the other's body meanwhile
     overrule_s: float = 2.0
 
     # who does not speak
-    search_every_s: float = 0.2  # a search costs three frames' time: a tenth of it is spared for that
-    offer_after_s: float = 0.5  # lost or elsewhere for so long, and it is offered the body that is told
+    search_every_s: float = (
+        0.2  # a search costs three frames' time: a tenth of it is spared for that
+    )
+    offer_after_s: float = (
+        0.5  # lost or elsewhere for so long, and it is offered the body that is told
+    )
     offer_every_s: float = 2.0  # it forgets background and light by that
 
     # what remains at a switch: at most so much is mended in a frame, of any joint; a tenth of a metre is promised

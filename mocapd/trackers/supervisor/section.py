@@ -19,7 +19,9 @@ class AutoSection:
         unknown = [name for name in self.trackers if name not in KINDS]
         if unknown or not self.trackers:
             raise ConfigError(
-                f"no tracker to choose is called {unknown[0]!r}" if unknown else "no tracker is given",
+                f"no tracker to choose is called {unknown[0]!r}"
+                if unknown
+                else "no tracker is given",
                 "tracker.auto.trackers",
                 f"some of: {', '.join(KINDS)}",
             )

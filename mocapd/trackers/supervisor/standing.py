@@ -17,17 +17,22 @@ class Standing:
     since_ns: int | None = None
 
 
+def is_well(track: Track, cameras: int, kind: Kind) -> bool:
+    """Whether a track, of a frame set of so many cameras, is one to be believed."""
+    live = track.body.tracking is Tracking.LIVE
+    return live and track.quality >= kind.good and cameras >= kind.least_cameras
+
+
 def judged(before: Standing, track: Track, cameras: int, kind: Kind, params: Params) -> Standing:
     """After another track, of a frame set of so many cameras."""
     body = track.body
     if body.tracking is Tracking.LOST:
         return Standing()
-    live = body.tracking is Tracking.LIVE
     if before.believed:
-        opposite, needed_s = not live or track.quality < kind.poor, params.doubt_s
+        opposite = body.tracking is not Tracking.LIVE or track.quality < kind.poor
+        needed_s = params.doubt_s
     else:
-        opposite = live and track.quality >= kind.good and cameras >= kind.least_cameras
-        needed_s = params.confirm_s
+        opposite, needed_s = is_well(track, cameras, kind), params.confirm_s
     if not opposite:
         return Standing(before.believed)
     since_ns = body.t_ns if before.since_ns is None else before.since_ns

@@ -1,6 +1,6 @@
 """The supervisor's step machine: step those whose turn it is, judge, choose, join, glide; keep the others warm."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -20,9 +20,10 @@ from mocapd.trackers.supervisor.standby import (
     stepped,
     wants_offer,
 )
-from mocapd.trackers.supervisor.standing import Standing, judged
+from mocapd.trackers.supervisor.standing import Standing, is_well, judged
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
+GLIDE = "glide"  # the stage of a frame that is told between one speaker's body and the next one's
 _LEAST_GLIDE_M = 0.01  # in a frame, however short
 
 
@@ -40,16 +41,22 @@ class Candidate:
 
 @dataclass(slots=True, eq=False)
 class _Known:
-    """Of one candidate. track: the last one; now: whether it is of this frame set."""
+    """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
+    body led to it."""
 
     track: Track | None = None
     now: bool = False
+    guided: bool = False
     standing: Standing = field(default_factory=Standing)
     standby: Standby = field(default_factory=Standby)
 
     @property
     def live(self) -> bool:
         return self.now and self.track is not None and self.track.body.tracking is Tracking.LIVE
+
+    def is_well(self, cameras: int, kind: Kind) -> bool:
+        """Whether its track is one to be believed, of a frame set of so many cameras."""
+        return self.now and self.track is not None and is_well(self.track, cameras, kind)
 
     @property
     def body(self) -> BodyState | None:
@@ -69,16 +76,16 @@ class Supervisor:
         """candidates: the one to be preferred first; at least one."""
         self.params = params if params is not None else Params()
         self.probe: Probe = unprobed
-        self._candidates = tuple(candidates)
-        for one in self._candidates:
+        self.candidates = tuple(candidates)
+        for one in self.candidates:
             one.tracker.probe = partial(self._heard, one.name)
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
         """See Tracker. near: offered to all of them."""
-        for one in self._candidates:
+        for one in self.candidates:
             one.tracker.reset(near)
-        self._known = {one.name: _Known() for one in self._candidates}
+        self._known = {one.name: _Known() for one in self.candidates}
         self._speaker: str | None = None
         self._told = near if near is not None and near.pose is not None else None
         self._away: Away | None = None
@@ -87,26 +94,37 @@ class Supervisor:
         """See Tracker. Raises ConfigError as its trackers do."""
         for known in self._known.values():
             known.now = False
-        for one in self._candidates:
-            if self._is_due(one, frames.t_ns):
-                shape = self._step_one(one, frames, shape)
+        shape = self._ask(frames, shape, lambda one: self._is_due(one, frames.t_ns))
+        if self._speaker is not None and self._known[self._speaker].body is None:
+            shape = self._ask(frames, shape, lambda one: not self._known[one.name].now)
         skeleton = skeleton_of(shape)
-        self._speaker = self._choose(frames.t_ns)
+        self._speaker = self._choose(frames)
         if self._speaker is None:
             self._told, self._away = None, None
             return Track(lost_body(frames.t_ns, self.name), shape)
         track = self._spoken(self._speaker, skeleton)
-        self._mind_the_others(track.body, frames.t_ns)
+        self._mind_the_others(track.body, frames)
         body = self._glide(track.body, skeleton)
         self.probe("join")
         return replace(track, body=body, shape=shape)
 
     # --- stages ---
 
+    def _ask(
+        self, frames: FrameSet, shape: BodyShape, asked: Callable[[Candidate], bool]
+    ) -> BodyShape:
+        """Step some of them; the shape as known after that."""
+        for one in self.candidates:
+            if asked(one):
+                shape = self._step_one(one, frames, shape)
+        return shape
+
     def _is_due(self, one: Candidate, t_ns: int) -> bool:
-        """Whether it is stepped: who speaks, who completes that, who may take over now; others now and then."""
-        if self._speaker is None or one.name == self._speaker or one is self._lower:
+        """Whether it is stepped: who speaks, who completes that, who may take over now; others now and then, but all
+        while nobody is believed."""
+        if not self._is_believed(self._speaker) or one.name == self._speaker or one is self._lower:
             return True
+        assert self._speaker is not None
         known = self._known[one.name]
         is_preferred = self._rank(one.name) < self._rank(self._speaker)
         was_live = known.track is not None and known.track.body.tracking is Tracking.LIVE
@@ -116,6 +134,7 @@ class Supervisor:
         """The shape as known after it."""
         known, tracker = self._known[one.name], one.tracker
         upper = self._guide(one)
+        known.guided = upper is not None and isinstance(tracker, GuidedTracker)
         if upper is not None and isinstance(tracker, GuidedTracker):
             track = tracker.step_guided(frames, shape, upper)
         else:
@@ -129,27 +148,27 @@ class Supervisor:
         """The upper body that leads this candidate in this frame, as another that comes before it sees it."""
         if one.kind.upper_only:
             return None
-        for other in self._candidates:
+        for other in self.candidates:
             known = self._known[other.name]
             leads = other.kind.upper_only and self._speaker in (None, other.name)
             if leads and known.live and known.track and known.track.quality >= other.kind.poor:
                 return known.body
         return None
 
-    def _choose(self, t_ns: int) -> str | None:
+    def _choose(self, frames: FrameSet) -> str | None:
         told = None if self._speaker is None else self._known[self._speaker].body
         claims = []
-        for one in self._candidates:
+        for one in self.candidates:
             known = self._known[one.name]
             near = told is None or self._is_near(known.body, told)
-            agrees = near or overrules(known.standby, t_ns, self.params)
             claims.append(
                 Claim(
                     one.name,
-                    known.standing.believed and known.now,
-                    known.live,
-                    known.body is not None,
-                    agrees,
+                    believed=known.standing.believed,
+                    known=known.body is not None,
+                    live=known.live,
+                    well=known.is_well(len(frames.frames), one.kind),
+                    agrees=near or overrules(known.standby, frames.t_ns, self.params),
                 )
             )
         return chosen(self._speaker, claims)
@@ -165,19 +184,22 @@ class Supervisor:
                 return replace(track, body=joined(body, other, skeleton))
         return replace(track, body=placed(body, skeleton))
 
-    def _mind_the_others(self, told: BodyState, t_ns: int) -> None:
+    def _mind_the_others(self, told: BodyState, frames: FrameSet) -> None:
         """Who does not speak is compared with what is told, and offered that when it went astray."""
-        for one in self._candidates:
+        t_ns, is_sure = (
+            frames.t_ns,
+            told.tracking is Tracking.LIVE and self._is_believed(self._speaker),
+        )
+        for one in self.candidates:
             known = self._known[one.name]
             if one.name == self._speaker:
                 known.standby = Standby(next_offer_ns=known.standby.next_offer_ns)
             elif known.now:
                 near = self._is_near(known.body, told)
-                standby = compared(
-                    known.standby, t_ns, self.params, live=known.live, near=near
-                )
-                is_sure = told.tracking is Tracking.LIVE and self._is_believed(self._speaker)
-                if is_sure and wants_offer(standby, t_ns, self.params):
+                standby = compared(known.standby, t_ns, self.params, live=known.live, near=near)
+                # who is guided was given it already
+                can_begin = not known.guided and len(frames.frames) >= one.kind.least_cameras
+                if is_sure and can_begin and wants_offer(standby, t_ns, self.params):
                     one.tracker.reset(near=told)
                     standby = offered(standby, t_ns, self.params)
                 known.standby = standby
@@ -198,6 +220,7 @@ class Supervisor:
                     self._away = lessened(body.pose, self._away, skeleton, step_m)
                 if self._away is not None:
                     shown = glided(body, self._away, skeleton)
+                    self.probe(GLIDE)
         self._told = shown
         return shown
 
@@ -206,13 +229,13 @@ class Supervisor:
     @property
     def _lower(self) -> Candidate | None:
         """Who completes an upper body."""
-        return next((one for one in self._candidates if not one.kind.upper_only), None)
+        return next((one for one in self.candidates if not one.kind.upper_only), None)
 
     def _rank(self, name: str) -> int:
-        return next(i for i, one in enumerate(self._candidates) if one.name == name)
+        return next(i for i, one in enumerate(self.candidates) if one.name == name)
 
     def _kind(self, name: str) -> Kind:
-        return self._candidates[self._rank(name)].kind
+        return self.candidates[self._rank(name)].kind
 
     def _is_near(self, one: BodyState | None, other: BodyState) -> bool:
         return one is not None and apart_m(one, other) <= self.params.near_m

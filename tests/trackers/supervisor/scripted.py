@@ -9,7 +9,7 @@ from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, rest_pose
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
-from mocapd.trackers.base import Track, lost_body, unprobed
+from mocapd.trackers.base import Probe, Track, lost_body, unprobed
 from mocapd.trackers.supervisor.kinds import KINDS
 from mocapd.trackers.supervisor.params import Params
 from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
@@ -52,7 +52,8 @@ class ScriptedTracker:
     """Goes by time alone. Remembers at which times it was stepped, and guided, and what it was offered."""
 
     def __init__(self, name: str, script: Sequence[Word], confidence: float) -> None:
-        self.name, self.probe = name, unprobed
+        self.name = name
+        self.probe: Probe = unprobed
         self.script, self._confidence = script, confidence
         self.stepped_ns: list[int] = []
         self.guided_by: dict[int, BodyState] = {}

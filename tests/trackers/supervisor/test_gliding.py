@@ -30,7 +30,9 @@ def shown(known: Pose, away: Away | None) -> Pose:
 
 @settings(max_examples=60, deadline=None)
 @given(SEEDS, SEEDS, st.floats(0.0, 3.0), st.floats(0.0, 2.0))
-def test_a_body_at_rest_is_reached_without_a_jump(a: int, b: int, spread_rad: float, aside_m: float) -> None:
+def test_a_body_at_rest_is_reached_without_a_jump(
+    a: int, b: int, spread_rad: float, aside_m: float
+) -> None:
     told, known = body(a, spread_rad), body(b, spread_rad, aside_m)
     away: Away | None = away_from(told, known)
     before = joints(told)
