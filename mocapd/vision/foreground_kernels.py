@@ -1,10 +1,10 @@
-"""What stands before a known background, its shadow left out."""
+"""What stands before a known background, and its shadow."""
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-BACKGROUND, BEFORE, UNKNOWN, SHADOW = 0, 1, 2, 3
+BACKGROUND, BEFORE, UNKNOWN, SHADOW, CLOTH_OR_SHADOW = 0, 1, 2, 3, 4
 
 
 @njit(cache=True, nogil=True)
@@ -23,7 +23,7 @@ def stands_before(
 
     picture (h,w,3); mean (h,w,3) 0..255 and age (h,w) of the background. A shadow is the background dimmed in all channels
     alike (Horprasert et al. 1999): `sure` and `likely` are to which share at least, and how far the colour may then be off.
-    A sure one is BACKGROUND, a likely one, which may be dark cloth, SHADOW.
+    A sure one is SHADOW, where cloth of the background's colour is seldom, a likely one CLOTH_OR_SHADOW.
     """
     h, w, _ = picture.shape
     for y in range(h):
@@ -48,6 +48,6 @@ def stands_before(
             for c in range(3):
                 off = max(off, abs(np.float32(picture[y, x, c]) - share * mean[y, x, c]))
             if share > sure[0] and off < sure[1]:
-                out[y, x] = BACKGROUND
-            elif off < likely[1]:
                 out[y, x] = SHADOW
+            elif off < likely[1]:
+                out[y, x] = CLOTH_OR_SHADOW

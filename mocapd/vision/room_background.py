@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.types import Bytes, Singles
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, SHADOW, UNKNOWN, stands_before
@@ -61,11 +61,12 @@ class RoomBackground:
         self._age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
-    def take_uncovered(self, picture: Bytes, before: Bytes) -> None:
+    def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes) -> None:
         """Take for background what somebody uncovered who was learned with it: pieces of `before` (h,w) along whose outline
         the background has the stronger edges, and not the picture (h,w,3) (Cucchiara et al. 2003 call them ghosts). They
-        become BACKGROUND in `before`."""
-        n, numbered, stats, _ = cv2.connectedComponentsWithStats((before > 0).astype(np.uint8))
+        become BACKGROUND in `before`. What lies within `body` (h,w) is not looked at."""
+        asked = ((before > 0) & (before != UNKNOWN) & (body == 0)).astype(np.uint8)
+        n, numbered, stats, _ = cv2.connectedComponentsWithStats(asked)
         if n < 2:
             return
         now, known = _edges(picture), _edges(self._mean.astype(np.uint8))
@@ -79,15 +80,17 @@ class RoomBackground:
                 self._mean[there] = picture[there]
                 before[there] = BACKGROUND
 
-    def follow_light(self, picture: Bytes, body: Bytes) -> bool:
-        """Whether a lamp went on or off: then the background is taken in its new light. body (h,w): not 0 where
-        somebody is expected."""
+    def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
+        """By how much each channel (3,) became brighter when a lamp went on or off, and the background is taken in its new light;
+        None while the light stays. body (h,w): not 0 where somebody is expected."""
         p = self._params
         share = changed(picture, body, self._mean, self._age, p.lamp_tolerance)
         if share <= p.lamp_share:
-            return False
+            return None
+        seen = (body == 0) & (self._age >= p.known_looks)
+        before, now = self._mean[seen].mean(axis=0), picture[seen].mean(axis=0)
         relight_background(picture, body, self._mean, self._age)
-        return True
+        return np.asarray(np.clip((now + 1.0) / (before + 1.0), 0.1, 10.0), np.float64)
 
     def learn(self, picture: Bytes, body: Bytes) -> None:
         """Follow the background where `body` (h,w) is 0."""
@@ -100,17 +103,18 @@ class RoomBackground:
         self._looks += 1
 
     def before(self, picture: Bytes) -> Bytes:
-        """(h,w) of a picture (h,w,3): BEFORE, SHADOW, UNKNOWN or BACKGROUND, without specks and narrow gaps."""
+        """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps."""
         p, out = self._params, self._before
         stands_before(
             picture, self._mean, self._age, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, out
         )
         kept = out.copy()
-        one = ((out == BEFORE) | (out == SHADOW)).astype(np.uint8)
+        one = ((out == BEFORE) | (out >= SHADOW)).astype(np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK), np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
         one[kept == UNKNOWN] = UNKNOWN
-        one[(one == BEFORE) & (kept == SHADOW)] = SHADOW
+        shaded = (one == BEFORE) & (kept >= SHADOW)
+        one[shaded] = kept[shaded]
         return one
 
 

@@ -19,7 +19,7 @@ from mocapd.trackers.flex.appearance_kernels import (
     count_colours,
     log_table,
 )
-from mocapd.types import Bytes, Singles
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW
 
 _UNCOUNTED = 255
@@ -33,7 +33,7 @@ class AppearanceParams:
 
     keep: float = 0.97  # share of what was counted that a frame leaves
     share: float = 0.03  # of a pixel that a frame adds
-    new_light: float = 0.02  # share of what was counted that is left when a lamp goes on or off
+    new_light: float = 0.3  # share of what was counted that is left when a lamp goes on or off
     least_share: float = 2e-5  # of a colour that a region never had
     per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
     longest_px: float = 40.0
@@ -41,7 +41,9 @@ class AppearanceParams:
     other_cost: float = 1.0  # of being none of the body
     other_per_px: float = 0.5
     other_px: float = 8.0
-    shadow_cost: float = 4.0  # of what may be a shadow, to be one
+    shadow_costs: tuple[float, float] = (1.5, 4.0)  # of a sure and a likely shadow, to be one
+    shadow_per_px: float = 0.75
+    shadow_px: float = 4.0  # from the expected body: nearer, cloth is likelier
     least_other_px: float = 50.0  # seen beside the body before it is a class
 
 
@@ -66,9 +68,18 @@ class Appearance:
         """Whether the body was seen."""
         return bool(self._counts[1:].sum() > 0.0)
 
-    def forget_light(self) -> None:
-        """Give way quickly to colours in another light."""
-        self._counts *= self._params.new_light
+    def relight(self, gain: Floats) -> None:
+        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way quickly to what is
+        seen in it."""
+        n = 1 << BITS
+        middles = np.arange(n) + 0.5
+        to = [np.clip(middles * channel, 0, n - 1).astype(np.int64) for channel in gain]
+        there = (to[0][:, None, None] << 2 * BITS) | (to[1][:, None] << BITS) | to[2]
+        old = self._counts.copy()
+        self._counts[:] = 0.0
+        for counted, before in zip(self._counts, old, strict=True):
+            np.add.at(counted, there.ravel(), self._params.new_light * before)
+        self._refresh()
 
     def learn(
         self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None
@@ -83,7 +94,7 @@ class Appearance:
         classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
         lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
         core = (lowest == highest) & (drawn > 0) & seen
-        core &= before != SHADOW if ids is None else ids == drawn
+        core &= before < SHADOW if ids is None else ids == drawn
         classes[core] = drawn[core]
         p = self._params
         if ids is not None:
@@ -97,7 +108,7 @@ class Appearance:
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_cost, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, ids,
         )  # fmt: skip
         return ids
 

@@ -79,7 +79,9 @@ def classify_regions(
     other_cost: float,
     other_per_px: float,
     other_px: float,
-    shadow_cost: float,
+    shadow_costs: tuple[float, float],
+    shadow_per_px: float,
+    shadow_px: float,
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
@@ -87,7 +89,8 @@ def classify_regions(
     before (h,w): 0 where the background shows; distance_px (5,h,w): to where each region is expected; table (6,4096)
     of `log_table`. A region pays per_px for each pixel of distance, up to longest_px; what is no region pays other_cost, and
     other_per_px for each pixel that it is away from the body, up to other_px: things beside it are learned there, and
-    not what hides it; what may be a shadow at most shadow_cost. Beyond reach_px from all regions nothing is.
+    not what hides it; what may be a shadow at most shadow_costs (a sure
+    one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px. Beyond reach_px from all regions nothing is.
     """
     h, w = before.shape
     for y in range(h):
@@ -107,7 +110,8 @@ def classify_regions(
             if nearest > reach_px:
                 continue
             other = table[0, i] + np.float32(other_cost) + np.float32(other_per_px) * min(nearest, np.float32(other_px))
-            if before[y, x] == SHADOW:
-                other = min(other, np.float32(shadow_cost))
+            if before[y, x] >= SHADOW:
+                within = np.float32(shadow_per_px) * max(np.float32(shadow_px) - nearest, np.float32(0.0))
+                other = min(other, np.float32(shadow_costs[before[y, x] - SHADOW]) + within)
             if best < other:
                 out[y, x] = found

@@ -58,13 +58,12 @@ class CameraView:
             self.body[y0:y1, x0:x1] = drawn > 0
             cv2.dilate(self.body, self.beside, dst=self.body)
 
-    def stand_before(self) -> bool:
-        """Renew what stands before the background; whether its light jumped."""
-        relit = self.background.follow_light(self.picture, self.body)
-        if relit:
-            self.appearance.forget_light()
+    def stand_before(self) -> None:
+        """Renew what stands before the background, whose light may jump."""
+        gain = self.background.follow_light(self.picture, self.body)
+        if gain is not None:
+            self.appearance.relight(gain)
         self.before = self.background.before(self.picture)
-        return relit
 
 
 class CameraViews:
@@ -111,7 +110,7 @@ class CameraViews:
                 self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
 
     def stand_before(self) -> None:
-        """Renew what stands before each background; in all cameras colours give way when the light jumps in one."""
+        """Renew what stands before each background."""
         for i in self.present:
             self.each[i].stand_before()
 
@@ -119,7 +118,7 @@ class CameraViews:
         """Take for background what stands before it by mistake; see `RoomBackground`."""
         for i in self.present:
             camera = self.each[i]
-            camera.background.take_uncovered(camera.picture, camera.before)
+            camera.background.take_uncovered(camera.picture, camera.before, camera.body)
 
     def classified(self, state: MotionState) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each."""

@@ -20,11 +20,14 @@ class StartParams:
     step_m: float = 0.05
     blobs: int = 3  # in each picture, the largest
     arms_rad: tuple[float, ...] = (0.0, -0.7, -1.2)  # how far below the T-pose both are tried
-    iterations: int = 8
+    rough_iterations: int = 4
+    refined: int = 2  # of the roughly fitted
+    iterations: int = 6
     loose_s: float = 0.4  # how far the fit may move from where it begins, as a time of motion
     accept_explained: float = 0.75  # of silhouette and body together
     likely_explained: float = 0.6  # the same, at two attempts in a row
     same_place_m: float = 0.4  # between which the person moved no more than this
+    farther_per_m: float = 0.08  # of such agreement a person who is a metre farther away must have more
     people: int = 2  # of whom the best is taken
     pause_s: float = 0.2  # between attempts that failed
 
@@ -47,6 +50,7 @@ class Params:
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
+    uncovered_turns: int = 10  # from one look for what was uncovered to the next
     absorb_turns: int = 13  # of so many looks one learns what stands before the background, too, while nobody is known
     soft: float = 60.0 / 255.0  # weight of a drawn pixel where something else stands before the background
 

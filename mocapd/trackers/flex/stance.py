@@ -17,6 +17,7 @@ from mocapd.trackers.flex.params import StartParams
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BEFORE, SHADOW
 
+_ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
 _ABOUT_PX = 20  # of a blob, within which its body is drawn
 
 
@@ -43,7 +44,7 @@ class Standing:
 
 def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
     """The largest pieces of a picture (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
-    mask = (before == BEFORE) | (before == SHADOW) if shadows else before == BEFORE
+    mask = (before == BEFORE) | (before >= SHADOW) if shadows else before == BEFORE
     n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
@@ -134,19 +135,39 @@ def first_fit(
         View(i, blob.roi, blob.mask, np.full(blob.mask.shape, 255, np.uint8), offsets_s[i])
         for i, blob in who.blobs.items()
     ]  # fmt: skip
-    model = fitter.model
-    eye = np.mean([centre(fitter.drawings[i].camera) for i in who.blobs], axis=0)
-    to_cameras = eye - who.place_m
-    yaw = float(np.arctan2(to_cameras[0], to_cameras[2]))
     rest = fitter.shaper(factors).rest
-    fits = []
-    for arm in params.arms_rad:
-        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
-        local[0] = rotations.exp(np.array([0.0, yaw, 0.0]))
-        for side, mirror in (("left", 1.0), ("right", -1.0)):
-            local[INDEX[side + "UpperArm"]] = rotations.exp(np.array([0.0, 0.0, mirror * arm]))
-        state = MotionState(rest[0] + who.place_m, local, np.zeros(model.n_pose), factors, information)
-        fits.append(
-            fitter.fit(state, views, params.loose_s, params.iterations, learn_shape=False, terms=terms)
+    begins = [
+        MotionState(
+            rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
         )
-    return min(fits, key=lambda fit: fit.cost)
+        for yaw in _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
+        for arm in params.arms_rad
+    ]  # fmt: skip
+
+    def fitted(state: MotionState, iterations: int) -> Fit:
+        return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
+
+    roughly = sorted((fitted(state, params.rough_iterations) for state in begins), key=lambda fit: fit.cost)
+    return min(
+        (fitted(fit.state, params.iterations) for fit in roughly[: params.refined]), key=lambda fit: fit.cost
+    )
+
+
+def _ways(who: Standing, eyes_m: Sequence[Floats]) -> list[float]:
+    """Which way somebody may face [rad], 0 along +Z: the cameras, or any way where these stand all around."""
+    away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    middle = away.mean(axis=0)
+    yaw = float(np.arctan2(middle[0], middle[1]))
+    if np.linalg.norm(middle) > _ONE_SIDE:
+        return [yaw]
+    return [yaw + quarter * 0.5 * np.pi for quarter in range(4)]
+
+
+def _stance(yaw: float, arm: float) -> Floats:
+    """Local rotations (J,4) of somebody upright whose arms are turned by `arm` [rad] from the T-pose."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    local[0] = rotations.exp(np.array([0.0, yaw, 0.0]))
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        local[INDEX[side + "UpperArm"]] = rotations.exp(np.array([0.0, 0.0, mirror * arm]))
+    return local

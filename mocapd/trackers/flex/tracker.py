@@ -20,6 +20,7 @@ from mocapd.fit.motion_state import MotionState, known_of, moved, step_between
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.trackers.blending import Residual, blended, later, residual_of
 from mocapd.trackers.flex.camera_views import CameraViews
@@ -128,6 +129,8 @@ class FlexTracker:
         predicted = replace(last, root_m=root, local_xyzw=local)
         self._cameras.mark_body(predicted)
         self._cameras.stand_before()
+        if self._turn % p.uncovered_turns == 0:
+            self._cameras.take_uncovered()
         self.probe("background")
         views = self._cameras.classified(predicted)
         self.probe("classify")
@@ -200,7 +203,8 @@ class FlexTracker:
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             return None, []
-        fit, names = max(likely, key=lambda one: one[0].explained)
+        # who is nearer wants to be tracked: a passer-by is seldom in front
+        fit, names = max(likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0]))
         again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
         if fit.explained < p.start.accept_explained and not again:
             return None, []
@@ -221,6 +225,11 @@ class FlexTracker:
             )
             for who in standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p)[: p.people]
         ]  # fmt: skip
+
+    def _away_m(self, fit: Fit) -> float:
+        """From the cameras, on average."""
+        eyes = [centre(camera) for camera in self.rig.cameras]
+        return float(np.linalg.norm(np.array(eyes) - fit.state.root_m, axis=1).mean())
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
