@@ -9,9 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.skeleton import joint_positions
+from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
+from mocapd.trackers.supervisor.params import Params
 from mocapd.types import BodyState, Floats, Pose, Skeleton
 
+_LEAST_M = 0.01  # in a frame, however short
 _HALVINGS = 10  # of what is left: the way of a metre is known to a millimetre
 
 
@@ -54,6 +57,49 @@ def lessened(known: Pose, away: Away, skeleton: Skeleton, step_m: float) -> Away
         else:
             too_little = middle
     return replace(away, share=enough)
+
+
+class Glider:
+    """What is told from frame to frame, without a jump where another speaks than before."""
+
+    def __init__(self, params: Params) -> None:
+        self._params = params
+        self.reset()
+
+    def reset(self, told: BodyState | None = None) -> None:
+        """As if this had been told a moment ago."""
+        self._told = told if told is not None and told.pose is not None else None
+        self._away: Away | None = None
+
+    def begins(self, body: BodyState) -> bool:
+        """Whether another spoke in the frame before, a moment ago."""
+        return (
+            self._told is not None
+            and self._told.tracker != body.tracker
+            and body.t_ns - self._told.t_ns <= nanoseconds(self._params.glide_within_s)
+        )
+
+    def step(
+        self, body: BodyState, before: BodyState | None, skeleton: Skeleton
+    ) -> tuple[BodyState, bool]:
+        """A body (with a pose) as it is to be told, and whether it is on its way. before: where another speaks now, what
+        that would have told in the frame before, None when nobody knows."""
+        p, told = self._params, self._told
+        assert body.pose is not None
+        gap_ns = 0 if told is None else body.t_ns - told.t_ns
+        if told is None or told.pose is None or gap_ns > nanoseconds(p.glide_within_s):
+            self._away = None
+        elif told.tracker != body.tracker:
+            # the motion since then is not to be mended
+            known = before.pose if before is not None and before.pose is not None else body.pose
+            self._away = away_from(told.pose, known)
+        if self._away is not None:
+            step_m = min(p.glide_m, max(p.glide_m_s * seconds(gap_ns), _LEAST_M))
+            self._away = lessened(body.pose, self._away, skeleton, step_m)
+        if self._away is not None:
+            body = glided(body, self._away, skeleton)
+        self._told = body
+        return body, self._away is not None
 
 
 def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:

@@ -1,15 +1,14 @@
 """The supervisor's step machine: step those whose turn it is, judge, choose, join, glide; keep the others warm."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.clock import nanoseconds, seconds
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.supervisor.choice import Claim, chosen
-from mocapd.trackers.supervisor.gliding import Away, away_from, glided, lessened
-from mocapd.trackers.supervisor.joining import apart_m, joined, placed
+from mocapd.trackers.supervisor.gliding import Glider
+from mocapd.trackers.supervisor.joining import apart_m, completed
 from mocapd.trackers.supervisor.kinds import Kind
 from mocapd.trackers.supervisor.params import Params
 from mocapd.trackers.supervisor.standby import (
@@ -24,7 +23,6 @@ from mocapd.trackers.supervisor.standing import Standing, is_well, judged
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
 GLIDE = "glide"  # the stage of a frame that is told between one speaker's body and the next one's
-_LEAST_GLIDE_M = 0.01  # in a frame, however short
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,6 +75,7 @@ class Supervisor:
         self.params = params if params is not None else Params()
         self.probe: Probe = unprobed
         self.candidates = tuple(candidates)
+        self._glider = Glider(self.params)
         for one in self.candidates:
             one.tracker.probe = partial(self._heard, one.name)
         self.reset()
@@ -87,11 +86,11 @@ class Supervisor:
             one.tracker.reset(near)
         self._known = {one.name: _Known() for one in self.candidates}
         self._speaker: str | None = None
-        self._told = near if near is not None and near.pose is not None else None
-        self._away: Away | None = None
+        self._glider.reset(near)
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker. Raises ConfigError as its trackers do."""
+        before = {name: known.body for name, known in self._known.items()}
         for known in self._known.values():
             known.now = False
         shape = self._ask(frames, shape, lambda one: self._is_due(one, frames.t_ns))
@@ -100,12 +99,16 @@ class Supervisor:
         skeleton = skeleton_of(shape)
         self._speaker = self._choose(frames)
         if self._speaker is None:
-            self._told, self._away = None, None
+            self._glider.reset()
             return Track(lost_body(frames.t_ns, self.name), shape)
-        track = self._spoken(self._speaker, skeleton)
-        self._mind_the_others(track.body, frames)
-        body = self._glide(track.body, skeleton)
-        self.probe("join")
+        now = {name: known.body for name, known in self._known.items()}
+        track, body = self._known[self._speaker].track, self._composed(now, skeleton)
+        assert track is not None
+        assert body is not None
+        self._mind_the_others(body, frames)
+        was = self._composed(before, skeleton) if self._glider.begins(body) else None
+        body, glides = self._glider.step(body, was, skeleton)
+        self.probe(GLIDE if glides else "join")
         return replace(track, body=body, shape=shape)
 
     # --- stages ---
@@ -173,23 +176,22 @@ class Supervisor:
             )
         return chosen(self._speaker, claims)
 
-    def _spoken(self, speaker: str, skeleton: Skeleton) -> Track:
-        """The track of who speaks, completed where it tells of the upper body alone."""
-        track = self._known[speaker].track
-        assert track is not None
-        body, lower = track.body, self._lower
-        if lower is not None and lower.name != speaker and self._kind(speaker).upper_only:
-            other = self._known[lower.name].body
-            if other is not None and self._is_near(other, body):
-                return replace(track, body=joined(body, other, skeleton))
-        return replace(track, body=placed(body, skeleton))
+    def _composed(
+        self, bodies: Mapping[str, BodyState | None], skeleton: Skeleton
+    ) -> BodyState | None:
+        """The body of who speaks, of those of one frame set, completed where it is an upper body alone."""
+        assert self._speaker is not None
+        body = bodies[self._speaker]
+        if body is None:
+            return None
+        is_upper = self.candidates[self._rank(self._speaker)].kind.upper_only
+        lower = bodies[self._lower.name] if self._lower is not None and is_upper else None
+        return completed(body, lower, skeleton, self.params.near_m)
 
     def _mind_the_others(self, told: BodyState, frames: FrameSet) -> None:
         """Who does not speak is compared with what is told, and offered that when it went astray."""
-        t_ns, is_sure = (
-            frames.t_ns,
-            told.tracking is Tracking.LIVE and self._is_believed(self._speaker),
-        )
+        t_ns = frames.t_ns
+        is_sure = told.tracking is Tracking.LIVE and self._is_believed(self._speaker)
         for one in self.candidates:
             known = self._known[one.name]
             if one.name == self._speaker:
@@ -204,26 +206,6 @@ class Supervisor:
                     standby = offered(standby, t_ns, self.params)
                 known.standby = standby
 
-    def _glide(self, body: BodyState, skeleton: Skeleton) -> BodyState:
-        """No jump where another speaks than before."""
-        p, told = self.params, self._told
-        shown = body
-        if told is not None and told.pose is not None and body.pose is not None:
-            gap_ns = body.t_ns - told.t_ns
-            if gap_ns > nanoseconds(p.glide_within_s):
-                self._away = None
-            else:
-                if told.tracker != body.tracker:
-                    self._away = away_from(told.pose, body.pose)
-                step_m = min(p.glide_m, max(p.glide_m_s * seconds(gap_ns), _LEAST_GLIDE_M))
-                if self._away is not None:
-                    self._away = lessened(body.pose, self._away, skeleton, step_m)
-                if self._away is not None:
-                    shown = glided(body, self._away, skeleton)
-                    self.probe(GLIDE)
-        self._told = shown
-        return shown
-
     # --- who is who ---
 
     @property
@@ -233,9 +215,6 @@ class Supervisor:
 
     def _rank(self, name: str) -> int:
         return next(i for i, one in enumerate(self.candidates) if one.name == name)
-
-    def _kind(self, name: str) -> Kind:
-        return self.candidates[self._rank(name)].kind
 
     def _is_near(self, one: BodyState | None, other: BodyState) -> bool:
         return one is not None and apart_m(one, other) <= self.params.near_m
