@@ -70,6 +70,7 @@ class Glider:
         """As if this had been told a moment ago."""
         self._told = told if told is not None and told.pose is not None else None
         self._away: Away | None = None
+        self._speed_m_s = 0.0
 
     def begins(self, body: BodyState) -> bool:
         """Whether another spoke in the frame before, a moment ago."""
@@ -93,8 +94,10 @@ class Glider:
             # the motion since then is not to be mended
             known = before.pose if before is not None and before.pose is not None else body.pose
             self._away = away_from(told.pose, known)
+            way_m = _farthest_m(told.pose, known, skeleton)
+            self._speed_m_s = max(way_m / p.glide_s, p.glide_m_s)
         if self._away is not None:
-            step_m = min(p.glide_m, max(p.glide_m_s * seconds(gap_ns), _LEAST_M))
+            step_m = min(p.glide_m, max(self._speed_m_s * seconds(gap_ns), _LEAST_M))
             self._away = lessened(body.pose, self._away, skeleton, step_m)
         if self._away is not None:
             body = glided(body, self._away, skeleton)
@@ -111,3 +114,8 @@ def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:
     # one standard deviation along an axis
     uncertainty_m = np.hypot(body.uncertainty_m, wrong_m / np.sqrt(3.0))
     return replace(body, pose=pose, joints_m=joints_m, uncertainty_m=uncertainty_m)
+
+
+def _farthest_m(one: Pose, other: Pose, skeleton: Skeleton) -> float:
+    apart_m = joint_positions(skeleton, one) - joint_positions(skeleton, other)
+    return float(np.linalg.norm(apart_m, axis=1).max())

@@ -31,7 +31,9 @@ class Params:
     )
     offer_every_s: float = 2.0  # it forgets background and light by that
 
-    # what remains at a switch: at most so much is mended in a frame, of any joint; a tenth of a metre is promised
+    # what remains at a switch is mended within glide_s, of any joint at glide_m_s at least, at any frame rate, and never
+    # by more than glide_m in a frame: a tenth of a metre is promised
+    glide_s: float = 0.3
+    glide_m_s: float = 1.5
     glide_m: float = 0.09
-    glide_m_s: float = 2.7  # the same speed at any frame rate
     glide_within_s: float = 0.5  # after a longer gap nothing is left to glide from
