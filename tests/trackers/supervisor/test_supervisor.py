@@ -136,6 +136,20 @@ def test_who_is_lost_is_offered_the_body_that_is_told() -> None:
     assert one.flex.offers == [None]
 
 
+def test_who_is_led_is_offered_nothing_and_who_cannot_be_is() -> None:
+    """What is offered is forgotten for: a tracker that is led has the body in every frame."""
+    script = (Word(0.0), Word(1.0, LOST))
+    led = scene(ALL_WELL, script)
+    led.run(4.0)
+    assert led.flex.offers == [None]
+    alone = ScriptedTracker("flex", script, 0.5)
+    other = ScriptedTracker("colour", ALL_WELL, 0.9)
+    auto = Supervisor([Candidate(one, KINDS[one.name]) for one in (other, alone)])
+    for k in range(120):
+        auto.step(frame_set(k * 33_333_333, 2), SHAPE)
+    assert [near is not None and near.tracker for near in alone.offers] == [False, "colour", "colour"]
+
+
 def test_no_body_is_offered_that_nobody_believes() -> None:
     one = scene((Word(0.0, LOST),), (Word(0.0, quality=0.3),))
     one.run(3.0)
