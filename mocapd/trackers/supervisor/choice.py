@@ -20,15 +20,17 @@ class Claim:
 def chosen(speaker: str | None, claims: Sequence[Claim]) -> str | None:
     """Whose body is told, of the claims in the order of preference; None when nobody knows one.
 
-    Who speaks goes on while it is believed or does well, unless one that is preferred to it is believed and agrees. When
-    nobody is believed it goes on while it is live, unless a preferred one does well; then anyone who is live speaks.
-    Nobody begins with a body of a moment ago.
+    Who speaks goes on while it is believed, unless one that is preferred to it is believed too and agrees; or while it does
+    well, unless a preferred one does as well; or while it is live, unless another is believed or does well. Else anyone who
+    is live speaks. Nobody begins with a body of a moment ago.
     """
     now = next((one for one in claims if one.name == speaker), None)
-    is_sure = now is not None and now.known and (now.believed or now.well)
+    is_sure = now is not None and now.known and now.believed
     for one in claims:
         if one is now and is_sure:
             return one.name
+        if one is now and one.well:
+            break
         if one.believed and one.live and (one.agrees or not is_sure):
             return one.name
     for one in claims:

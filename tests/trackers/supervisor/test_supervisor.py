@@ -1,5 +1,7 @@
 """Who speaks and when, and what is told meanwhile: on trackers that say what a script tells them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from mocapd.clock import nanoseconds
 from mocapd.geometry import rotations
 from mocapd.trackers.base import unprobed
 from mocapd.trackers.supervisor.joining import LOWER_BONES, LOWER_JOINTS
-from mocapd.trackers.supervisor.kinds import KINDS
+from mocapd.trackers.supervisor.kinds import KINDS, Kind
 from mocapd.trackers.supervisor.params import Params
 from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
 from mocapd.types import BodyState, FrameSet, Tracking
@@ -108,6 +110,56 @@ def test_quality_between_the_limits_changes_nothing() -> None:
     assert speakers(scene(covered, ALL_WELL).run(4.0)) == [BOTH, "flex"]
 
 
+def test_who_is_preferred_speaks_at_once_while_the_other_is_not_believed_yet() -> None:
+    soon_s = 0.5 * PARAMS.confirm_s
+    bodies = scene((Word(0.0, LOST), Word(soon_s)), ALL_WELL).run(1.0)
+    assert speakers(bodies) == ["flex", BOTH]
+    assert at(bodies, soon_s).tracker == BOTH
+
+
+def test_nobody_begins_with_a_body_of_a_moment_ago() -> None:
+    coasting = (Word(0.0, LOST), Word(1.9, Tracking.COASTING))
+    bodies = scene(coasting, (Word(0.0), Word(2.0, LOST))).run(2.5)
+    assert speakers(bodies) == ["flex", "auto"]
+
+
+def test_a_doubtful_upper_body_leads_nobody() -> None:
+    one = scene((Word(0.0), Word(1.0, quality=0.3), Word(1.07)), ALL_WELL)
+    bodies = one.run(2.0)
+    assert speakers(bodies) == [BOTH]
+    led = [body.t_ns in one.flex.guided_by for body in bodies]
+    assert led == [not 1.0 <= body.t_ns / 1e9 < 1.07 for body in bodies]
+
+
+def test_a_third_kind_is_asked_now_and_then_until_it_is_needed() -> None:
+    kind = Kind(upper_only=False, least_cameras=3, good=0.5, poor=0.4)
+    colour = ScriptedTracker("colour", (Word(0.0), Word(2.0, LOST)), 0.9)
+    flex = ScriptedTracker("flex", (Word(0.0), Word(2.5, LOST)), 0.5)
+    third = ScriptedTracker("third", ALL_WELL, 0.5)
+    kinds = (KINDS["colour"], KINDS["flex"], kind)
+    auto = Supervisor([Candidate(*pair) for pair in zip((colour, flex, third), kinds, strict=True)])
+    bodies = [auto.step(frame_set(k * 33_333_333, 3), SHAPE).body for k in range(120)]
+    assert speakers(bodies) == [BOTH, "flex", "third"]
+    asked = [t_ns for t_ns in third.stepped_ns if 0.5e9 < t_ns < 2.0e9]
+    assert len(asked) <= 1.5 / PARAMS.search_every_s + 1
+    assert len([t_ns for t_ns in third.stepped_ns if t_ns > 2.6e9]) == sum(
+        body.t_ns > 2.6e9 for body in bodies
+    )
+
+
+def test_the_motion_between_two_speakers_frames_is_not_held_back() -> None:
+    """A decimetre and more between frames, and both trackers are right."""
+    bodies = scene((Word(0.0), Word(1.0, LOST), Word(3.0)), ALL_WELL).run(5.0, hz=4.0)
+    assert speakers(bodies) == [BOTH, "flex", BOTH]
+    moved_m = [
+        np.linalg.norm(joints_of(b) - joints_of(a), axis=1).max() for a, b in pairwise(bodies)
+    ]
+    assert max(moved_m) > 0.1
+    for body in bodies:
+        true = joint_positions(skeleton_of(SHAPE), true_pose(body.t_ns))
+        assert np.allclose(joints_of(body), true, atol=1e-9)
+
+
 def test_legs_that_are_lost_leave_the_upper_body() -> None:
     one = scene(ALL_WELL, (Word(0.0), Word(1.0, LOST)))
     assert speakers(one.run(2.0)) == [BOTH, "colour"]
@@ -147,7 +199,11 @@ def test_who_is_led_is_offered_nothing_and_who_cannot_be_is() -> None:
     auto = Supervisor([Candidate(one, KINDS[one.name]) for one in (other, alone)])
     for k in range(120):
         auto.step(frame_set(k * 33_333_333, 2), SHAPE)
-    assert [near is not None and near.tracker for near in alone.offers] == [False, "colour", "colour"]
+    assert [near is not None and near.tracker for near in alone.offers] == [
+        False,
+        "colour",
+        "colour",
+    ]
 
 
 def test_no_body_is_offered_that_nobody_believes() -> None:
