@@ -12,17 +12,20 @@ from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG
 
+_BROW = 0.045  # of the stature below the crown: hair above
 _FOOT = 0.05  # of the stature, in the T-pose: what is lower is shoe
 
 
 class Region(IntEnum):
-    """Ids of the body's regions. A forearm may be bare, so it is none of the trunk's; hands are its."""
+    """Ids of the body's regions. A forearm may be bare, so it is none of the trunk's; a hand is when the sleeve is long."""
 
     TRUNK = 1  # and upper arms
-    HEAD = 2
+    FACE = 2
     FOREARM = 3
     LEG = 4
     FOOT = 5
+    HAND = 6
+    HAIR = 7  # the head but for its face: which of them shows tells which way somebody looks
 
 
 class Label(IntEnum):
@@ -52,8 +55,14 @@ def regions(model: BodyModel) -> NDArray[np.uint8]:
     forearm = [INDEX[side + bone] for side in SIDES for bone in ("LowerArm", "Hand")]
     arms = (model.part == LEFT_ARM) | (model.part == RIGHT_ARM)
     legs = (model.part == LEFT_LEG) | (model.part == RIGHT_LEG)
-    out[model.part == HEAD] = Region.HEAD
+    head = model.part == HEAD
+    forward, up = model.centres_m[:, 2], model.centres_m[:, 1]
+    middle, crown = forward[head].mean(), up[head].max()
+    out[head] = Region.HAIR
+    out[head & (forward > middle) & (up < crown - _BROW * model.stature_m)] = Region.FACE
     out[arms & np.isin(model.triangle_bones[:, 0], forearm)] = Region.FOREARM
+    hands = [INDEX[side + "Hand"] for side in SIDES]
+    out[arms & np.isin(model.triangle_bones[:, 0], hands)] = Region.HAND
     out[legs] = Region.LEG
     out[legs & (model.centres_m[:, 1] < _FOOT * model.stature_m)] = Region.FOOT
     return out

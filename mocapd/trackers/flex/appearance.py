@@ -117,7 +117,7 @@ class Appearance:
 
 
 def region_distances(drawn: Bytes) -> Singles:
-    """Distances (5,h,w) [px] from each pixel to where each region is drawn (h,w); large where it is not."""
+    """Distances (7,h,w) [px] from each pixel to where each region is drawn (h,w); large where it is not."""
     out = np.empty((len(Region), *drawn.shape), np.float32)
     for region in Region:
         away = (drawn != region).astype(np.uint8)

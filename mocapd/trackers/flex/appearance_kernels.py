@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from mocapd.vision.foreground_kernels import SHADOW
 
 Singles = NDArray[np.float32]
-N_CLASSES = 6  # the five regions, and 0: none of them
+N_CLASSES = 8  # the seven regions, and 0: none of them
 BITS = 4  # of each channel
 N_BINS = 1 << 3 * BITS
 
@@ -28,7 +28,7 @@ def count_colours(
     rate: float,
     counts: Singles,
 ) -> None:
-    """Add `rate` to counts (6,4096) for each pixel of the picture (h,w,3), by its class (h,w); `nothing`: a class that is not
+    """Add `rate` to counts (8,4096) for each pixel of the picture (h,w,3), by its class (h,w); `nothing`: a class that is not
     counted."""
     h, w = classes.shape
     for y in range(h):
@@ -40,7 +40,7 @@ def count_colours(
 
 @njit(cache=True, nogil=True)
 def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
-    """out (6,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
+    """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
     in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
     n = 1 << BITS
     for k in range(len(counts)):
@@ -86,7 +86,7 @@ def classify_regions(
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
 
-    before (h,w): 0 where the background shows; distance_px (5,h,w): to where each region is expected; table (6,4096)
+    before (h,w): 0 where the background shows; distance_px (7,h,w): to where each region is expected; table (8,4096)
     of `log_table`. A region pays per_px for each pixel of distance, up to longest_px; what is no region pays other_cost, and
     other_per_px for each pixel that it is away from the body, up to other_px: things beside it are learned there, and
     not what hides it; what may be a shadow at most shadow_costs (a sure

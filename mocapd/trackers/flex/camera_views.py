@@ -26,7 +26,8 @@ class CameraView:
         w, h = self.work_size = size_px[0] // image_scale & ~1, size_px[1] // image_scale & ~1
         self.picture = np.zeros((h, w, 3), np.uint8)
         self.before = np.zeros((h, w), np.uint8)
-        self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be
+        self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
+        self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
         self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
@@ -35,7 +36,7 @@ class CameraView:
         """Forget background and appearance."""
         self.background.reset()
         self.appearance.reset()
-        self.body[:] = 0
+        self.mark_body(None, (0, 0, 0, 0))
 
     def look(self, pixels: Bytes) -> None:
         """Take a frame's pixels (h,w,3). Raises ConfigError when it is not of its calibration's size."""
@@ -53,10 +54,11 @@ class CameraView:
     def mark_body(self, drawn: Bytes | None, roi: Roi) -> None:
         """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is known."""
         self.body[:] = 0
+        self.drawn[:] = 0
         if drawn is not None:
             x0, y0, x1, y1 = roi
-            self.body[y0:y1, x0:x1] = drawn > 0
-            cv2.dilate(self.body, self.beside, dst=self.body)
+            self.drawn[y0:y1, x0:x1] = drawn > 0
+            cv2.dilate(self.drawn, self.beside, dst=self.body)
 
     def stand_before(self) -> None:
         """Renew what stands before the background, whose light may jump."""
@@ -118,7 +120,7 @@ class CameraViews:
         """Take for background what stands before it by mistake; see `RoomBackground`."""
         for i in self.present:
             camera = self.each[i]
-            camera.background.take_uncovered(camera.picture, camera.before, camera.body)
+            camera.background.take_uncovered(camera.picture, camera.before, camera.drawn)
 
     def classified(self, state: MotionState) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each."""

@@ -27,6 +27,7 @@ from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
+from mocapd.trackers.flex.turning import head_share, turned_round
 from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, FrameSet, Pose, Rig, Tracking
@@ -149,6 +150,11 @@ class FlexTracker:
         self.probe("fit")
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, False, terms)
         self.probe("arms")
+        before = fit
+        fit = self._facing(fit, views, dt_s, terms)
+        if fit is not before:
+            switched = SIDES
+        self.probe("facing")
         if not self._believed(fit):
             return known, views
         state = fit.state
@@ -169,6 +175,19 @@ class FlexTracker:
         )
         return (self._floor, *measured)
 
+    def _facing(
+        self, fit: Fit, views: Sequence[View], dt_s: float, terms: Sequence[PoseTerm]
+    ) -> Fit:
+        """The fit, or that of a body which looks the other way, when face and hair are not where they should be."""
+        p = self.params
+        if self._turn % p.facing_turns or head_share(fit) > p.sure_head:
+            return fit
+        other = self._fitter.fit(
+            turned_round(fit.state), views, _TAKEN_OVER_S, p.fit.iterations, learn_shape=False, terms=terms,
+        )  # fmt: skip
+        better = other.cost < fit.cost - p.facing_gain and head_share(other) > head_share(fit)
+        return other if better else fit
+
     def _velocity(
         self, fit: Fit, last: MotionState, dt_s: float, switched: Sequence[str]
     ) -> Floats:
@@ -186,6 +205,8 @@ class FlexTracker:
             velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
             if side in switched:
                 velocity[columns] = 0.0
+        if len(switched) == len(SIDES):
+            velocity[3:] = 0.0
         return velocity
 
     def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
