@@ -107,6 +107,8 @@ class Supervisor:
         assert body is not None
         self._mind_the_others(body, frames)
         was = self._composed(before, skeleton) if self._glider.begins(body) else None
+        if was is not None and was.tracker != body.tracker:
+            was = None  # it would have been told by others then
         body, glides = self._glider.step(body, was, skeleton)
         self.probe(GLIDE if glides else "join")
         return replace(track, body=body, shape=shape)

@@ -22,13 +22,15 @@ _PIXEL = np.zeros((1, 1, 3), np.uint8)
 
 @dataclass(frozen=True)
 class Word:
-    """What is said from then on. off_m: away from where the person is, along x; arms_rad: raised beyond the true pose."""
+    """What is said from then on. off_m: away from where the person is, along x; arms_rad: raised beyond
+    the true pose; knees_rad: bent beyond it."""
 
     from_s: float
     tracking: Tracking = Tracking.LIVE
     quality: float = 0.8
     off_m: float = 0.0
     arms_rad: float = 0.0
+    knees_rad: float = 0.0
 
 
 LOST = Tracking.LOST
@@ -77,6 +79,9 @@ class ScriptedTracker:
             for bone in ("UpperArm", "LowerArm", "Hand"):
                 joint = INDEX[side + bone]
                 quats[joint] = rotations.multiply(raised, quats[joint])
+        for knee in ("leftLowerLeg", "rightLowerLeg"):
+            bent = rotations.exp(np.array([word.knees_rad, 0.0, 0.0]))
+            quats[INDEX[knee]] = rotations.multiply(bent, quats[INDEX[knee]])
         pose = Pose(true.root_m + (word.off_m, 0.0, 0.0), rotations.canonical(quats))
         body = BodyState(
             frames.t_ns,

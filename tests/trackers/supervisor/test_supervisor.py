@@ -261,6 +261,22 @@ def test_no_joint_jumps_when_another_speaks(hz: float) -> None:
     assert np.allclose(off[-1], 0.0, atol=1e-9)
 
 
+def test_legs_do_not_jump_when_who_sees_them_is_lost_and_found() -> None:
+    one = scene(ALL_WELL, (Word(0.0, knees_rad=0.8), Word(1.0, LOST), Word(2.0, knees_rad=0.8)))
+    bodies = one.run(3.0)
+    assert speakers(bodies) == [BOTH, "colour", BOTH]
+    steps_m = [
+        np.linalg.norm(joints_of(b) - joints_of(a), axis=1).max() for a, b in pairwise(bodies)
+    ]
+    assert max(steps_m) <= 0.10 + 0.03  # and half a second of walking
+    knees = [INDEX["leftFoot"], INDEX["rightFoot"]]
+    bent_m = [
+        np.linalg.norm(joints_of(at(bodies, t_s))[knees] - joints_of(at(bodies, 1.9))[knees])
+        for t_s in (0.9, 2.9)
+    ]
+    assert min(bent_m) > 0.3
+
+
 def test_what_still_glides_is_less_certain() -> None:
     covered = (Word(0.0), Word(1.0, LOST))
     bodies = scene(covered, (Word(0.0, off_m=0.25),)).run(2.0)
