@@ -59,6 +59,14 @@ def lessened(known: Pose, away: Away, skeleton: Skeleton, step_m: float) -> Away
     return replace(away, share=enough)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sourced:
+    """A body with a pose, and whose it is: a change of that is what is glided over."""
+
+    body: BodyState
+    source: str
+
+
 class Glider:
     """What is told from frame to frame, without a jump where another speaks than before."""
 
@@ -69,40 +77,49 @@ class Glider:
     def reset(self, told: BodyState | None = None) -> None:
         """As if this had been told a moment ago."""
         self._told = told if told is not None and told.pose is not None else None
+        self._last: Sourced | None = None  # what was known then
         self._away: Away | None = None
         self._speed_m_s = 0.0
 
-    def begins(self, body: BodyState) -> bool:
-        """Whether another spoke in the frame before, a moment ago."""
-        return (
-            self._told is not None
-            and self._told.tracker != body.tracker
-            and body.t_ns - self._told.t_ns <= nanoseconds(self._params.glide_within_s)
-        )
-
     def step(
-        self, body: BodyState, before: BodyState | None, skeleton: Skeleton
+        self, now: Sourced, before: Sourced | None, skeleton: Skeleton
     ) -> tuple[BodyState, bool]:
-        """A body (with a pose) as it is to be told, and whether it is on its way. before: where another speaks now, what
-        that would have told in the frame before, None when nobody knows."""
-        p, told = self._params, self._told
-        assert body.pose is not None
+        """A body as it is to be told, and whether it is on its way. before: what those who speak now would have told in
+        the frame before, None when nobody knows."""
+        p, told, body = self._params, self._told, now.body
         gap_ns = 0 if told is None else body.t_ns - told.t_ns
-        if told is None or told.pose is None or gap_ns > nanoseconds(p.glide_within_s):
+        if told is None or gap_ns > nanoseconds(p.glide_within_s):
             self._away = None
-        elif told.tracker != body.tracker:
+        elif self._last is None or self._last.source != now.source:
             # the motion since then is not to be mended
-            known = before.pose if before is not None and before.pose is not None else body.pose
-            self._away = away_from(told.pose, known)
-            way_m = _farthest_m(told.pose, known, skeleton)
-            self._speed_m_s = max(way_m / p.glide_s, p.glide_m_s)
-        if self._away is not None:
+            is_same = before is not None and before.source == now.source
+            self._begin(told, before.body if is_same and before is not None else body, skeleton)
+        elif self._away is not None and _jumps(self._last.body, body, p):
+            self._begin(told, body, skeleton)  # who has just begun to speak settles
+        if self._away is not None and body.pose is not None:
             step_m = min(p.glide_m, max(self._speed_m_s * seconds(gap_ns), _LEAST_M))
             self._away = lessened(body.pose, self._away, skeleton, step_m)
         if self._away is not None:
             body = glided(body, self._away, skeleton)
-        self._told = body
+        self._told, self._last = body, now
         return body, self._away is not None
+
+    def _begin(self, told: BodyState, known: BodyState, skeleton: Skeleton) -> None:
+        assert told.pose is not None
+        assert known.pose is not None
+        self._away = away_from(told.pose, known.pose)
+        way_m = joint_positions(skeleton, told.pose) - joint_positions(skeleton, known.pose)
+        farthest_m = float(np.linalg.norm(way_m, axis=1).max())
+        self._speed_m_s = max(farthest_m / self._params.glide_s, self._params.glide_m_s)
+
+
+def _jumps(before: BodyState, now: BodyState, params: Params) -> bool:
+    """Whether a joint went farther than a person moves."""
+    assert before.joints_m is not None
+    assert now.joints_m is not None
+    farthest_m = np.linalg.norm(now.joints_m - before.joints_m, axis=1).max()
+    gap_s = seconds(now.t_ns - before.t_ns)
+    return bool(farthest_m > max(params.glide_m, params.jump_m_s * gap_s))
 
 
 def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:
@@ -114,8 +131,3 @@ def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:
     # one standard deviation along an axis
     uncertainty_m = np.hypot(body.uncertainty_m, wrong_m / np.sqrt(3.0))
     return replace(body, pose=pose, joints_m=joints_m, uncertainty_m=uncertainty_m)
-
-
-def _farthest_m(one: Pose, other: Pose, skeleton: Skeleton) -> float:
-    apart_m = joint_positions(skeleton, one) - joint_positions(skeleton, other)
-    return float(np.linalg.norm(apart_m, axis=1).max())

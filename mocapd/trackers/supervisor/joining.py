@@ -30,15 +30,6 @@ def placed(body: BodyState, skeleton: Skeleton) -> BodyState:
     return replace(body, joints_m=joint_positions(skeleton, body.pose))
 
 
-def completed(
-    upper: BodyState, lower: BodyState | None, skeleton: Skeleton, near_m: float
-) -> BodyState:
-    """The upper body (with a pose) joined with a lower one that is in its place, else with the legs it has itself."""
-    if lower is None or lower.pose is None or apart_m(upper, lower) > near_m:
-        return placed(upper, skeleton)
-    return joined(upper, lower, skeleton)
-
-
 def joined(upper: BodyState, lower: BodyState, skeleton: Skeleton) -> BodyState:
     """Where `upper` is and how it moves, with the legs, neck and head of `lower` as that has them in the world; both
     have a pose. Confidence and uncertainty of each joint are those of who sees it."""

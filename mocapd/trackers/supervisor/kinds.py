@@ -19,8 +19,9 @@ class Kind:
     poor: float
 
 
-# The shirt of 3 captures: 0.7 to 0.95 while it is open to view, 0.5 and less under half a jacket. Without the shirt the
-# share hangs on the clothes: 0.5 to 0.8, and a body that is lost falls below the tracker's own limit at once.
+# Of 95 frames in 100 of seven captures with two cameras and more the shirt's quality is above 0.65, and always above 0.57;
+# a jacket that is put on goes through 0.5 within a tenth of a second. Without the shirt it hangs on the clothes: always above
+# 0.53 in four captures, 0.47 in a fifth and in a jacket over another's colours.
 KINDS: Mapping[str, Kind] = MappingProxyType(
     {
         "colour": Kind(upper_only=True, least_cameras=1, good=0.62, poor=0.5),

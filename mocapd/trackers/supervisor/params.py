@@ -9,7 +9,7 @@ class Params:
 
     # belief
     confirm_s: float = (
-        0.25  # good for so long before it may take over: half a jacket comes and goes
+        0.5  # good for so long before it may take over: one sleeve is free before the other
     )
     doubt_s: float = (
         0.1  # poor or coasting for so long before another may: a frame that fails is no reason
@@ -36,4 +36,5 @@ class Params:
     glide_s: float = 0.3
     glide_m_s: float = 1.5
     glide_m: float = 0.09
+    jump_m_s: float = 3.0  # who settles after a switch goes faster than that; hands do in a throw
     glide_within_s: float = 0.5  # after a longer gap nothing is left to glide from

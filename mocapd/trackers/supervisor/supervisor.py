@@ -7,8 +7,8 @@ from functools import partial
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.supervisor.choice import Claim, chosen
-from mocapd.trackers.supervisor.gliding import Glider
-from mocapd.trackers.supervisor.joining import apart_m, completed
+from mocapd.trackers.supervisor.gliding import Glider, Sourced
+from mocapd.trackers.supervisor.joining import apart_m, joined, placed
 from mocapd.trackers.supervisor.kinds import Kind
 from mocapd.trackers.supervisor.params import Params
 from mocapd.trackers.supervisor.standby import (
@@ -90,7 +90,7 @@ class Supervisor:
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker. Raises ConfigError as its trackers do."""
-        before = {name: known.body for name, known in self._known.items()}
+        before = self._bodies()
         for known in self._known.values():
             known.now = False
         shape = self._ask(frames, shape, lambda one: self._is_due(one, frames.t_ns))
@@ -101,15 +101,11 @@ class Supervisor:
         if self._speaker is None:
             self._glider.reset()
             return Track(lost_body(frames.t_ns, self.name), shape)
-        now = {name: known.body for name, known in self._known.items()}
-        track, body = self._known[self._speaker].track, self._composed(now, skeleton)
+        track, now = self._known[self._speaker].track, self._composed(self._bodies(), skeleton)
         assert track is not None
-        assert body is not None
-        self._mind_the_others(body, frames)
-        was = self._composed(before, skeleton) if self._glider.begins(body) else None
-        if was is not None and was.tracker != body.tracker:
-            was = None  # it would have been told by others then
-        body, glides = self._glider.step(body, was, skeleton)
+        assert now is not None
+        self._mind_the_others(now.body, frames)
+        body, glides = self._glider.step(now, self._composed(before, skeleton), skeleton)
         self.probe(GLIDE if glides else "join")
         return replace(track, body=body, shape=shape)
 
@@ -178,17 +174,26 @@ class Supervisor:
             )
         return chosen(self._speaker, claims)
 
-    def _composed(
-        self, bodies: Mapping[str, BodyState | None], skeleton: Skeleton
-    ) -> BodyState | None:
+    def _bodies(self) -> dict[str, Sourced]:
+        """Those of this frame set, and whose: a tracker that is guided is another one."""
+        return {
+            name: Sourced(known.body, f"guided {name}" if known.guided else name)
+            for name, known in self._known.items()
+            if known.body is not None
+        }
+
+    def _composed(self, bodies: Mapping[str, Sourced], skeleton: Skeleton) -> Sourced | None:
         """The body of who speaks, of those of one frame set, completed where it is an upper body alone."""
         assert self._speaker is not None
-        body = bodies[self._speaker]
-        if body is None:
+        upper = bodies.get(self._speaker)
+        if upper is None:
             return None
         is_upper = self.candidates[self._rank(self._speaker)].kind.upper_only
-        lower = bodies[self._lower.name] if self._lower is not None and is_upper else None
-        return completed(body, lower, skeleton, self.params.near_m)
+        lower = bodies.get(self._lower.name) if self._lower is not None and is_upper else None
+        if lower is None or apart_m(upper.body, lower.body) > self.params.near_m:
+            return Sourced(placed(upper.body, skeleton), upper.source)
+        both = joined(upper.body, lower.body, skeleton)
+        return Sourced(both, f"{upper.source}+{lower.source}")
 
     def _mind_the_others(self, told: BodyState, frames: FrameSet) -> None:
         """Who does not speak is compared with what is told, and offered that when it went astray."""

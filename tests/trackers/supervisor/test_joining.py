@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, standard_skeleton
-from mocapd.trackers.supervisor.joining import apart_m, completed, joined
+from mocapd.trackers.supervisor.joining import apart_m, joined
 from mocapd.types import BodyState, Pose, Tracking
 from tests.body.random_poses import pose_of, random_local, random_root
 
@@ -55,13 +55,10 @@ def test_bones_point_as_who_sees_them_says_and_hang_from_the_upper_body() -> Non
         )
 
 
-@pytest.mark.parametrize(("aside_m", "is_joined"), [(0.2, True), (0.4, False)])
-def test_legs_of_somebody_elsewhere_are_nobodys(aside_m: float, is_joined: bool) -> None:
+def test_how_far_bodies_are_apart_is_told_by_their_trunks() -> None:
     upper = body("one", 1, "left", 0.9)
     assert upper.pose is not None
-    moved = Pose(upper.pose.root_m + (0.0, 0.0, aside_m), upper.pose.quats_xyzw)
+    moved = Pose(upper.pose.root_m + (0.0, 0.0, 0.2), upper.pose.quats_xyzw)
     lower = replace(upper, tracker="two", pose=moved, joints_m=joint_positions(SKELETON, moved))
-    assert apart_m(upper, lower) == pytest.approx(aside_m)
-    told = completed(upper, lower, SKELETON, 0.3)
-    assert told.tracker == ("one+two" if is_joined else "one")
-    assert completed(upper, None, SKELETON, 0.3).tracker == "one"
+    assert apart_m(upper, lower) == pytest.approx(0.2)
+    assert apart_m(upper, replace(lower, pose=None, joints_m=None)) == np.inf
