@@ -84,6 +84,17 @@ def _hold_whole(model: BodyModel, rest: Floats, information: Floats) -> None:
             rest[INDEX[side + bone]] = rotations.exp(np.array([x, mirror * y, mirror * z]))
 
 
+def unusual_legs(local_xyzw: Floats) -> float:
+    """Squared Mahalanobis distance of both legs of a pose (J,4) from where they usually are."""
+    total = 0.0
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        for bone, (x, y, z) in _LEG_REST_RAD.items():
+            rest = rotations.exp(np.array([x, mirror * y, mirror * z]))
+            turned = rotations.multiply(local_xyzw[INDEX[side + bone]], rotations.inverse(rest))
+            total += float(np.sum((rotations.log(turned) / np.array(_LEG_SD_RAD[bone])) ** 2))
+    return total
+
+
 def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:
     """Squared Mahalanobis distances (N,) of poses (N,3,4) of an arm from where it usually is."""
     away = rotations.log(rotations.multiply(poses_xyzw, rotations.inverse(arm.mean_xyzw)))

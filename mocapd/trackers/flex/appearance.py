@@ -5,6 +5,7 @@ histograms of regions, learned slowly on, since light changes and people turn; w
 as a class of its own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -81,6 +82,24 @@ class Appearance:
             np.add.at(counted, there.ravel(), self._params.new_light * before)
         self._refresh()
 
+    def overlap(self, one: int, other: int) -> float:
+        """0..1: how much of two regions' colours is the same; 1 where one of them was not seen."""
+        shares = []
+        for k in (one, other):
+            share = np.exp(-self._table[k]) - self._params.least_share
+            if self._counts[k].sum() <= 0.0:
+                return 1.0
+            shares.append(share / share.sum())
+        return float(np.minimum(*shares).sum())
+
+    def join(self, look: Sequence[int]) -> None:
+        """Count what was seen of each region with the region of its look, which is learned as one from now on."""
+        for k, other in enumerate(look):
+            if other != k:
+                self._counts[other] += self._counts[k]
+                self._counts[k] = 0.0
+        self._refresh()
+
     def learn(
         self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None
     ) -> None:
@@ -102,13 +121,15 @@ class Appearance:
         count_colours(picture, classes, _UNCOUNTED, 1.0 if ids is None else p.share, self._counts)
         self._refresh()
 
-    def classify(self, picture: Bytes, before: Bytes, distance_px: Singles) -> Bytes:
+    def classify(
+        self, picture: Bytes, before: Bytes, distance_px: Singles, on_floor: Bytes
+    ) -> Bytes:
         """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
         p = self._params
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
         )  # fmt: skip
         return ids
 

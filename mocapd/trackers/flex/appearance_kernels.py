@@ -82,6 +82,7 @@ def classify_regions(
     shadow_costs: tuple[float, float],
     shadow_per_px: float,
     shadow_px: float,
+    on_floor: NDArray[np.uint8],
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
@@ -110,7 +111,7 @@ def classify_regions(
             if nearest > reach_px:
                 continue
             other = table[0, i] + np.float32(other_cost) + np.float32(other_per_px) * min(nearest, np.float32(other_px))
-            if before[y, x] >= SHADOW:
+            if before[y, x] == SHADOW or (before[y, x] > SHADOW and on_floor[y, x] != 0):
                 within = np.float32(shadow_per_px) * max(np.float32(shadow_px) - nearest, np.float32(0.0))
                 other = min(other, np.float32(shadow_costs[before[y, x] - SHADOW]) + within)
             if best < other:

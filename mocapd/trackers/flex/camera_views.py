@@ -11,9 +11,10 @@ from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.trackers.flex.appearance import Appearance, region_distances
+from mocapd.trackers.flex.floor_view import FloorView
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
-from mocapd.vision.foreground_kernels import UNKNOWN
+from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN
 from mocapd.vision.room_background import RoomBackground
 
 
@@ -69,14 +70,15 @@ class CameraView:
 
 
 class CameraViews:
-    """All cameras of a fitter; `present` is each seeing camera's own time after the frame set's [s], by its index."""
+    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after the frame set's [s], by its index."""
 
     def __init__(self, fitter: Fitter, params: Params) -> None:
-        self._fitter, self._params = fitter, params
+        self.fitter, self._params = fitter, params
         self.each = [
             CameraView(d.camera.name, d.camera.size_px, d.image_scale, params) for d in fitter.drawings
         ]
         self._index = {view.name: i for i, view in enumerate(self.each)}
+        self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
         self.present: dict[int, float] = {}
 
     def reset(self) -> None:
@@ -104,7 +106,7 @@ class CameraViews:
     def mark_body(self, state: MotionState | None) -> None:
         """Where somebody is expected, drawn into every present picture."""
         for i, dt_s in self.present.items():
-            drawing = self._fitter.drawings[i]
+            drawing = self.fitter.drawings[i]
             roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
             if state is None or roi is None:
                 self.each[i].mark_body(None, (0, 0, 0, 0))
@@ -127,7 +129,7 @@ class CameraViews:
         p = self._params
         views = []
         for i, dt_s in self.present.items():
-            drawing, camera = self._fitter.drawings[i], self.each[i]
+            drawing, camera = self.fitter.drawings[i], self.each[i]
             roi = drawing.region(state, dt_s, p.margin_px)
             if roi is None:
                 continue
@@ -135,16 +137,32 @@ class CameraViews:
             before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
             drawn = drawing.render(state, dt_s, roi)
             ids = camera.appearance.classify(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]), before, region_distances(drawn)
+                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+                before,
+                region_distances(drawn),
+                self._floors[i].near(state.root_m, roi),
             )
             soft = int(255 * p.soft)
             views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
         return views
 
+    def silhouettes(self, state: MotionState) -> list[View]:
+        """Every present picture by what stands before the background where somebody is expected, of whom no colour is known."""
+        views = []
+        for i, dt_s in self.present.items():
+            drawing, camera = self.fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, self._params.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            ids = ((camera.before == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
+            views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dt_s))
+        return views
+
     def learn_first_appearance(self, state: MotionState) -> None:
         """Learn the colours of a body of which none is known yet."""
         for i, dt_s in self.present.items():
-            roi = self._fitter.drawings[i].region(state, dt_s, self._params.margin_px)
+            roi = self.fitter.drawings[i].region(state, dt_s, self._params.margin_px)
             if roi is not None:
                 self._learn(i, state, dt_s, roi, None)
 
@@ -160,7 +178,7 @@ class CameraViews:
         x0, y0, x1, y1 = roi
         camera.appearance.learn(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
-            self._fitter.drawings[index].render(state, dt_s, roi),
+            self.fitter.drawings[index].render(state, dt_s, roi),
             np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
             ids,
         )

@@ -63,15 +63,14 @@ class Params:
 
     blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
-    # which way somebody looks
-    facing_turns: int = 5  # from one such look to the next
-    sure_head: float = 0.6  # share of face and hair in their places above which nobody asks
-    facing_gain: float = 10.0  # by how much the cost must fall to look the other way [disagreeing pixels]
+    crossed_turns: int = 3  # from one look at crossed legs to the next
+    crossed_iterations: int = 4
 
     # decisions
     live_explained: float = 0.45  # share of drawn and seen pixels that agree, for the pose to be believed
     least_body_px: int = 300  # confirmed work px, all cameras together
-    learn_explained: float = 0.6  # of a frame that teaches colours
+    learn_explained: float = 0.45  # of a frame that teaches colours
+    alike: float = 0.55  # share of two regions' colours that is the same, above which they are one
 
     # with the upper body known from another tracker
     guided_iterations: int = 3
