@@ -81,6 +81,10 @@ class Glider:
         self._away: Away | None = None
         self._speed_m_s = 0.0
 
+    def is_new(self, now: Sourced) -> bool:
+        """Whether another spoke in the frame before, so that `before` is asked for."""
+        return self._last is None or self._last.source != now.source
+
     def step(
         self, now: Sourced, before: Sourced | None, skeleton: Skeleton
     ) -> tuple[BodyState, bool]:

@@ -105,7 +105,9 @@ class Supervisor:
         assert track is not None
         assert now is not None
         self._mind_the_others(now.body, frames)
-        body, glides = self._glider.step(now, self._composed(before, skeleton), skeleton)
+        is_new = self._glider.is_new(now)
+        was = self._composed(before, skeleton) if is_new else None
+        body, glides = self._glider.step(now, was, skeleton)
         self.probe(GLIDE if glides else "join")
         return replace(track, body=body, shape=shape)
 
