@@ -28,7 +28,7 @@ class BackgroundParams:
     sure_shadow: tuple[float, float] = (0.5, 7.0)
     likely_shadow: tuple[float, float] = (0.25, 12.0)
     least_uncovered_px: int = 60  # of a piece whose outline says anything
-    rate: float = 0.1  # share of a look, once it is known
+    rate: float = 0.04  # share of a look, once it is known
     lamp_tolerance: float = 0.055  # of a channel, 0..1: what differs by more is in another light
     lamp_share: float = 0.2  # of the background that changes at once when a lamp does
 

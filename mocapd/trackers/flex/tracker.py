@@ -178,8 +178,6 @@ class FlexTracker:
         self.probe("fit")
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, False, terms)
         self.probe("arms")
-        fit = self._legs_apart(fit, views, dt_s, terms)
-        self.probe("legs")
         if not self._believed(fit):
             return known, views
         state = fit.state
@@ -261,7 +259,7 @@ class FlexTracker:
     def _legs_apart(
         self, fit: Fit, views: Sequence[View], dt_s: float, terms: Sequence[PoseTerm]
     ) -> Fit:
-        """The fit, or that with the legs exchanged: both look alike, and crossed legs are unusual."""
+        """The fit, or that with the legs exchanged: both look alike, and below hips that are known crossed ones are unusual."""
         p = self.params
         if self._turn % p.crossed_turns or not are_crossed(self._fitter.joints(fit.state)[0]):
             return fit
