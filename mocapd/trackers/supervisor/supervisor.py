@@ -40,11 +40,12 @@ class Candidate:
 @dataclass(slots=True, eq=False)
 class _Known:
     """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
-    body led to it."""
+    body led to it; has_offer: it was offered a body that it has not looked for yet."""
 
     track: Track | None = None
     now: bool = False
     guided: bool = False
+    has_offer: bool = False
     standing: Standing = field(default_factory=Standing)
     standby: Standby = field(default_factory=Standby)
 
@@ -136,13 +137,14 @@ class Supervisor:
     def _step_one(self, one: Candidate, frames: FrameSet, shape: BodyShape) -> BodyShape:
         """The shape as known after it."""
         known, tracker = self._known[one.name], one.tracker
-        upper = self._guide(one)
+        # who was offered a body looks for it whole, once
+        upper = None if known.has_offer else self._guide(one)
         known.guided = upper is not None and isinstance(tracker, GuidedTracker)
         if upper is not None and isinstance(tracker, GuidedTracker):
             track = tracker.step_guided(frames, shape, upper)
         else:
             track = tracker.step(frames, shape)
-        known.track, known.now = track, True
+        known.track, known.now, known.has_offer = track, True, False
         known.standing = judged(known.standing, track, len(frames.frames), one.kind, self.params)
         known.standby = stepped(known.standby, frames.t_ns, self.params)
         return track.shape
@@ -208,11 +210,10 @@ class Supervisor:
             elif known.now:
                 near = self._is_near(known.body, told)
                 standby = compared(known.standby, t_ns, self.params, live=known.live, near=near)
-                # who is guided was given it already
-                can_begin = not known.guided and len(frames.frames) >= one.kind.least_cameras
+                can_begin = len(frames.frames) >= one.kind.least_cameras
                 if is_sure and can_begin and wants_offer(standby, t_ns, self.params):
                     one.tracker.reset(near=told)
-                    standby = offered(standby, t_ns, self.params)
+                    standby, known.has_offer = offered(standby, t_ns, self.params), True
                 known.standby = standby
 
     # --- who is who ---

@@ -189,12 +189,20 @@ def test_who_is_lost_is_offered_the_body_that_is_told() -> None:
     assert one.flex.offers == [None]
 
 
-def test_who_is_led_is_offered_nothing_and_who_cannot_be_is() -> None:
-    """What is offered is forgotten for: a tracker that is led has the body in every frame."""
-    script = (Word(0.0), Word(1.0, LOST))
+@pytest.mark.parametrize("lost", [True, False])
+def test_who_is_led_is_offered_a_body_when_it_is_lost_all_the_same(lost: bool) -> None:
+    """And then looks for it whole, once, before it is led again."""
+    script = (Word(0.0), Word(1.0, LOST)) if lost else (Word(0.0), Word(1.0, off_m=0.2))
     led = scene(ALL_WELL, script)
     led.run(4.0)
-    assert led.flex.offers == [None]
+    assert len(led.flex.offers) == (3 if lost else 1)
+    by_itself = [t_ns for t_ns in led.flex.stepped_ns if t_ns not in led.flex.guided_by]
+    offered = [near.t_ns for near in led.flex.offers if near is not None]
+    assert by_itself == [t_ns + round(1e9 / 30) for t_ns in offered]
+
+
+def test_who_cannot_be_led_is_offered_a_body() -> None:
+    script = (Word(0.0), Word(1.0, LOST))
     alone = ScriptedTracker("flex", script, 0.5)
     other = ScriptedTracker("colour", ALL_WELL, 0.9)
     auto = Supervisor([Candidate(one, KINDS[one.name]) for one in (other, alone)])
