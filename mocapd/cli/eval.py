@@ -134,8 +134,12 @@ def evaluate_captures(
 
     folders = list(captures or ())
     if interruptions:
+        if folders or simulated is not None or failures or prediction or compare is not None:
+            raise ConfigError(
+                "that recording is scored alone", "--interruptions", "leave the others out"
+            )
         with ProgressBars() as progress:
-            _interruptions(effective, out, progress)
+            _interruptions(effective, as_json, out, progress)
         return
     if not folders and simulated is None and not failures:
         raise ConfigError(
@@ -178,7 +182,7 @@ def evaluate_captures(
             typer.echo(f"{path}: written", err=True)
 
 
-def _interruptions(config: "Config", out: Path | None, progress: "Progress") -> None:
+def _interruptions(config: "Config", as_json: bool, out: Path | None, progress: "Progress") -> None:
     from mocapd.calibration.from_origin import from_capture
     from mocapd.evaluate import interruptions_page as page
     from mocapd.evaluate.capture_eval import open_case
@@ -193,7 +197,7 @@ def _interruptions(config: "Config", out: Path | None, progress: "Progress") -> 
     resources = cached(config.cache_dir, progress, own, own.sections)
     found = interruptions(case, ready_tracker(own.name, known, resources), progress)
     tables = page.figures_table(found), page.switches_table(found), page.errors_table(found)
-    typer.echo("\n\n".join(tables))
+    typer.echo(json.dumps(page.as_json(found)) if as_json else "\n\n".join(tables))
     if out is not None:
         words = ["mocapd", "eval", "--interruptions", "--tracker", own.name]
         words += ["--out", os.path.relpath(out)]

@@ -1,7 +1,9 @@
 """The page of the docs about the supervisor: what interrupts, who spoke then, and how far joints went."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -95,6 +97,17 @@ def errors_table(of: Interruptions) -> str:
     return table(["who spoke", "frames [%]", "RMS, full body [cm]"], rows)
 
 
+def as_json(of: Interruptions) -> dict[str, Any]:
+    """The same; null where there is nothing to tell."""
+    return {
+        "published_percent": 100.0 * of.published,
+        "largest_step_cm": _plain(_largest(of)),
+        "ghosts": of.ghosts,
+        "rms_cm": {who: _plain(error) for who, error in of.error_cm.items()},
+        "switches": [asdict(one) | {"step_cm": _plain(one.step_cm)} for one in of.switches],
+    }
+
+
 def write_page(
     directory: Path, of: Interruptions, spans: Mapping[str, Spans], command: str
 ) -> list[Path]:
@@ -112,6 +125,10 @@ def write_page(
         ) from None
     save(speakers_plot(of, LIMIT_CM, spans), directory / PLOT)
     return [path, directory / PLOT]
+
+
+def _plain(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
 def _largest(of: Interruptions) -> float:

@@ -1,5 +1,6 @@
 """Figures of a recording in which something interrupts, on what was told by hand."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +67,9 @@ def test_tables_name_each_switch_and_speaker() -> None:
     one = found(of, np.ones(20, dtype=bool), np.full(20, 3.0))
     assert "colour+flex to flex" in page.switches_table(one)
     assert "50" in page.errors_table(one)
+    (switch,) = json.loads(json.dumps(page.as_json(one)))["switches"]
+    assert (switch["before"], switch["after"], switch["frames"]) == (COLOUR, FLEX, 1)
+    assert switch["step_cm"] == 3.0
 
 
 def test_what_interrupts_is_that_of_the_scene() -> None:
