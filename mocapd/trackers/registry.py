@@ -17,6 +17,8 @@ from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.flex.section import FlexSection
+from mocapd.trackers.supervisor.kinds import KINDS
+from mocapd.trackers.supervisor.section import AutoSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
@@ -37,8 +39,9 @@ class Resources:
     """What any tracker may use, whoever is tracked.
 
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
-    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept;
-    tracking: when a person counts as lost, None for the defaults.
+    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
+    must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
+    each tracker, by name, as usual where absent.
     """
 
     cache_dir: Path = field(default_factory=Path)
@@ -46,6 +49,7 @@ class Resources:
     map_chunks: MapChunks = map
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
+    sections: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +144,38 @@ def _flex(calibration: Calibration, section: FlexSection, resources: Resources) 
     return build_flex_tracker(calibration, section, resources.tracking)
 
 
+def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+    """For one that is content with any of its trackers: what the first lacks, when all lack something."""
+    missing = [TRACKERS[name].lacks(calibration, cameras) for name in KINDS]
+    return missing[0] if all(missing) else ""
+
+
+def _auto(calibration: Calibration, section: AutoSection, resources: Resources) -> Tracker:
+    from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
+
+    cameras = calibration.rig.names if calibration.rig else ()
+    wanted = [name for name in KINDS if name in section.trackers]
+    lacking = {name: TRACKERS[name].lacks(calibration, cameras) for name in wanted}
+    # with nobody who can run, building the first tells why
+    able = [name for name in wanted if not lacking[name]] or wanted[:1]
+    for name in wanted:
+        if name not in able and len(cameras) >= KINDS[name].least_cameras:
+            resources.tell(f"the tracker {name!r} is done without: it {lacking[name]}")
+    return Supervisor(
+        [Candidate(build(name, calibration, resources), KINDS[name]) for name in able]
+    )
+
+
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
+        "auto": TrackerEntry(
+            _auto,
+            AutoSection,
+            _auto_lacks,
+            sees=True,
+            make_caches=_database,
+            caches=(CACHE_NAME,),
+        ),
         "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
         "colour": TrackerEntry(
             _colour,
@@ -191,11 +225,9 @@ def shirt_tracker(preferred: str) -> str:
     return next(name for name, one in TRACKERS.items() if one.reads_shirt)
 
 
-def build(
-    name: str, calibration: Calibration, resources: Resources, section: object | None = None
-) -> Tracker:
-    """The tracker of this name, as set by its own section; None: as usual. Raises ConfigError when there is
-    none, or it is not told what it needs."""
+def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
+    """The tracker of this name, as set by its own section. Raises ConfigError when there is none, or it is not
+    told what it needs."""
     found = entry(name)
     reason = found.lacks(calibration, calibration.rig.names if calibration.rig else ())
     if reason:
@@ -204,7 +236,8 @@ def build(
             "rig",
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
-    return found.build(calibration, found.section() if section is None else section, resources)
+    section = resources.sections[name] if name in resources.sections else found.section()
+    return found.build(calibration, section, resources)
 
 
 def make_caches(name: str, resources: Resources) -> None:

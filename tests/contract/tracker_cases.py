@@ -17,6 +17,8 @@ from mocapd.trackers.colour_paper.build import build_paper_tracker
 from mocapd.trackers.flex.build import build_flex_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
+from mocapd.trackers.supervisor.kinds import KINDS
+from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -30,11 +32,13 @@ N_BEFORE = 24  # of an empty room, in which a background is learned
 
 @dataclass(frozen=True)
 class TrackerCase:
-    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight."""
+    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; speakers: what
+    its bodies may say of who told them, its own name where empty."""
 
     tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
+    speakers: tuple[str, ...] = ()
 
 
 def frame_sets(
@@ -136,8 +140,21 @@ def plain_case(build_tracker: Callable[[Calibration], Tracker]) -> TrackerCase:
     return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
 
 
+def auto_case() -> TrackerCase:
+    shown = filmed()
+    both = (build_colour_tracker(shown.known, shown.database), build_flex_tracker(shown.known))
+    tracker = Supervisor([Candidate(one, KINDS[one.name]) for one in both])
+    return TrackerCase(
+        Stepping(tracker, known_shape(shown.known)),
+        shown.person,
+        shown.empty,
+        ("auto", "colour", "flex", "colour+flex"),
+    )
+
+
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
 CASES: Mapping[str, Callable[[], TrackerCase]] = {
+    "auto": auto_case,
     "canned": canned_case,
     "colour": lambda: shirt_case(build_colour_tracker),
     "colour_paper": lambda: shirt_case(build_paper_tracker),

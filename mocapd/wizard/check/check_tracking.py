@@ -55,8 +55,7 @@ def prepare(
     ready = ready_tracker(
         name,
         known,
-        cached(cache_dir, progress, section),
-        section.sections[name],
+        cached(cache_dir, progress, section, section.sections),
         rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
