@@ -224,8 +224,13 @@ class FlexTracker:
             predicted, views, dt_s, p.guided_iterations, learn_shape=False, motion=loose, terms=terms,
         )  # fmt: skip
         self.probe("fit")
+        left = later(known.left) if known is not None and known.left is not None else None
         if not is_first:
+            before = fit
             fit = self._legs_apart(fit, views, dt_s, terms)
+            if fit is not before:
+                was = None if known is None else known.left
+                left = residual_of(fitter, predicted, fit.state, was, p.blend_m)
         if is_first and fit.explained >= p.learn_explained:
             self._learn_first(fit.state)
         if not self._believed(fit):
@@ -234,7 +239,7 @@ class FlexTracker:
         if known is not None:
             velocity = self._velocity(fit, last, dt_s, ())
         return _Memory(
-            frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views)
+            frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views), left
         ), views
 
     def _standing_below(self, upper: Pose, wearer: _Wearer) -> MotionState:

@@ -50,6 +50,7 @@ export class Setup {
     this.part = null;
     this.loading = null; // name of the step whose part is being fetched
     this.told = ""; // problems as last drawn
+    this.without = null; // a shirt, as just said here
     this.build();
     this.stopListening = link.onView((view) => this.update(view));
   }
@@ -75,8 +76,11 @@ export class Setup {
       class: "primary",
     });
     this.shirt = element("input", { type: "checkbox", id: "no-shirt", "aria-describedby": "no-shirt-note" });
-    this.shirt.addEventListener("change", () => this.link.send("wear", { shirt: !this.shirt.checked }));
-    this.shirtNote = element("span", { id: "no-shirt-note", class: "hint-text" });
+    this.shirt.addEventListener("change", () => {
+      this.without = this.shirt.checked; // until the setup has taken it, or refused
+      this.link.send("wear", { shirt: !this.without });
+    });
+    this.shirtNote = element("p", { id: "no-shirt-note", class: "hint-text" });
     this.saved = element("p", { id: "saved", class: "good", role: "status", hidden: true });
     this.saved.textContent = "The calibration is saved.";
     this.root.replaceChildren(
@@ -89,7 +93,7 @@ export class Setup {
       this.cameras,
       this.place,
       element("div", { class: "step-buttons" }, this.again, this.next),
-      element("p", { class: "no-shirt" }, element("label", {}, this.shirt, "I have no shirt"), " ", this.shirtNote),
+      element("div", { class: "no-shirt" }, element("label", {}, this.shirt, "I have no shirt"), this.shirtNote),
       this.saved,
     );
   }
@@ -111,7 +115,8 @@ export class Setup {
     this.next.hidden = last;
     this.next.disabled = view.state !== "done" || !wizard.driver;
     this.again.disabled = !wizard.driver;
-    this.shirt.checked = !wizard.shirt;
+    if (this.without === !wizard.shirt || wizard.refused) this.without = null;
+    this.shirt.checked = this.without ?? !wizard.shirt;
     this.shirt.disabled = !wizard.driver;
     setText(this.shirtNote, wizard.shirt ? "" : NO_SHIRT);
     this.saved.hidden = !wizard.saved;

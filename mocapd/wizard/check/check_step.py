@@ -37,6 +37,10 @@ from mocapd.wizard.step import Problem, Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0
+LEAVE_S, LEARN_S = (
+    5.0,
+    2.0,
+)  # without a shirt: to leave the pictures, and for the room to be learned
 SEEK_S = 12.0  # without anybody found, after which the reasons are told
 LEAST_MEASURES = 8  # of which a verdict is made
 LONGEST_S = 25.0  # of moving, on a machine that is busy
@@ -58,6 +62,8 @@ class Phase(StrEnum):
 
     MISSING = "missing"
     PREPARING = "preparing"
+    LEAVING = "leaving"  # without a shirt: the wearer leaves the pictures
+    EMPTY = "empty"  # and the room is learned
     SEEKING = "seeking"
     MOVING = "moving"
     JUDGED = "judged"
@@ -76,6 +82,7 @@ class CheckStep:
         self._context, self._settings = context, settings
         self._shown, self._died = shown, died
         self._tracking: CheckTracking | None = None
+        self._prepared: CheckTracker | None = None  # until the room is empty
         self._phase = Phase.PREPARING
         self._problems: tuple[Problem, ...] = ()
         self._seen: list[Measure] = []
@@ -87,8 +94,8 @@ class CheckStep:
 
     def enter(self) -> None:
         """See Step."""
-        self._context.scene(Scene.MOVING)
         draft = self._context.draft
+        self._context.scene(Scene.MOVING if draft.has_shirt else Scene.EMPTY)
         self._problems = missing(draft)
         if self._problems:
             self._phase = Phase.MISSING
@@ -99,6 +106,9 @@ class CheckStep:
     def tick(self, now_ns: int) -> None:
         """See Step."""
         self._now_ns = now_ns
+        if self._phase in (Phase.LEAVING, Phase.EMPTY):
+            self._empty_room(now_ns)
+            return
         if self._tracking is None:
             return
         fresh = self._tracking.measures()
@@ -159,10 +169,31 @@ class CheckStep:
             self._tracking = None
 
     def _run(self, prepared: CheckTracker) -> None:
+        if self._context.draft.has_shirt:
+            self._track(prepared)
+            self._seek()
+        else:
+            self._prepared = prepared
+            self._phase, self._began_ns = Phase.LEAVING, None
+
+    def _track(self, prepared: CheckTracker) -> None:
         self._tracking = CheckTracking(
             self._context.hub, prepared, self._settings.smoothing, self._shown, self._died
         )
-        self._seek()
+
+    def _empty_room(self, now_ns: int) -> None:
+        """What any clothes stand before is learned while nobody is there."""
+        if self._began_ns is None:
+            self._began_ns = now_ns
+        elapsed_s = seconds(now_ns - self._began_ns)
+        if self._phase is Phase.LEAVING and elapsed_s >= LEAVE_S:
+            assert self._prepared is not None
+            self._track(self._prepared)
+            self._prepared = None
+            self._phase, self._began_ns = Phase.EMPTY, now_ns
+        elif self._phase is Phase.EMPTY and elapsed_s >= LEARN_S:
+            self._context.scene(Scene.MOVING)
+            self._seek()
 
     def _seek(self) -> None:
         self._phase, self._began_ns = Phase.SEEKING, None
@@ -237,10 +268,16 @@ class CheckStep:
         if self._phase is Phase.PREPARING:
             what, share = self._context.job or ("", 0.0)
             return StepState.WORKING, f"Wait: {what or 'preparing the tracker'}.", share
+        elapsed_s = seconds(self._now_ns - (self._began_ns or self._now_ns))
+        if self._phase is Phase.LEAVING:
+            return StepState.WAITING, "Step out of every camera's picture.", elapsed_s / LEAVE_S
+        if self._phase is Phase.EMPTY:
+            return StepState.WORKING, "Stay out: the empty room is learned.", elapsed_s / LEARN_S
         if self._phase is Phase.SEEKING:
-            return StepState.WAITING, "Stand where all cameras see you.", 0.0
+            if self._context.draft.has_shirt:
+                return StepState.WAITING, "Stand where all cameras see you.", 0.0
+            return StepState.WAITING, "Come back, stand upright, and face the cameras.", 0.0
         if self._phase is Phase.MOVING:
-            elapsed_s = seconds(self._now_ns - (self._began_ns or self._now_ns))
             sentence = "Walk about and move your arms until the bar is full."
             share = min(elapsed_s / MOVING_S, len(self._seen) / LEAST_MEASURES, 1.0)
             return StepState.WAITING, sentence, share
