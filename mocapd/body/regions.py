@@ -79,7 +79,10 @@ def labels(model: BodyModel) -> NDArray[np.uint8]:
     ):
         sleeve = model.part == arm
         out[sleeve] = np.where(model.patch[sleeve] > 0, model.patch[sleeve], cuff)
-        lower = np.isin(main, [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX])
+        lower = np.isin(
+            main,
+            [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX],
+        )
         out[(model.part == leg) & ~lower] = thigh
         out[(model.part == leg) & lower] = shin
     return out
@@ -90,6 +93,4 @@ def recoloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs to be told apart")
     sleeves, start = sleeves_by_colour(model.part, colour)
-    return replace(
-        model, colour=colour, patch=labels(model), sleeves=sleeves, sleeve_start=start
-    )
+    return replace(model, colour=colour, patch=labels(model), sleeves=sleeves, sleeve_start=start)

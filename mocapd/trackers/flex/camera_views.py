@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
@@ -15,13 +16,18 @@ from mocapd.trackers.flex.floor_view import FloorView
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
 from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN
-from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.room_background import RoomBackground, brightness_edges
+
+_ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
+_LINE = np.ones((3, 3), np.uint8)
 
 
 class CameraView:
     """One camera: its newest work picture, background and appearance."""
 
-    def __init__(self, name: str, size_px: tuple[int, int], image_scale: int, params: Params) -> None:
+    def __init__(
+        self, name: str, size_px: tuple[int, int], image_scale: int, params: Params
+    ) -> None:
         """size_px: of its frames, width and height; image_scale: by how much they are averaged down."""
         self.name, self.size_px, self.image_scale = name, size_px, image_scale
         w, h = self.work_size = size_px[0] // image_scale & ~1, size_px[1] // image_scale & ~1
@@ -53,7 +59,7 @@ class CameraView:
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
 
     def mark_body(self, drawn: Bytes | None, roi: Roi) -> None:
-        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is known."""
+        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is."""
         self.body[:] = 0
         self.drawn[:] = 0
         if drawn is not None:
@@ -70,12 +76,14 @@ class CameraView:
 
 
 class CameraViews:
-    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after the frame set's [s], by its index."""
+    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after
+    the frame set's [s], by its index."""
 
     def __init__(self, fitter: Fitter, params: Params) -> None:
         self.fitter, self._params = fitter, params
         self.each = [
-            CameraView(d.camera.name, d.camera.size_px, d.image_scale, params) for d in fitter.drawings
+            CameraView(d.camera.name, d.camera.size_px, d.image_scale, params)
+            for d in fitter.drawings
         ]
         self._index = {view.name: i for i, view in enumerate(self.each)}
         self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
@@ -147,7 +155,7 @@ class CameraViews:
         return views
 
     def silhouettes(self, state: MotionState) -> list[View]:
-        """Every present picture by what stands before the background where somebody is expected, of whom no colour is known."""
+        """Every present picture by what stands before the background where somebody of unknown colours is expected."""
         views = []
         for i, dt_s in self.present.items():
             drawing, camera = self.fitter.drawings[i], self.each[i]
@@ -188,13 +196,30 @@ class CameraViews:
         for i in self.present:
             camera = self.each[i]
             if not camera.background.is_new:
-                cv2.dilate(((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8), camera.beside, dst=camera.body)
+                cv2.dilate(
+                    ((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8),
+                    camera.beside,
+                    dst=camera.body,
+                )
 
     def learn_background(self) -> None:
         """Follow each background where nobody is marked."""
         for i in self.present:
             camera = self.each[i]
             camera.background.learn(camera.picture, camera.body)
+
+    def outline_contrast(self) -> float:
+        """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""
+        on = beside = 0.0
+        for i in self.present:
+            camera = self.each[i]
+            if camera.drawn.any():
+                edges = brightness_edges(camera.picture)
+                wide = np.asarray(cv2.dilate(camera.drawn, _ASIDE), np.uint8)
+                narrow = np.asarray(cv2.erode(camera.drawn, _ASIDE), np.uint8)
+                on += float(edges[_outline(camera.drawn)].mean())
+                beside += float(edges[_outline(wide) | _outline(narrow)].mean())
+        return on / max(beside, 1e-3)
 
     def seed_background(self) -> None:
         """Take what is beside the marked body for the background."""
@@ -211,3 +236,7 @@ class CameraViews:
             x0, y0, x1, y1 = v.roi
             where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
         return ids, where
+
+
+def _outline(mask: Bytes) -> NDArray[np.bool_]:
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _LINE) > 0)

@@ -16,7 +16,9 @@ from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.appearance import Appearance
 from mocapd.types import Camera
 
-Look = tuple[int, ...]  # by region 0..: the region whose colours it shares, itself where it has its own
+Look = tuple[
+    int, ...
+]  # by region 0..: the region whose colours it shares, itself where it has its own
 
 ALL_DIFFER: Look = (0, *(int(region) for region in Region))
 _MAY_BE_ONE = (

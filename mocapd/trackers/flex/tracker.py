@@ -60,7 +60,7 @@ class _Wearer:
 
 
 class FlexTracker:
-    """Two calibrated cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
+    """Two cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
 
     name = "flex"
 
@@ -198,7 +198,9 @@ class FlexTracker:
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else _TAKEN_OVER_S
         local = moved(model, last, dt_s, p.prediction_damping)[1]
         local[_UPPER] = local_from_global(self._skeleton, upper.quats_xyzw)[_UPPER]
-        predicted = MotionState(upper.root_m.copy(), local, last.velocity, wearer.factors, wearer.information)
+        predicted = MotionState(
+            upper.root_m.copy(), local, last.velocity, wearer.factors, wearer.information
+        )
         cameras.mark_body(predicted)
         if cameras.are_new:
             cameras.seed_background()
@@ -259,7 +261,7 @@ class FlexTracker:
     def _legs_apart(
         self, fit: Fit, views: Sequence[View], dt_s: float, terms: Sequence[PoseTerm]
     ) -> Fit:
-        """The fit, or that with the legs exchanged: both look alike, and below hips that are known crossed ones are unusual."""
+        """The fit, or that with the legs exchanged: both look alike, and below known hips crossed ones are unusual."""
         p = self.params
         if self._turn % p.crossed_turns or not are_crossed(self._fitter.joints(fit.state)[0]):
             return fit
@@ -305,7 +307,9 @@ class FlexTracker:
         if not likely:
             return None, []
         # who is nearer wants to be tracked: a passer-by is seldom in front
-        fit, names = max(likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0]))
+        fit, names = max(
+            likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0])
+        )
         again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
         if fit.explained < p.start.accept_explained and not again:
             return None, []
@@ -335,8 +339,7 @@ class FlexTracker:
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
     ) -> tuple[_Memory | None, list[View]]:
-        """Begin from another tracker's body, if the pictures confirm it: what is beside it is the background, and its regions
-        differ from that."""
+        """Begin from another tracker's body, if the pictures have its outline: what is beside it is the background."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
             return None, []
@@ -344,6 +347,8 @@ class FlexTracker:
         still = np.zeros(self._model.n_pose)
         there = MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
         self._cameras.mark_body(there)
+        if self._cameras.outline_contrast() < self.params.least_contrast:
+            return None, []
         self._cameras.seed_background()
         self._cameras.stand_before()
         self._learn_first(there)
@@ -351,7 +356,8 @@ class FlexTracker:
         if not views:
             return None, []
         fit = self._fitter.fit(
-            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False, terms=self._terms(there, views, frames),
+            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False,
+            terms=self._terms(there, views, frames),
         )  # fmt: skip
         if not self._believed(fit):
             return None, []
