@@ -59,8 +59,9 @@ class TrackerEntry:
     section: what a user may set, which becomes `[tracker.<name>]`; lacks: given what is known and the names
     of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
     that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
-    which a setup measures; make_caches: what it keeps in the cache folder, made if need be; caches: the names
-    of those files; compared_with: what `mocapd eval --compare` sets beside it, by label a tracker and its section.
+    which a setup measures; reads_outline: whether it is all of the body, whatever is worn; make_caches: what it
+    keeps in the cache folder, made if need be; caches: the names of those files; compared_with: what
+    `mocapd eval --compare` sets beside it, by label a tracker and its section.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -68,6 +69,7 @@ class TrackerEntry:
     lacks: Callable[[Calibration, Collection[str]], str]
     sees: bool
     reads_shirt: bool = False
+    reads_outline: bool = False
     make_caches: Callable[[Resources], object] = _quiet
     caches: tuple[str, ...] = ()
     compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
@@ -154,7 +156,16 @@ def _auto(calibration: Calibration, section: AutoSection, resources: Resources) 
     from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
 
     cameras = calibration.rig.names if calibration.rig else ()
-    wanted = [name for name in KINDS if name in section.trackers]
+    usable = {
+        name for name in KINDS if calibration.wearer.has_shirt or not TRACKERS[name].reads_shirt
+    }
+    wanted = [name for name in KINDS if name in section.trackers and name in usable]
+    if not wanted:
+        raise ConfigError(
+            "without a shirt none of the chosen trackers can run",
+            "tracker.auto.trackers",
+            f"add {' or '.join(sorted(usable))}, or do the setup with a shirt",
+        )
     lacking = {name: TRACKERS[name].lacks(calibration, cameras) for name in wanted}
     # with nobody who can run, building the first tells why
     able = [name for name in wanted if not lacking[name]] or wanted[:1]
@@ -199,7 +210,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
-        "flex": TrackerEntry(_flex, FlexSection, _pair_lacks, sees=True),
+        "flex": TrackerEntry(_flex, FlexSection, _pair_lacks, sees=True, reads_outline=True),
     }
 )
 
@@ -216,6 +227,15 @@ def entry(name: str) -> TrackerEntry:
             f"there is no tracker {name!r}", "tracker.name", f"one of: {', '.join(TRACKERS)}"
         )
     return TRACKERS[name]
+
+
+def measuring_tracker(preferred: str, has_shirt: bool) -> str:
+    """The tracker by whose evidence a setup is checked: of the shirt, or without one of the whole body."""
+    if has_shirt:
+        return shirt_tracker(preferred)
+    if entry(preferred).reads_outline:
+        return preferred
+    return next(name for name, one in TRACKERS.items() if one.reads_outline)
 
 
 def shirt_tracker(preferred: str) -> str:
