@@ -106,13 +106,28 @@ class RoomBackground:
             )
         self._looks += 1
 
-    def before(self, picture: Bytes) -> Bytes:
-        """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps."""
-        p, out = self._params, self._before
+    def before(self, picture: Bytes, within: tuple[int, int, int, int] | None = None) -> Bytes:
+        """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps.
+
+        within: x0, y0, x1, y1 of the only region that is asked for; BACKGROUND elsewhere.
+        """
+        if within is None:
+            return self._standing(picture, self._mean, self._age, self._before)
+        x0, y0, x1, y1 = within
+        here = np.s_[y0:y1, x0:x1]
+        mean, age = np.ascontiguousarray(self._mean[here]), np.ascontiguousarray(self._age[here])
+        whole = np.zeros_like(self._before)
+        whole[here] = self._standing(
+            np.ascontiguousarray(picture[here]), mean, age, np.empty(age.shape, np.uint8)
+        )
+        return whole
+
+    def _standing(self, picture: Bytes, mean: Singles, age: Bytes, out: Bytes) -> Bytes:
+        p = self._params
         stands_before(
             picture,
-            self._mean,
-            self._age,
+            mean,
+            age,
             p.known_looks,
             p.tolerance,
             p.sure_shadow,

@@ -1,11 +1,13 @@
-"""Cameras that stopped while a step goes on."""
+"""Cameras that stopped while a step goes on, and too few of them."""
 
 from collections.abc import Iterable
 
 from mocapd.capture.thread import CaptureState
 from mocapd.wizard.context import Context
+from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Problem
 
+FEWEST_WITHOUT_SHIRT = 2
 _FIX = "plug it in again: the step goes on by itself; or leave it out in the step Cameras"
 
 
@@ -17,4 +19,15 @@ def stopped_cameras(context: Context, ids: Iterable[str]) -> tuple[Problem, ...]
         Problem(f"the camera stopped: {statuses[id_].reason or 'no pictures'}", labels[id_], _FIX)
         for id_ in ids
         if id_ in statuses and statuses[id_].state in (CaptureState.LOST, CaptureState.ENDED)
+    )
+
+
+def too_few_cameras(draft: Draft, cameras: int) -> Problem | None:
+    """What is said where so many cameras are too few without the shirt; None where they suffice."""
+    if draft.has_shirt or cameras >= FEWEST_WITHOUT_SHIRT:
+        return None
+    return Problem(
+        "without the shirt two cameras are needed",
+        "cameras",
+        "plug in a second one and start the setup again, or say that you have the shirt",
     )

@@ -11,7 +11,7 @@ import pytest
 from mocapd.calibration.calibration_file import calibration_path, read_calibration
 from mocapd.calibration.from_saved import from_saved
 from mocapd.calibration.record import Calibration, Wearer
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.trackers.flex.build import build_flex_tracker
@@ -24,6 +24,7 @@ from mocapd.wizard.check.check_step import missing
 from mocapd.wizard.check.check_verdict import Delivery, camera_verdict
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.kept_draft import draft_of, kept_draft
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import StepState
@@ -175,3 +176,11 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
 
 def test_a_draft_has_a_shirt_unless_it_says_otherwise() -> None:
     assert Draft().has_shirt
+
+
+def test_a_room_without_a_board_is_not_offered(tmp_path: Path) -> None:
+    step = ExtrinsicsStep(FakeContext(tmp_path, replace(full_draft(), has_shirt=False)))
+    step.enter()
+    assert step.view().details["methods"] == ["board"]
+    with pytest.raises(InputError, match="by the shirt"):
+        do(step, "method", {"method": "wearer"})

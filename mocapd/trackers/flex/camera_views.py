@@ -35,6 +35,7 @@ class CameraView:
         self.before = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
         self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
+        self.near: Roi = (0, 0, 0, 0)  # the region about it
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
         self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
@@ -62,17 +63,18 @@ class CameraView:
         """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is."""
         self.body[:] = 0
         self.drawn[:] = 0
+        self.near = roi
         if drawn is not None:
             x0, y0, x1, y1 = roi
             self.drawn[y0:y1, x0:x1] = drawn > 0
             cv2.dilate(self.drawn, self.beside, dst=self.body)
 
-    def stand_before(self) -> None:
-        """Renew what stands before the background, whose light may jump."""
+    def stand_before(self, everywhere: bool = True) -> None:
+        """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
         gain = self.background.follow_light(self.picture, self.body)
         if gain is not None:
             self.appearance.relight(gain)
-        self.before = self.background.before(self.picture)
+        self.before = self.background.before(self.picture, None if everywhere else self.near)
 
 
 class CameraViews:
@@ -121,10 +123,10 @@ class CameraViews:
             else:
                 self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
 
-    def stand_before(self) -> None:
-        """Renew what stands before each background."""
+    def stand_before(self, everywhere: bool = True) -> None:
+        """Renew what stands before each background; not everywhere: about the marked body alone."""
         for i in self.present:
-            self.each[i].stand_before()
+            self.each[i].stand_before(everywhere)
 
     def take_uncovered(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`."""

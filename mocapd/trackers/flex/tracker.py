@@ -157,8 +157,9 @@ class FlexTracker:
         root, local = moved(self._model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
         self._cameras.mark_body(predicted)
-        self._cameras.stand_before()
-        if self._turn % p.uncovered_turns == 0:
+        looks_round = self._turn % p.uncovered_turns == 0
+        self._cameras.stand_before(everywhere=looks_round)
+        if looks_round:
             self._cameras.take_uncovered()
         self.probe("background")
         views = self._cameras.classified(predicted)
@@ -204,7 +205,10 @@ class FlexTracker:
         cameras.mark_body(predicted)
         if cameras.are_new:
             cameras.seed_background()
-        cameras.stand_before()
+        looks_round = self._turn % p.uncovered_turns == 0
+        cameras.stand_before(everywhere=looks_round)
+        if looks_round:
+            cameras.take_uncovered()
         self.probe("background")
         is_first = not cameras.know_appearance
         fitter = self._silhouettes if is_first else self._fitter
@@ -221,7 +225,8 @@ class FlexTracker:
         self.probe("distances")
         loose = np.diag(held + 1.0 / (fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
         fit = fitter.fit(
-            predicted, views, dt_s, p.guided_iterations, learn_shape=False, motion=loose, terms=terms,
+            predicted, views, dt_s, p.guided_iterations, learn_shape=False, rendered=not is_first, fine=1, motion=loose,
+            terms=terms,
         )  # fmt: skip
         self.probe("fit")
         left = later(known.left) if known is not None and known.left is not None else None

@@ -51,9 +51,10 @@ export class StepPart {
     this.skip = button("skip", "Use my height alone", () => this.link.send("skip"), { id: "skip" });
     this.table = element("table", { id: "lengths", class: "lengths" });
     this.pictures = element("div", { class: "body-pictures" });
+    this.measuring = element("div", { class: "measure" }, this.measure, this.skip);
     root.replaceChildren(
       form,
-      element("div", { class: "measure" }, this.measure, this.skip),
+      this.measuring,
       this.table,
       this.pictures,
     );
@@ -91,6 +92,7 @@ export class StepPart {
       this.stature = details.stature_m;
       if (this.stature !== null) this.fill(100 * this.stature);
     }
+    this.measuring.hidden = !details.has_shirt; // from which alone proportions are read
     this.measure.disabled = !details.can_measure || details.measuring;
     this.measure.title = details.why_not;
     setText(this.measure, details.measured ? "Measure again" : "Measure");

@@ -175,6 +175,7 @@ class BodyStep:
             )
         details: dict[str, Json] = {
             "stature_m": draft.stature_m,
+            "has_shirt": draft.has_shirt,
             "measuring": self._busy,
             "can_measure": missing is None,
             "why_not": "" if missing is None else missing.what,
@@ -215,6 +216,8 @@ class BodyStep:
             if share < SEEN:
                 return StepState.WORKING, f"{what}.", share
             return StepState.WORKING, "Working out your proportions.", share
+        if draft.factors is not None and not draft.has_shirt:
+            return StepState.DONE, "Your proportions are known from before. Go on.", 1.0
         if draft.factors is not None:
             return (
                 StepState.DONE,

@@ -17,6 +17,7 @@ from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.clock import NS_PER_S
 from mocapd.errors import InputError, MocapdError
+from mocapd.wizard.camera_trouble import too_few_cameras
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
@@ -120,9 +121,15 @@ class CamerasStep:
         taken = self._taken
         problems = [problem for name in taken for problem in self._problems(name)]
         problems += (*self._crowded, *self._list_trouble)
+        too_few = too_few_cameras(self._context.draft, len(taken))
+        if too_few is not None:
+            problems.append(too_few)
         share = sum(self._locking[name].share for name in taken) / len(taken)
         missing = [name for name in taken if self._is_gone(name)]
-        if self._ready:
+        if self._ready and too_few is not None:
+            state = StepState.WAITING
+            sentence = "One camera is ready: add a second one, or say that you have the shirt."
+        elif self._ready:
             state, sentence = StepState.DONE, self._done_sentence(bool(problems))
         elif missing:
             state = StepState.WAITING

@@ -83,7 +83,8 @@ class ExtrinsicsStep:
     def view(self) -> StepView:
         """See Step."""
         view = self._method.view()
-        details = {**view.details, "method": self._method_name, "methods": list(METHODS)}
+        methods = list(METHODS) if self._context.draft.has_shirt else ["board"]
+        details = {**view.details, "method": self._method_name, "methods": methods}
         return replace(view, details=details)
 
     def leave(self) -> None:
@@ -93,6 +94,10 @@ class ExtrinsicsStep:
     def _choose(self, name: str) -> None:
         if name == self._method_name:
             return
+        if name == "wearer" and not self._context.draft.has_shirt:
+            raise InputError(
+                "a room without a board is found by the shirt", "room", "show the board"
+            )
         if self._context.job is not None:
             raise InputError("something is being worked out", "room", "wait a moment")
         made = METHODS[name](self._context)

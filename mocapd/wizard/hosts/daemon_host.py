@@ -201,7 +201,12 @@ def _with_what_was_saved(
     if set(cameras) == set(saved.cameras):
         return cameras, replace(saved, cameras=cameras)
     # what was typed once need not be typed again
-    return cameras, Draft(cameras=cameras, board=saved.board, stature_m=saved.stature_m)
+    return cameras, Draft(
+        cameras=cameras,
+        board=saved.board,
+        stature_m=saved.stature_m,
+        has_shirt=saved.has_shirt,
+    )
 
 
 def _moved(draft: Draft) -> tuple[PortChange, ...]:

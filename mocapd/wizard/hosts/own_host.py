@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from mocapd.capture.base import Source
@@ -44,6 +45,8 @@ class OwnHost:
         """draft: what is known, with the cameras to open; step: the one to do, None for all of them;
         sources: the draft's cameras by id where they exist already; nodes: lists what else is plugged
         in; moved: see SetupCameras. Raises ConfigError or InputError."""
+        if step is StepName.COLOUR:  # of which the calibration may say that there is none
+            draft = replace(draft, has_shirt=True)
         self._over = threading.Event()
         self._saved = threading.Event()
         self._death: BaseException | None = None
