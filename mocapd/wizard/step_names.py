@@ -40,6 +40,19 @@ def steps_wanted(names: Sequence[StepName], draft: Draft) -> tuple[StepName, ...
     return tuple(name for name in names if draft.has_shirt or name not in _OF_SHIRT)
 
 
+def after_shirt(shown: StepName, names: Sequence[StepName], draft: Draft) -> StepName | None:
+    """The step to show when it was just said whether there is a shirt; None: the one that is shown goes on."""
+    if shown not in (StepName.COLOUR, StepName.BODY, StepName.CHECK):
+        return None
+    if StepName.COLOUR in names and not _IS_DONE[StepName.COLOUR](draft, False):
+        return StepName.COLOUR
+    if shown in names:
+        return shown  # anew: it has other things to ask
+    return next(
+        name for name in (*names, StepName.CHECK) if name in (StepName.BODY, StepName.CHECK)
+    )
+
+
 def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
     """The steps whose result is in the draft; saved: it was, since the start."""
     return frozenset(name for name, is_done in _IS_DONE.items() if is_done(draft, saved))

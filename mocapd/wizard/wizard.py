@@ -20,7 +20,7 @@ from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Json, Problem, Scene, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
-from mocapd.wizard.step_names import StepName, steps_done, steps_wanted
+from mocapd.wizard.step_names import StepName, after_shirt, steps_done, steps_wanted
 from mocapd.wizard.wizard_view import WizardView, with_offer
 
 _TICK_S = 0.05
@@ -211,7 +211,7 @@ class Wizard:
         """Raises MocapdError when it is refused."""
         verbs = {**self._step.verbs, **OF_WIZARD}
         command = read_command(verbs, verb, args, self._step.name)
-        if self._offer is not None and isinstance(command, Go | Next):
+        if self._offer is not None and isinstance(command, Go | Next | Wear):
             raise InputError(
                 "a setup of before is kept",
                 "this setup",
@@ -254,11 +254,10 @@ class Wizard:
         """What was found out with a shirt is kept, should it be there after all."""
         if shirt == self.draft.has_shirt:
             return
-        at = self._all.index(self._step.name)
         self.draft = replace(self.draft, has_shirt=shirt)
-        # the step that is shown may have gone, or have other things to ask
-        left = [name for name in self._names if self._all.index(name) >= at]
-        self._show(left[0] if left else self._names[-1])
+        after = after_shirt(self._step.name, self._names, self.draft)
+        if after is not None:
+            self._show(after)
 
     def _resume(self) -> None:
         """Go on with the first step that is not done. Raises InputError when nothing is kept."""

@@ -28,7 +28,7 @@ from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.kept_draft import draft_of, kept_draft
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import StepState
-from mocapd.wizard.step_names import StepName
+from mocapd.wizard.step_names import StepName, after_shirt
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView
 from tests.trackers.flex.plain_film import plain_film
@@ -86,6 +86,21 @@ def test_who_says_so_in_the_step_about_colours_is_led_on(wizard: Wizard) -> None
     after(wizard, "done")
     assert after(wizard, "next").step is StepName.COLOUR
     assert after(wizard, "wear", shirt=False).step is StepName.BODY
+
+
+def test_a_step_that_has_nothing_to_do_with_it_goes_on(wizard: Wizard) -> None:
+    after(wizard, "job", job=lambda tell: "so far")
+    view = wizard.view()
+    while view.view.details["happened"] == []:
+        view = wizard.newer(view.serial, WAIT_S)
+    assert after(wizard, "wear", shirt=False).view.details["happened"] == ["got so far"]
+
+
+def test_whoever_has_a_shirt_after_all_is_asked_for_its_colours() -> None:
+    names, bare = tuple(StepName), replace(full_draft(), colours={})
+    assert after_shirt(StepName.CHECK, names, bare) is StepName.COLOUR
+    assert after_shirt(StepName.CHECK, names, full_draft()) is StepName.CHECK
+    assert after_shirt(StepName.LENS, names, bare) is None
 
 
 def test_another_word_than_yes_or_no_is_refused(wizard: Wizard) -> None:
