@@ -17,6 +17,7 @@ from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.flex.section import FlexSection
+from mocapd.trackers.flex_paper.section import FlexPaperSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
@@ -138,6 +139,14 @@ def _flex(calibration: Calibration, section: FlexSection, resources: Resources) 
     return build_flex_tracker(calibration, section, resources.tracking)
 
 
+def _flex_paper(
+    calibration: Calibration, section: FlexPaperSection, resources: Resources
+) -> Tracker:
+    from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
+
+    return build_flex_paper_tracker(calibration, section, resources.tracking)
+
+
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
@@ -163,7 +172,25 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
-        "flex": TrackerEntry(_flex, FlexSection, _pair_lacks, sees=True),
+        "flex": TrackerEntry(
+            _flex,
+            FlexSection,
+            _pair_lacks,
+            sees=True,
+            compared_with={"paper": ("flex_paper", FlexPaperSection())},
+        ),
+        "flex_paper": TrackerEntry(
+            _flex_paper,
+            FlexPaperSection,
+            _pair_lacks,
+            sees=True,
+            compared_with={
+                "no depth noise": ("flex_paper", FlexPaperSection(depth_noise=False)),
+                "no particle constraints": ("flex_paper", FlexPaperSection(particle_constraints=False)),
+                "no occlusion": ("flex_paper", FlexPaperSection(occlusion=False)),
+                "no appearance": ("flex_paper", FlexPaperSection(appearance=False)),
+            },
+        ),
     }
 )
 
