@@ -110,8 +110,8 @@ class PaperView:
         self.background.seed(self._now.colour, self._body)
 
     def person(self) -> Bytes:
-        """(h,w): 1 where somebody or dark cloth stands before the background, or nobody knows it."""
-        return ((self.before > 0) & (self.before != SHADOW)).astype(np.uint8)
+        """(h,w): 255 where somebody or dark cloth stands before the background, or nobody knows it."""
+        return np.where((self.before > 0) & (self.before != SHADOW), 255, 0).astype(np.uint8)
 
     def head_picture(self) -> HeadPicture:
         """The frame as the head's tracker asks for it."""

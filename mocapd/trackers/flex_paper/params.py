@@ -36,6 +36,8 @@ class Params:
     # starting from the body that hangs from the head
     match_edge: float = 0.45  # mean edge penalty 0..1 of the limbs that hang where somebody stands
     match_before: float = 0.6  # share of the body that stands before the background
+    # how far arms are raised sideways where they are looked for at the start: people show a T-pose, or hold hands apart
+    raised_rad: tuple[float, ...] = (0.0, 0.2, 0.4, 0.8, 1.2, 1.57)
     rehang_m: float = 0.3  # of the head's way from one picture to the next: somebody else's
     rehang_rad: float = 0.6  # by which the face may turn from where the body was hung
 

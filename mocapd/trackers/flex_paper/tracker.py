@@ -38,6 +38,7 @@ from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unpro
 from mocapd.trackers.flex_paper.confidence import joint_confidence, joint_uncertainty_m
 from mocapd.trackers.flex_paper.paper_views import PaperViews
 from mocapd.trackers.flex_paper.params import Params
+from mocapd.trackers.flex_paper.stances import stances_of
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
@@ -162,16 +163,22 @@ class FlexPaperTracker:
         self._hanging = hanging
         points = hanging.state.points_m
         self._mark(points)
-        edge, before = self._limbs_edge(points), self._before(points)
+        stances = stances_of(self._body, points, p.raised_rad)
+        views = self._limb_views()
+        edges = {limb: self._edges(limb, some, views) for limb, some in stances.items()}
+        best = {limb: some[int(np.argmin(edges[limb]))] for limb, some in stances.items()}
+        for limb, which in LIMBS.items():
+            points = with_points(resting(points), which, best[limb]).points_m
+        state = projected(self._body, resting(points), None, _FLOOR_M, p.simulation)
+        before = self._before(state.points_m)
         self.probe("match")
+        edge = float(np.mean([some.min() for some in edges.values()]))
         if edge > p.match_edge or _mean_known(before) < p.match_before:
             return None
         self._hanging = None
         self._views.forget_person()
-        return _Known(
-            frames.t_ns, hanging.state, self._clouds_at(points), head.sigma_along_m, before, 1.0 - edge,
-            (),
-        )  # fmt: skip
+        clouds = self._clouds_at(state.points_m)
+        return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ())
 
     def _hung(self, head: HeadTrack, dt_s: float, t_ns: int) -> _Hanging:
         p, body, last = self.params, self._body, self._hanging
@@ -298,15 +305,17 @@ class FlexPaperTracker:
 
     def _limbs_edge(self, points_m: Floats) -> float:
         """The mean edge penalty 0..1 of the limbs of points (16,3), of what is seen of them; 1 where nothing is."""
-        views, total, seen = self._limb_views(), 0.0, 0.0
-        for limb, which in LIMBS.items():
-            parts = _PARTS[limb]
-            one = limb_penalties(
-                points_m[list(which)][None], self._radii_m()[list(parts)], parts, views, self.params.score
-            )
-            total += float((one.seen[..., EDGE] * one.mean[..., EDGE]).sum())
-            seen += float(one.seen[..., EDGE].sum())
-        return total / seen if seen > 0.0 else 1.0
+        views = self._limb_views()
+        each = [self._edges(limb, points_m[list(which)][None], views)[0] for limb, which in LIMBS.items()]
+        return float(np.mean(each))
+
+    def _edges(self, limb: str, points_m: Floats, views: Sequence[LimbView]) -> Floats:
+        """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
+        parts = list(_PARTS[limb])
+        one = limb_penalties(points_m, self._radii_m()[parts], _PARTS[limb], views, self.params.score)
+        seen = one.seen[..., EDGE].sum(axis=0)
+        total = (one.seen[..., EDGE] * one.mean[..., EDGE]).sum(axis=0)
+        return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)
 
     def _before(self, points_m: Floats) -> Floats:
         return self._views.share_before(self._ends_m(points_m))
