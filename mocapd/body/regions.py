@@ -41,12 +41,12 @@ class Label(IntEnum):
 
 def by_region(model: BodyModel) -> BodyModel:
     """A whole body whose colours are its regions. Raises ValueError for a body without legs of its own."""
-    return _coloured(model, regions(model))
+    return recoloured(model, regions(model))
 
 
 def as_silhouette(model: BodyModel) -> BodyModel:
     """A whole body of one colour, as it is seen before its background. Raises ValueError as `by_region`."""
-    return _coloured(model, np.ones(len(model.colour), np.uint8))
+    return recoloured(model, np.ones(len(model.colour), np.uint8))
 
 
 def regions(model: BodyModel) -> NDArray[np.uint8]:
@@ -79,13 +79,17 @@ def labels(model: BodyModel) -> NDArray[np.uint8]:
     ):
         sleeve = model.part == arm
         out[sleeve] = np.where(model.patch[sleeve] > 0, model.patch[sleeve], cuff)
-        lower = np.isin(main, [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX])
+        lower = np.isin(
+            main,
+            [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX],
+        )
         out[(model.part == leg) & ~lower] = thigh
         out[(model.part == leg) & lower] = shin
     return out
 
 
-def _coloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
+def recoloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
+    """A whole body of these colours (T,), whose pixels are counted by `Label`. Raises ValueError as `by_region`."""
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs to be told apart")
     sleeves, start = sleeves_by_colour(model.part, colour)

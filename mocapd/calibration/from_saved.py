@@ -29,6 +29,6 @@ def from_saved(tables: SavedCalibration, path: Path) -> Calibration:
 
 def _wearer(told: SavedWearer) -> Wearer:
     if told.proportions is None:
-        return Wearer(told.stature_m)
+        return Wearer(told.stature_m, has_shirt=told.has_shirt)
     factors = [told.proportions.get(name, 1.0) for name in FACTORS]
-    return Wearer(told.stature_m, np.array(factors))
+    return Wearer(told.stature_m, np.array(factors), told.has_shirt)

@@ -9,16 +9,18 @@ from mocapd.types import Floats, LabelledPicture, Rig
 @dataclass(frozen=True, slots=True, eq=False)
 class Wearer:
     """stature_m: the height [m]; shape_factors (N_FACTORS,): the proportions on the mean body, as measured.
-    None: not known."""
+    None: not known. has_shirt: whether there is a shirt to be tracked by."""
 
     stature_m: float | None = None
     shape_factors: Floats | None = None
+    has_shirt: bool = True
 
     def overlaid(self, stronger: "Wearer") -> "Wearer":
         """What the stronger knows, and this where it knows nothing."""
         return Wearer(
             self.stature_m if stronger.stature_m is None else stronger.stature_m,
             self.shape_factors if stronger.shape_factors is None else stronger.shape_factors,
+            self.has_shirt and stronger.has_shirt,
         )
 
 

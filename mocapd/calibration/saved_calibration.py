@@ -46,11 +46,13 @@ class RoomFit(_Table, frozen=True, kw_only=True):
 
 class SavedWearer(_Table, frozen=True, kw_only=True):
     """stature_m [m]; proportions: factors on the mean body, by name; personal_colours: whether the
-    colours of the wearer's own shirt, from the strokes, replace the standard."""
+    colours of the wearer's own shirt, from the strokes, replace the standard; has_shirt: whether there is one at all, which
+    files of earlier versions do not say."""
 
     stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.5)]
     proportions: dict[Literal[FACTORS], Factor] | None = None  # type: ignore[valid-type]
     personal_colours: bool = False
+    has_shirt: bool = True
 
 
 class LensFit(_Table, frozen=True, kw_only=True):

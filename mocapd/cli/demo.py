@@ -34,8 +34,8 @@ def demo(
     """Run the daemon on two simulated webcams.
 
     They show a person in the shirt in a furnished room with two coloured lamps, one of which goes
-    out in each loop; in the scene `jacket` a jacket is put on over the shirt. Publishes on Zenoh
-    and OSC on 127.0.0.1.
+    out in each loop; in the scene `jacket` a jacket is put on over the shirt, and the tracker that needs
+    no shirt goes on. Publishes on Zenoh and OSC on 127.0.0.1.
 
     Example: mocapd demo --scenario jacket
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mocapd.config.sections import Config
     from mocapd.evaluate.capture_eval import BuildTracker, Case
     from mocapd.evaluate.runs import EvaluationResults
-    from mocapd.session.tracker_setup import ReadyTracker
+    from mocapd.session.tracker_setup import Progress, ReadyTracker
 
 
 class Joints(StrEnum):
@@ -83,6 +83,13 @@ def evaluate_captures(
             help="Simulate and score scenes that are known to be hard: seen from the side, legs that cross, a jacket.",
         ),
     ] = False,
+    interruptions: Annotated[
+        bool,
+        typer.Option(
+            "--interruptions",
+            help="Simulate the last of those scenes alone, and tell who spoke when a jacket, the dark, ... interrupt.",
+        ),
+    ] = False,
     prediction: Annotated[
         bool,
         typer.Option("--prediction", help="Score poses predicted for the time of display instead."),
@@ -126,6 +133,14 @@ def evaluate_captures(
     from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 
     folders = list(captures or ())
+    if interruptions:
+        if folders or simulated is not None or failures or prediction or compare is not None:
+            raise ConfigError(
+                "that recording is scored alone", "--interruptions", "leave the others out"
+            )
+        with ProgressBars() as progress:
+            _interruptions(effective, as_json, out, progress)
+        return
     if not folders and simulated is None and not failures:
         raise ConfigError(
             "no capture is given", "mocapd eval", "name one, or add --simulated CLIPS or --failures"
@@ -143,7 +158,9 @@ def evaluate_captures(
 
         def build(known: Calibration, method: str) -> ReadyTracker:
             tracker, section = rivals.get(method, (name, sections[name]))
-            return ready_tracker(tracker, known, cached(effective.cache_dir, progress), section)
+            chosen = {**sections, tracker: section}
+            resources = cached(effective.cache_dir, progress, sections=chosen)
+            return ready_tracker(tracker, known, resources)
 
         if prediction:
             typer.echo(_prediction(cases, effective, build))
@@ -162,6 +179,30 @@ def evaluate_captures(
         words[2:2] = ["--clothes", clothes.value] if simulated and clothes is Worn.PLAIN else []
         words[2:2] = ["--failures"] if failures else []
         for path in write_page(out, findings, shlex.join(words)):
+            typer.echo(f"{path}: written", err=True)
+
+
+def _interruptions(config: "Config", as_json: bool, out: Path | None, progress: "Progress") -> None:
+    from mocapd.calibration.from_origin import from_capture
+    from mocapd.evaluate import interruptions_page as page
+    from mocapd.evaluate.capture_eval import open_case
+    from mocapd.evaluate.interruptions import interruptions
+    from mocapd.evaluate.simulated import recorded_set
+    from mocapd.session.tracker_setup import cached, ready_tracker
+
+    own = config.tracker
+    session = recorded_set.interrupted()
+    case = open_case(recorded_set.recorded([session], config.cache_dir, progress)[0])
+    known = from_capture(case.folder).assuming(own.stature_m)
+    resources = cached(config.cache_dir, progress, own, own.sections)
+    found = interruptions(case, ready_tracker(own.name, known, resources), progress)
+    tables = page.figures_table(found), page.switches_table(found), page.errors_table(found)
+    typer.echo(json.dumps(page.as_json(found)) if as_json else "\n\n".join(tables))
+    if out is not None:
+        words = ["mocapd", "eval", "--interruptions", "--tracker", own.name]
+        words += ["--out", os.path.relpath(out)]
+        spans = page.spans_of(session.scenario)
+        for path in page.write_page(out, found, spans, shlex.join(words)):
             typer.echo(f"{path}: written", err=True)
 
 

@@ -75,8 +75,7 @@ def track(
         ready = ready_tracker(
             own.name,
             known.assuming(own.stature_m),
-            cached(effective.cache_dir, progress, own),
-            own.sections[own.name],
+            cached(effective.cache_dir, progress, own, own.sections),
         )
         result = track_all(
             ready.tracker,

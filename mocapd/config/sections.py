@@ -69,13 +69,13 @@ class CameraSection:
 class TrackerSection(TrackingStateParams):
     """Which tracker, and what it needs to know of the wearer.
 
-    name: the tracker: colour, colour_paper (the method as published), or canned, a pose that moves by itself
+    name: auto, the best of what can run; or one: colour, flex, colour_paper (as published), canned (moves by itself)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
     confirm_s: how long evidence must persist before a lost person is believed to be back [s]
     """
 
-    name: str = "colour"
+    name: str = "auto"
     stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
     sections: Annotated[Mapping[str, Any], SectionTable(tracker_sections)] = field(
         default_factory=lambda: {name: section() for name, section in tracker_sections().items()}

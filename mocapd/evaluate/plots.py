@@ -1,7 +1,7 @@
 """The plots of the docs, as PNG files."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +10,11 @@ from matplotlib.figure import Figure
 
 from mocapd.errors import CannotCreateError
 from mocapd.evaluate.compare import BASELINE, FULL, ShoulderAngles
+from mocapd.evaluate.interruptions import Interruptions
 from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability
 from mocapd.evaluate.roc import Roc
+
+Spans = Sequence[tuple[float, float]]  # from, to [s]
 
 _DPI = 110
 _LINES = {
@@ -19,6 +22,7 @@ _LINES = {
     FULL: {"color": "tab:blue", "linewidth": 1.4},
     BASELINE: {"color": "tab:red", "linewidth": 0.9},
 }
+_SPANS = ("tab:orange", "black", "tab:green", "tab:purple")  # of what happened
 _DRAWN_TO = 0.15  # of the false positives: beyond it nothing is usable
 
 
@@ -34,6 +38,33 @@ def shoulder_plot(captures: Sequence[ShoulderAngles]) -> Figure:
         panel.grid(alpha=0.3)
     panels[0].legend(loc="upper right", ncols=3, fontsize=9)
     panels[-1].set_xlabel("time [s]")
+    return figure
+
+
+def speakers_plot(of: Interruptions, limit_cm: float, spans: Mapping[str, Spans]) -> Figure:
+    """Who spoke over time, and below it the farthest that a joint went in a frame; spans: by what happened, when [s]."""
+    figure = Figure(figsize=(10.0, 4.6), layout="constrained")
+    who, steps = figure.subplots(2, 1, sharex=True, height_ratios=(1.0, 1.3))
+    times_s, told = of.told.times_s, of.told.tracker
+    rows = [*dict.fromkeys(str(name) for name in told if name), "nobody"]
+    at = np.array([rows.index(str(name) or "nobody") for name in told])
+    who.plot(times_s, np.where(of.in_view, at, np.nan), ".", color="tab:blue", markersize=5)
+    who.plot(times_s, np.where(of.in_view, np.nan, at), ".", color="0.75", markersize=5)
+    who.set_yticks(range(len(rows)), rows)
+    who.set_ylim(len(rows) - 0.5, -0.5)
+    who.set_title("who speaks (grey: nobody is in view)", fontsize=10)
+    steps.plot(times_s, of.step_cm, color="tab:red", linewidth=0.9)
+    steps.axhline(limit_cm, color="0.4", linewidth=0.9, linestyle="--")
+    steps.set_title("farthest step of a joint beyond its true motion", fontsize=10)
+    steps.set_ylabel("[cm]")
+    steps.set_xlabel("time [s]")
+    for panel in (who, steps):
+        panel.grid(axis="x", alpha=0.3)
+        for colour, (what, when) in zip(_SPANS, spans.items(), strict=False):
+            for number, (from_s, to_s) in enumerate(when):
+                label = what if number == 0 and panel is steps else None
+                panel.axvspan(from_s, to_s, color=colour, alpha=0.18, linewidth=0, label=label)
+    steps.legend(loc="upper right", ncols=4, fontsize=9)
     return figure
 
 

@@ -25,8 +25,16 @@ _COLLAR_SD_RAD = (0.2, 0.2, 0.2)
 _FREE = 1e3
 # Of a whole body's left side and trunk: mean and spread over 34 clips of everyday motion and sport (CMU, HDM05), each clip
 # counted alike, standing people a little more. A knee hardly twists; what it seems to is the thigh's.
-_LEG_REST_RAD = {"UpperLeg": (-0.25, 0.0, 0.0), "LowerLeg": (0.5, 0.0, 0.0), "Foot": (-0.25, 0.1, 0.0)}
-_LEG_SD_RAD = {"UpperLeg": (0.5, 0.25, 0.25), "LowerLeg": (0.55, 0.05, 0.1), "Foot": (0.35, 0.25, 0.2)}
+_LEG_REST_RAD = {
+    "UpperLeg": (-0.25, 0.0, 0.0),
+    "LowerLeg": (0.5, 0.0, 0.0),
+    "Foot": (-0.25, 0.1, 0.0),
+}
+_LEG_SD_RAD = {
+    "UpperLeg": (0.5, 0.25, 0.25),
+    "LowerLeg": (0.55, 0.05, 0.1),
+    "Foot": (0.35, 0.25, 0.2),
+}
 _WHOLE_SPINE_SD_RAD = (0.42, 0.17, 0.14)
 _NECK_REST_RAD, _NECK_SD_RAD = (0.25, 0.0, 0.0), (0.35, 0.45, 0.2)
 
@@ -82,6 +90,17 @@ def _hold_whole(model: BodyModel, rest: Floats, information: Floats) -> None:
     for side, mirror in (("left", 1.0), ("right", -1.0)):
         for bone, (x, y, z) in _LEG_REST_RAD.items():
             rest[INDEX[side + bone]] = rotations.exp(np.array([x, mirror * y, mirror * z]))
+
+
+def unusual_legs(local_xyzw: Floats) -> float:
+    """Squared Mahalanobis distance of both legs of a pose (J,4) from where they usually are."""
+    total = 0.0
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        for bone, (x, y, z) in _LEG_REST_RAD.items():
+            rest = rotations.exp(np.array([x, mirror * y, mirror * z]))
+            turned = rotations.multiply(local_xyzw[INDEX[side + bone]], rotations.inverse(rest))
+            total += float(np.sum((rotations.log(turned) / np.array(_LEG_SD_RAD[bone])) ** 2))
+    return total
 
 
 def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:

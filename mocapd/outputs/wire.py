@@ -66,7 +66,12 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     publish_monotonic_ns: Annotated[
         int, Meta(description="when the frame was handed to the outputs, CLOCK_MONOTONIC [ns]")
     ]
-    tracker: Annotated[str, Meta(description="which tracker: `colour`, `flex`, `hull`, `canned`")]
+    tracker: Annotated[
+        str,
+        Meta(
+            description="which tracker spoke: `colour`, `flex`, `colour+flex`, `canned`; `auto`: nobody"
+        ),
+    ]
     tracking: Annotated[str, Meta(description="`live`, `coasting` (predicted) or `lost`")]
     cameras: Annotated[tuple[str, ...], Meta(description="cameras whose evidence was used")]
     joints: Annotated[

@@ -114,8 +114,7 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Re
     return ready_tracker(
         own.name,
         known.assuming(own.stature_m),
-        cached(config.cache_dir, progress, own),
-        own.sections[own.name],
+        cached(config.cache_dir, progress, own, own.sections),
         partial(progress, "preparing the tracker"),
     )
 

@@ -1,11 +1,12 @@
 """The one place where a tracker is built and rehearsed, and what it keeps in the cache is made."""
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from mocapd.body.shape import BodyShape
 from mocapd.calibration.record import Calibration, ShirtColours
@@ -38,19 +39,17 @@ def ready_tracker(
     name: str,
     calibration: Calibration,
     resources: Resources,
-    section: object | None = None,
     rehearsal: Callable[[int, int], None] | None = None,
     watched: Callable[[Tracker], Tracker] = _itself,
 ) -> ReadyTracker:
     """The tracker of this name, ready to step. Raises ConfigError naming what it lacks.
 
-    section: the tracker's own of the configuration, None for its defaults. rehearsal: hears of steps done,
-    in all, while the tracker is stepped through the calibration's own pictures, so that live frames need not
-    wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
+    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own pictures, so
+    that live frames need not wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
     """
     shape = known_shape(calibration)
     with _pooled(resources) as pooled:
-        tracker = watched(build(name, calibration, pooled, section))
+        tracker = watched(build(name, calibration, pooled))
     if rehearsal is not None:
         shirt = calibration.shirt or ShirtColours()
         pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
@@ -65,13 +64,18 @@ def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:
 
 
 def cached(
-    cache_dir: Path, progress: Progress, tracking: TrackingStateParams | None = None
+    cache_dir: Path,
+    progress: Progress,
+    tracking: TrackingStateParams | None = None,
+    sections: Mapping[str, Any] | None = None,
 ) -> Resources:
-    """With a place for what is made once, and bars while it is made."""
+    """With a place for what is made once, and bars while it is made; sections: the trackers' own of the
+    configuration, by name."""
     return Resources(
         cache_dir=cache_dir,
         progress=lambda share: progress("pose database", round(100 * share), 100),
         tracking=tracking,
+        sections=sections or {},
     )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -55,6 +55,16 @@ class Tracker(Protocol):
         Whoever steps it owns the shape: to let the tracker learn, hand the shape of the last track to
         the next step. Its stature is the one that the tracker was built for.
         """
+        ...
+
+
+@runtime_checkable
+class GuidedTracker(Tracker, Protocol):
+    """A tracker of whole bodies that another one, which sees the upper body better, can lead."""
+
+    def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
+        """One frame set, whose upper body another tracker knows (upper has a pose): it is held there; legs and
+        head are this tracker's. What is known then is gone on from by a plain `step`."""
         ...
 
 

@@ -18,6 +18,8 @@ from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.flex.section import FlexSection
 from mocapd.trackers.flex_paper.section import FlexPaperSection
+from mocapd.trackers.supervisor.kinds import KINDS
+from mocapd.trackers.supervisor.section import AutoSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
@@ -38,8 +40,9 @@ class Resources:
     """What any tracker may use, whoever is tracked.
 
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
-    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept;
-    tracking: when a person counts as lost, None for the defaults.
+    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
+    must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
+    each tracker, by name, as usual where absent.
     """
 
     cache_dir: Path = field(default_factory=Path)
@@ -47,6 +50,7 @@ class Resources:
     map_chunks: MapChunks = map
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
+    sections: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +60,9 @@ class TrackerEntry:
     section: what a user may set, which becomes `[tracker.<name>]`; lacks: given what is known and the names
     of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
     that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
-    which a setup measures; make_caches: what it keeps in the cache folder, made if need be; caches: the names
-    of those files; compared_with: what `mocapd eval --compare` sets beside it, by label a tracker and its section.
+    which a setup measures; reads_outline: whether it is all of the body, whatever is worn; make_caches: what it
+    keeps in the cache folder, made if need be; caches: the names of those files; compared_with: what
+    `mocapd eval --compare` sets beside it, by label a tracker and its section.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -65,6 +70,7 @@ class TrackerEntry:
     lacks: Callable[[Calibration, Collection[str]], str]
     sees: bool
     reads_shirt: bool = False
+    reads_outline: bool = False
     make_caches: Callable[[Resources], object] = _quiet
     caches: tuple[str, ...] = ()
     compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
@@ -92,7 +98,9 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     if len(seeing) < 2:
         return f"needs two of the calibrated cameras ({', '.join(calibration.rig.names)})"
     apart_m = max(
-        float(np.linalg.norm(centre(a) - centre(b))) for i, a in enumerate(seeing) for b in seeing[:i]
+        float(np.linalg.norm(centre(a) - centre(b)))
+        for i, a in enumerate(seeing)
+        for b in seeing[:i]
     )
     if apart_m < _LEAST_BASELINE_M:
         return "needs cameras in two places: by the calibration all are in one"
@@ -147,8 +155,47 @@ def _flex_paper(
     return build_flex_paper_tracker(calibration, section, resources.tracking)
 
 
+def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+    """For one that is content with any of its trackers: what the first lacks, when all lack something."""
+    missing = [TRACKERS[name].lacks(calibration, cameras) for name in KINDS]
+    return missing[0] if all(missing) else ""
+
+
+def _auto(calibration: Calibration, section: AutoSection, resources: Resources) -> Tracker:
+    from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
+
+    cameras = calibration.rig.names if calibration.rig else ()
+    usable = {
+        name for name in KINDS if calibration.wearer.has_shirt or not TRACKERS[name].reads_shirt
+    }
+    wanted = [name for name in KINDS if name in section.trackers and name in usable]
+    if not wanted:
+        raise ConfigError(
+            "without a shirt none of the chosen trackers can run",
+            "tracker.auto.trackers",
+            f"add {' or '.join(sorted(usable))}, or do the setup with a shirt",
+        )
+    lacking = {name: TRACKERS[name].lacks(calibration, cameras) for name in wanted}
+    # with nobody who can run, building the first tells why
+    able = [name for name in wanted if not lacking[name]] or wanted[:1]
+    for name in wanted:
+        if name not in able and len(cameras) >= KINDS[name].least_cameras:
+            resources.tell(f"the tracker {name!r} is done without: it {lacking[name]}")
+    return Supervisor(
+        [Candidate(build(name, calibration, resources), KINDS[name]) for name in able]
+    )
+
+
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
+        "auto": TrackerEntry(
+            _auto,
+            AutoSection,
+            _auto_lacks,
+            sees=True,
+            make_caches=_database,
+            caches=(CACHE_NAME,),
+        ),
         "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
         "colour": TrackerEntry(
             _colour,
@@ -186,7 +233,10 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             sees=True,
             compared_with={
                 "no depth noise": ("flex_paper", FlexPaperSection(depth_noise=False)),
-                "no particle constraints": ("flex_paper", FlexPaperSection(particle_constraints=False)),
+                "no particle constraints": (
+                    "flex_paper",
+                    FlexPaperSection(particle_constraints=False),
+                ),
                 "no occlusion": ("flex_paper", FlexPaperSection(occlusion=False)),
                 "no appearance": ("flex_paper", FlexPaperSection(appearance=False)),
             },
@@ -209,6 +259,15 @@ def entry(name: str) -> TrackerEntry:
     return TRACKERS[name]
 
 
+def measuring_tracker(preferred: str, has_shirt: bool) -> str:
+    """The tracker by whose evidence a setup is checked: of the shirt, or without one of the whole body."""
+    if has_shirt:
+        return shirt_tracker(preferred)
+    if entry(preferred).reads_outline:
+        return preferred
+    return next(name for name, one in TRACKERS.items() if one.reads_outline)
+
+
 def shirt_tracker(preferred: str) -> str:
     """The preferred tracker if it reads the shirt, else the first that does: a setup's measurements need it."""
     if entry(preferred).reads_shirt:
@@ -216,11 +275,9 @@ def shirt_tracker(preferred: str) -> str:
     return next(name for name, one in TRACKERS.items() if one.reads_shirt)
 
 
-def build(
-    name: str, calibration: Calibration, resources: Resources, section: object | None = None
-) -> Tracker:
-    """The tracker of this name, as set by its own section; None: as usual. Raises ConfigError when there is
-    none, or it is not told what it needs."""
+def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
+    """The tracker of this name, as set by its own section. Raises ConfigError when there is none, or it is not
+    told what it needs."""
     found = entry(name)
     reason = found.lacks(calibration, calibration.rig.names if calibration.rig else ())
     if reason:
@@ -229,7 +286,8 @@ def build(
             "rig",
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
-    return found.build(calibration, found.section() if section is None else section, resources)
+    section = resources.sections[name] if name in resources.sections else found.section()
+    return found.build(calibration, section, resources)
 
 
 def make_caches(name: str, resources: Resources) -> None:

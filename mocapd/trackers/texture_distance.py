@@ -1,6 +1,6 @@
 """How far away the body is, where two cameras look from about the same side and see its cloth alike."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import cv2
 import numpy as np
@@ -20,10 +20,11 @@ def texture_distances(
     frames: FrameSet,
     turn: int,
     params: MeasuringParams,
+    only: Collection[int] = (),
 ) -> tuple[PoseTerm, ...]:
     """Distances of the predicted body, which the fitter drew last into every view; none where cameras see other sides.
 
-    turn: a running number, by which other points are taken.
+    turn: a running number, by which other points are taken; only: ids of the body's, where not all are wanted.
     """
     if len(views) != 2 or not fitter.is_narrow(predicted, views):
         return ()
@@ -33,7 +34,10 @@ def texture_distances(
         for camera in (drawing.camera, other.camera)
     )
     body, roi = fitter.shaper(predicted.factors), views[0].roi
+    ids, triangles = drawing.last(roi)
+    if only:
+        ids = np.where(np.isin(ids, list(only)), ids, np.uint8(0))
     measured = measured_distances(
-        drawing, drawing.last(roi), body, other.camera, (first, second), turn, roi[:2], params
+        drawing, (ids, triangles), body, other.camera, (first, second), turn, roi[:2], params
     )
     return (DistanceTerm(fitter.model, measured),)

@@ -14,7 +14,9 @@ from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, SHADOW, UNKNOWN
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
 _OUTLINE = np.ones((3, 3), np.uint8)
-_GAP = np.ones((5, 5), np.uint8)  # what is narrower is a part of the body that looks like its background
+_GAP = np.ones(
+    (5, 5), np.uint8
+)  # what is narrower is a part of the body that looks like its background
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +31,8 @@ class BackgroundParams:
     likely_shadow: tuple[float, float] = (0.25, 12.0)
     least_uncovered_px: int = 60  # of a piece whose outline says anything
     rate: float = 0.04  # share of a look, once it is known
-    lamp_tolerance: float = 0.12  # of a channel, 0..1: what differs by more is in another light
-    lamp_share: float = 0.15  # of the background that changes at once when a lamp does
+    lamp_tolerance: float = 0.055  # of a channel, 0..1: what differs by more is in another light
+    lamp_share: float = 0.2  # of the background that changes at once when a lamp does
 
 
 class RoomBackground:
@@ -69,7 +71,7 @@ class RoomBackground:
         n, numbered, stats, _ = cv2.connectedComponentsWithStats(asked)
         if n < 2:
             return
-        now, known = _edges(picture), _edges(self._mean.astype(np.uint8))
+        now, known = brightness_edges(picture), brightness_edges(self._mean.astype(np.uint8))
         for k in range(1, n):
             if stats[k, cv2.CC_STAT_AREA] < self._params.least_uncovered_px:
                 continue
@@ -81,7 +83,7 @@ class RoomBackground:
                 before[there] = BACKGROUND
 
     def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
-        """By how much each channel (3,) became brighter when a lamp went on or off, and the background is taken in its new light;
+        """By how much each channel (3,) became brighter when a lamp went on or off, whose light the background then takes;
         None while the light stays. body (h,w): not 0 where somebody is expected."""
         p = self._params
         share = changed(picture, body, self._mean, self._age, p.lamp_tolerance)
@@ -99,14 +101,23 @@ class RoomBackground:
         else:
             phases = (self._looks % _PHASES,)
         for phase in phases:
-            learn_background(picture, body, self._mean, self._age, self._params.rate, phase, _PHASES)
+            learn_background(
+                picture, body, self._mean, self._age, self._params.rate, phase, _PHASES
+            )
         self._looks += 1
 
     def before(self, picture: Bytes) -> Bytes:
         """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps."""
         p, out = self._params, self._before
         stands_before(
-            picture, self._mean, self._age, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, out
+            picture,
+            self._mean,
+            self._age,
+            p.known_looks,
+            p.tolerance,
+            p.sure_shadow,
+            p.likely_shadow,
+            out,
         )
         kept = out.copy()
         one = ((out == BEFORE) | (out >= SHADOW)).astype(np.uint8)
@@ -118,7 +129,7 @@ class RoomBackground:
         return one
 
 
-def _edges(picture: Bytes) -> Singles:
+def brightness_edges(picture: Bytes) -> Singles:
     """How steep brightness is at each pixel (h,w) of a picture (h,w,3)."""
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
     across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))

@@ -73,10 +73,18 @@ class BeginAnew(Command, frozen=True):
     """Forget the setup that was kept."""
 
 
+class Wear(Command, frozen=True):
+    """Whether there is a shirt; without one, its steps are left out."""
+
+    refused = "whether there is a shirt was not said"
+    shirt: bool
+
+
 OF_WIZARD: Verbs = {
     "go": Go,
     "next": Next,
     "again": Again,
     "resume": Resume,
     "begin_anew": BeginAnew,
+    "wear": Wear,
 }

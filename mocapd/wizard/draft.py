@@ -57,7 +57,8 @@ class Draft:
     of their sighting: views of one index are of one instant. intrinsics, colours: by camera id; intrinsics_saved:
     ids whose intrinsics were taken over from an earlier setup; floor_known: whether floor and up were
     measured, not guessed; personal: whether the wearer's own colours (from the strokes) replace the
-    shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`.
+    shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`; has_shirt: whether there
+    is a shirt to be tracked by.
     """
 
     cameras: tuple[DraftCamera, ...] = ()
@@ -72,3 +73,4 @@ class Draft:
     personal: bool = False
     stature_m: float | None = None
     factors: Floats | None = None
+    has_shirt: bool = True

@@ -105,6 +105,7 @@ class KeptDraft(Table, frozen=True):
     personal: bool
     stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.5)] | None
     factors: tuple[Annotated[float, msgspec.Meta(gt=0.3, lt=3.0)], ...] | None
+    has_shirt: bool = True  # files of before do not say
 
 
 def kept_draft(draft: Draft) -> KeptDraft:
@@ -155,6 +156,7 @@ def kept_draft(draft: Draft) -> KeptDraft:
             for name, one in draft.colours.items()
         },
         personal=draft.personal,
+        has_shirt=draft.has_shirt,
         stature_m=draft.stature_m,
         factors=None if draft.factors is None else tuple(draft.factors.tolist()),
     )
@@ -244,6 +246,7 @@ def draft_of(kept: KeptDraft, where: str) -> Draft:
         personal=kept.personal,
         stature_m=kept.stature_m,
         factors=None if kept.factors is None else np.array(kept.factors),
+        has_shirt=kept.has_shirt,
     )
 
 

@@ -119,6 +119,7 @@ def load_draft(place: Path) -> Draft:
         personal=saved.wearer is not None and saved.wearer.personal_colours,
         stature_m=known.wearer.stature_m,
         factors=known.wearer.shape_factors,
+        has_shirt=known.wearer.has_shirt,
     )
 
 
@@ -130,7 +131,7 @@ def calibration_of(draft: Draft) -> Calibration:
     W = {name: one.W for name, one in draft.colours.items()}
     return Calibration(
         draft.rig,
-        Wearer(draft.stature_m, draft.factors),
+        Wearer(draft.stature_m, draft.factors, draft.has_shirt),
         ShirtColours(personal_model(pictures, W) if draft.personal else (), pictures),
     )
 
@@ -169,7 +170,10 @@ def _wearer(draft: Draft) -> SavedWearer | None:
     if draft.factors is not None:
         proportions = dict(zip(FACTORS, draft.factors.round(4).tolist(), strict=True))
     return SavedWearer(
-        stature_m=draft.stature_m, proportions=proportions, personal_colours=draft.personal
+        stature_m=draft.stature_m,
+        proportions=proportions,
+        personal_colours=draft.personal,
+        has_shirt=draft.has_shirt,
     )
 
 

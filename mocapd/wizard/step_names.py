@@ -1,6 +1,6 @@
 """The steps of the wizard by name, in their order, and when each is done."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from enum import StrEnum
 
 from mocapd.wizard.draft import Draft
@@ -30,6 +30,14 @@ _IS_DONE: Mapping[StepName, Callable[[Draft, bool], bool]] = {
     StepName.CHECK: lambda _, saved: saved,
 }
 """Whether the result of a step is in the draft, given whether that was saved since the start."""
+
+
+_OF_SHIRT = frozenset({StepName.COLOUR})
+
+
+def steps_wanted(names: Sequence[StepName], draft: Draft) -> tuple[StepName, ...]:
+    """Those of the steps that this setup needs: without a shirt none that are about it."""
+    return tuple(name for name in names if draft.has_shirt or name not in _OF_SHIRT)
 
 
 def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:

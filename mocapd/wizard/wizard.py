@@ -4,6 +4,7 @@ import logging
 import queue
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from mocapd.boundary.numbers import brief
@@ -11,7 +12,7 @@ from mocapd.capture.thread import CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, read_command
+from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, Wear, read_command
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_setup import KeptSetup
@@ -19,7 +20,7 @@ from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Json, Problem, Scene, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
-from mocapd.wizard.step_names import StepName, steps_done
+from mocapd.wizard.step_names import StepName, steps_done, steps_wanted
 from mocapd.wizard.wizard_view import WizardView, with_offer
 
 _TICK_S = 0.05
@@ -58,7 +59,7 @@ class Wizard:
         self._steps, self._statuses, self._died = steps, statuses, died
         self._scene, self._on_saved = scene, on_saved
         self._keeper = keeper
-        self._names = tuple(name for name in StepName if name in steps)
+        self._all = tuple(name for name in StepName if name in steps)
         self._commands: queue.Queue[tuple[str, Mapping[str, Json]]] = queue.Queue(_MOST_COMMANDS)
         self._flooded = threading.Event()  # a command was not even queued
         self._stopping = threading.Event()
@@ -232,6 +233,8 @@ class Wizard:
                     self._show(self._names[at + 1])
             case Again():
                 self._show(self._step.name)
+            case Wear(shirt=shirt):
+                self._wear(shirt)
             case Resume():
                 self._resume()
             case BeginAnew():
@@ -242,6 +245,20 @@ class Wizard:
     @property
     def _offer(self) -> KeptSetup | None:
         return self._keeper.offer if self._keeper is not None else None
+
+    @property
+    def _names(self) -> tuple[StepName, ...]:
+        return steps_wanted(self._all, self.draft)
+
+    def _wear(self, shirt: bool) -> None:
+        """What was found out with a shirt is kept, should it be there after all."""
+        if shirt == self.draft.has_shirt:
+            return
+        at = self._all.index(self._step.name)
+        self.draft = replace(self.draft, has_shirt=shirt)
+        # the step that is shown may have gone, or have other things to ask
+        left = [name for name in self._names if self._all.index(name) >= at]
+        self._show(left[0] if left else self._names[-1])
 
     def _resume(self) -> None:
         """Go on with the first step that is not done. Raises InputError when nothing is kept."""
@@ -282,6 +299,7 @@ class Wizard:
             self._saved,
             self._stopping.is_set(),
             self._names,
+            self.draft.has_shirt,
         )
 
     def _publish(self) -> None:

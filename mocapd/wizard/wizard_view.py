@@ -10,7 +10,8 @@ from mocapd.wizard.step_names import StepName
 @dataclass(frozen=True, slots=True, eq=False)
 class WizardView:
     """A snapshot: `serial` grows with every change; steps: those there are; done: the steps whose result
-    is in the draft; refused: why the last command was not taken, None when it was."""
+    is in the draft; refused: why the last command was not taken, None when it was; has_shirt: whether the
+    wearer said to have one."""
 
     serial: int
     step: StepName
@@ -20,6 +21,7 @@ class WizardView:
     saved: bool
     ended: bool
     steps: tuple[StepName, ...] = tuple(StepName)
+    has_shirt: bool = True
 
 
 def with_offer(view: StepView, offer: KeptSetup) -> StepView:

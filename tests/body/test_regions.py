@@ -5,7 +5,7 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import Region, as_silhouette, by_region, regions
+from mocapd.body.regions import Label, Region, as_silhouette, by_region, labels, regions
 from mocapd.body.skeleton import INDEX
 
 BODY = build_model(1.75, full_body())
@@ -15,7 +15,11 @@ def test_every_region_is_where_it_should_be() -> None:
     of, centres = regions(BODY), BODY.centres_m
     rest = BODY.rest_m
     assert set(of.tolist()) == {int(region) for region in Region}
-    assert centres[of == Region.HEAD, 1].min() > rest[INDEX["leftUpperArm"], 1] - 0.05
+    head = (of == Region.FACE) | (of == Region.HAIR)
+    assert centres[head, 1].min() > rest[INDEX["leftUpperArm"], 1] - 0.05
+    assert centres[of == Region.FACE, 2].min() > centres[head, 2].mean()
+    assert centres[of == Region.HAIR, 1].max() > centres[of == Region.FACE, 1].max() + 0.03
+    assert np.abs(centres[of == Region.HAND, 0]).min() > rest[INDEX["leftHand"], 0] - 0.06
     assert centres[of == Region.FOOT, 1].max() < rest[INDEX["leftFoot"], 1] + 0.02
     elbow = rest[INDEX["leftLowerArm"], 0]
     assert np.abs(centres[of == Region.FOREARM, 0]).min() > elbow - 0.06
@@ -46,3 +50,16 @@ def test_hidden_arms_are_found_by_their_colour(dress) -> None:  # type: ignore[n
 def test_a_body_without_legs_is_refused() -> None:
     with pytest.raises(ValueError, match="no legs"):
         by_region(build_model(1.75))
+
+
+def test_pixels_are_counted_by_limb() -> None:
+    of, centres = labels(BODY), BODY.centres_m
+    knee = BODY.rest_m[INDEX["leftLowerLeg"], 1]
+    for thigh, shin, side in (
+        (Label.LEFT_THIGH, Label.LEFT_SHIN, 1.0),
+        (Label.RIGHT_THIGH, Label.RIGHT_SHIN, -1.0),
+    ):
+        assert (side * centres[(of == thigh) | (of == shin), 0] > -0.02).all()
+        assert centres[of == thigh, 1].mean() > knee > centres[of == shin, 1].mean()
+    assert centres[of == Label.HEAD, 1].min() > centres[of == Label.TRUNK, 1].mean()
+    assert (by_region(BODY).patch == of).all()

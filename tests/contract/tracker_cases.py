@@ -14,8 +14,12 @@ from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.colour_paper.build import build_paper_tracker
+from mocapd.trackers.flex.build import build_flex_tracker
+from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
+from mocapd.trackers.supervisor.kinds import KINDS
+from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -24,15 +28,18 @@ from tests.trackers.stepping import Stepping
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
 PERIOD_NS = 33_333_333
 N_PERSON, N_EMPTY = 10, 6
+N_BEFORE = 24  # of an empty room, in which a background is learned
 
 
 @dataclass(frozen=True)
 class TrackerCase:
-    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight."""
+    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; speakers: what
+    its bodies may say of who told them, its own name where empty."""
 
     tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
+    speakers: tuple[str, ...] = ()
 
 
 def frame_sets(
@@ -109,9 +116,49 @@ def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) ->
     return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
 
 
+@cache
+def filmed_from_empty() -> Filmed:
+    """The same room in steady light, seen empty for a while before somebody stands in it and slowly moves."""
+    cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
+    lights = [{**light, "events": []} for light in small.table()["lights"]]
+    turns = {"t_s": 3.0, "pose": "relaxed", "at_m": [0.1, 0.1], "yaw_deg": 20.0}
+    motion = {"keyframes": [{"t_s": 0.0, "pose": "t_pose"}, turns]}
+    scenario = small.scenario(cameras=cameras, lights=lights, motion=motion, loop_s=6.0)
+    renderers = camera_renderers(World(scenario))
+    empty = {
+        r.camera.name: [r.picture(None, np.ones(2), noise_key=i) for i in range(N_BEFORE)]
+        for r in renderers
+    }
+    person = {r.camera.name: [r.frame(i) for i in range(N_BEFORE + 12)] for r in renderers}
+    shown = {name: empty[name] + person[name] for name in empty}
+    known = calibration_of_setup(setup_of(scenario, renderers))
+    return Filmed(known, filmed().database, frame_sets(shown), frame_sets(empty))
+
+
+def plain_case(build_tracker: Callable[[Calibration], Tracker]) -> TrackerCase:
+    shown = filmed_from_empty()
+    tracker = build_tracker(shown.known)
+    return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
+
+
+def auto_case() -> TrackerCase:
+    shown = filmed()
+    both = (build_colour_tracker(shown.known, shown.database), build_flex_tracker(shown.known))
+    tracker = Supervisor([Candidate(one, KINDS[one.name]) for one in both])
+    return TrackerCase(
+        Stepping(tracker, known_shape(shown.known)),
+        shown.person,
+        shown.empty,
+        ("auto", "colour", "flex", "colour+flex"),
+    )
+
+
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
 CASES: Mapping[str, Callable[[], TrackerCase]] = {
+    "auto": auto_case,
     "canned": canned_case,
     "colour": lambda: shirt_case(build_colour_tracker),
     "colour_paper": lambda: shirt_case(build_paper_tracker),
+    "flex": lambda: plain_case(build_flex_tracker),
+    "flex_paper": lambda: plain_case(build_flex_paper_tracker),
 }

@@ -74,7 +74,7 @@ def test_one_camera_without_a_rig_is_tried_where_it_probably_stands(
     assert session.rig_source == "assumed"
     assert [(one.name, one.size_px) for one in session.rig.cameras] == [("webcam", SIZE_PX)]
     assert "'webcam' is not calibrated" in caplog.text
-    assert session.tracker.name == "colour"
+    assert session.tracker.name == "auto"
 
 
 def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
@@ -86,8 +86,8 @@ def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
     assert not list(capture.glob("pose_database*"))
 
 
-def test_the_colour_tracker_is_the_usual_one_and_each_has_its_own_section() -> None:
-    assert TrackerSection().name == "colour"
+def test_the_best_that_can_run_is_the_usual_one_and_each_has_its_own_section() -> None:
+    assert TrackerSection().name == "auto"
     assert list(TrackerSection().sections) == list(TRACKERS)
     text = {"tracker.colour_paper.baseline": "true", "tracker.canned.loop_s": "2"}
     sections = load_config(text, env={}, candidates=()).config.tracker.sections

@@ -109,6 +109,7 @@ def pictures() -> Iterator[str]:
 RIGHT: Mapping[str, object] = {
     "camera": "cam0", "name": "shelf", "size_px": [64, 48], "fps_hz": 30.0, "same": True,
     "mm": 100, "png_base64": png_of(np.ones(SIZE_PX[::-1], np.uint8)), "m": 1.7, "step": "lens",
+    "shirt": True,
 }  # fmt: skip
 """An argument of each name that is taken."""
 

@@ -81,9 +81,9 @@ class Bench:
     def _trackers(self, found: BenchResults) -> Iterator[tuple[str, ReadyTracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
-            resources = cached(self.cache_dir, self.progress, self.tracking)
+            resources = cached(self.cache_dir, self.progress, self.tracking, self.sections)
             try:
-                ready = ready_tracker(name, self.recording.known, resources, self.sections[name])
+                ready = ready_tracker(name, self.recording.known, resources)
             except ConfigError as error:
                 if self.tracker:
                     raise

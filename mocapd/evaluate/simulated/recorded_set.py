@@ -40,6 +40,11 @@ def failures() -> list[PlannedSession]:
     return failure_sessions(load_scenario(asset_path("scenarios") / f"{SCENES[0]}.toml"))
 
 
+def interrupted() -> PlannedSession:
+    """The last of those scenes: everything that goes wrong around somebody in the shirt."""
+    return failures()[-1]
+
+
 def recorded(sessions: list[PlannedSession], cache_dir: Path, progress: Progress) -> list[Path]:
     """A folder in the capture format for each session; those that are there already are not recorded anew.
 

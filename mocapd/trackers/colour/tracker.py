@@ -284,9 +284,7 @@ class ColourTracker:
                 names = tuple(self.rig.cameras[v.index].name for v in seen)
                 left = None
                 if known is not None:
-                    left = residual_of(
-                        self._fitter, known.state, fit.state, known.left, p.blend_m
-                    )
+                    left = residual_of(self._fitter, known.state, fit.state, known.left, p.blend_m)
                 return _Memory(frames.t_ns, fit.state, fit, wearer.taught_s, names, left), seen
         for segmenter, appearance in zip(self._segmenters.each, before, strict=True):
             segmenter.memory.appearance = appearance

@@ -1,10 +1,11 @@
-"""What the wearer looks like to one camera: the colours of each region, and of what is before the background beside them.
+"""What the wearer looks like to one camera: the colours of each region, and of what is beside them.
 
-The paper learns ten colours along each limb over the first frames and then keeps them (Hecht et al. 2009, III.E). Here they are
-histograms of regions, learned slowly on, since light changes and people turn; what else stands before the background is learned
-as a class of its own.
+The paper learns ten colours along each limb over the first frames and then keeps them (Hecht et al. 2009, III.E). Here they
+are histograms of regions, learned slowly on, since light changes and people turn; what else stands before the background is
+learned as a class of its own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -24,7 +25,9 @@ from mocapd.vision.foreground_kernels import SHADOW
 
 _UNCOUNTED = 255
 _CORE = np.ones((3, 3), np.uint8)  # a drawn region's inside: its edge may be off by a pixel
-_BESIDE = np.ones((7, 7), np.uint8)  # what is farther from the drawn body than half of this is not the body
+_BESIDE = np.ones(
+    (7, 7), np.uint8
+)  # what is farther from the drawn body than half of this is not the body
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +72,8 @@ class Appearance:
         return bool(self._counts[1:].sum() > 0.0)
 
     def relight(self, gain: Floats) -> None:
-        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way quickly to what is
-        seen in it."""
+        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way to what is then
+        seen."""
         n = 1 << BITS
         middles = np.arange(n) + 0.5
         to = [np.clip(middles * channel, 0, n - 1).astype(np.int64) for channel in gain]
@@ -81,9 +84,25 @@ class Appearance:
             np.add.at(counted, there.ravel(), self._params.new_light * before)
         self._refresh()
 
-    def learn(
-        self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None
-    ) -> None:
+    def overlap(self, one: int, other: int) -> float:
+        """0..1: how much of two regions' colours is the same; 1 where one of them was not seen."""
+        shares = []
+        for k in (one, other):
+            share = np.exp(-self._table[k]) - self._params.least_share
+            if self._counts[k].sum() <= 0.0:
+                return 1.0
+            shares.append(share / share.sum())
+        return float(np.minimum(*shares).sum())
+
+    def join(self, look: Sequence[int]) -> None:
+        """Count what was seen of each region with the region of its look, which is learned as one from now on."""
+        for k, other in enumerate(look):
+            if other != k:
+                self._counts[other] += self._counts[k]
+                self._counts[k] = 0.0
+        self._refresh()
+
+    def learn(self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None) -> None:
         """Count the colours of a picture (h,w,3) where the body is drawn (h,w), as far as it is before the background.
 
         ids (h,w): what was classified; where it is another region than what is drawn the pose may be wrong, and is not
@@ -102,13 +121,16 @@ class Appearance:
         count_colours(picture, classes, _UNCOUNTED, 1.0 if ids is None else p.share, self._counts)
         self._refresh()
 
-    def classify(self, picture: Bytes, before: Bytes, distance_px: Singles) -> Bytes:
+    def classify(
+        self, picture: Bytes, before: Bytes, distance_px: Singles, on_floor: Bytes
+    ) -> Bytes:
         """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
         p = self._params
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px, p.shadow_costs, p.shadow_per_px, p.shadow_px, ids,
+            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px,
+            p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
         )  # fmt: skip
         return ids
 

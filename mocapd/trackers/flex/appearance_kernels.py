@@ -53,17 +53,24 @@ def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> 
             for g in range(n):
                 for r in range(n):
                     below, above = max(r - 1, 0), min(r + 1, n - 1)
-                    new[b, g, r] = quarter * (old[b, g, below] + old[b, g, above]) + half * old[b, g, r]
+                    new[b, g, r] = (
+                        quarter * (old[b, g, below] + old[b, g, above]) + half * old[b, g, r]
+                    )
         for b in range(n):
             for g in range(n):
                 below, above = max(g - 1, 0), min(g + 1, n - 1)
                 for r in range(n):
-                    scratch[b, g, r] = quarter * (new[b, below, r] + new[b, above, r]) + half * new[b, g, r]
+                    scratch[b, g, r] = (
+                        quarter * (new[b, below, r] + new[b, above, r]) + half * new[b, g, r]
+                    )
         for b in range(n):
             below, above = max(b - 1, 0), min(b + 1, n - 1)
             for g in range(n):
                 for r in range(n):
-                    smooth = quarter * (scratch[below, g, r] + scratch[above, g, r]) + half * scratch[b, g, r]
+                    smooth = (
+                        quarter * (scratch[below, g, r] + scratch[above, g, r])
+                        + half * scratch[b, g, r]
+                    )
                     new[b, g, r] = -np.log(smooth / total + np.float32(least))
 
 
@@ -82,15 +89,16 @@ def classify_regions(
     shadow_costs: tuple[float, float],
     shadow_per_px: float,
     shadow_px: float,
+    on_floor: NDArray[np.uint8],
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
 
-    before (h,w): 0 where the background shows; distance_px (7,h,w): to where each region is expected; table (8,4096)
-    of `log_table`. A region pays per_px for each pixel of distance, up to longest_px; what is no region pays other_cost, and
-    other_per_px for each pixel that it is away from the body, up to other_px: things beside it are learned there, and
-    not what hides it; what may be a shadow at most shadow_costs (a sure
-    one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px. Beyond reach_px from all regions nothing is.
+    before (h,w): as of `stands_before`; distance_px (7,h,w): to where each region is expected; table (8,4096): `log_table`. A
+    region pays per_px for each pixel of distance, up to longest_px. What is no region pays other_cost, and other_per_px for
+    each pixel that it is away from the body, up to other_px: limbs move there. What may be a shadow pays at most shadow_costs
+    (a sure one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px; where
+    on_floor (h,w) is 0, only sure ones are shadows. Beyond reach_px from all regions nothing is.
     """
     h, w = before.shape
     for y in range(h):
@@ -109,9 +117,15 @@ def classify_regions(
                     best, found = cost, k
             if nearest > reach_px:
                 continue
-            other = table[0, i] + np.float32(other_cost) + np.float32(other_per_px) * min(nearest, np.float32(other_px))
-            if before[y, x] >= SHADOW:
-                within = np.float32(shadow_per_px) * max(np.float32(shadow_px) - nearest, np.float32(0.0))
+            other = (
+                table[0, i]
+                + np.float32(other_cost)
+                + np.float32(other_per_px) * min(nearest, np.float32(other_px))
+            )
+            if before[y, x] == SHADOW or (before[y, x] > SHADOW and on_floor[y, x] != 0):
+                within = np.float32(shadow_per_px) * max(
+                    np.float32(shadow_px) - nearest, np.float32(0.0)
+                )
                 other = min(other, np.float32(shadow_costs[before[y, x] - SHADOW]) + within)
             if best < other:
                 out[y, x] = found

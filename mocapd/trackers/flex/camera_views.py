@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
@@ -11,16 +12,22 @@ from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.trackers.flex.appearance import Appearance, region_distances
+from mocapd.trackers.flex.floor_view import FloorView
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
-from mocapd.vision.foreground_kernels import UNKNOWN
-from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN
+from mocapd.vision.room_background import RoomBackground, brightness_edges
+
+_ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
+_LINE = np.ones((3, 3), np.uint8)
 
 
 class CameraView:
     """One camera: its newest work picture, background and appearance."""
 
-    def __init__(self, name: str, size_px: tuple[int, int], image_scale: int, params: Params) -> None:
+    def __init__(
+        self, name: str, size_px: tuple[int, int], image_scale: int, params: Params
+    ) -> None:
         """size_px: of its frames, width and height; image_scale: by how much they are averaged down."""
         self.name, self.size_px, self.image_scale = name, size_px, image_scale
         w, h = self.work_size = size_px[0] // image_scale & ~1, size_px[1] // image_scale & ~1
@@ -52,7 +59,7 @@ class CameraView:
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
 
     def mark_body(self, drawn: Bytes | None, roi: Roi) -> None:
-        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is known."""
+        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is."""
         self.body[:] = 0
         self.drawn[:] = 0
         if drawn is not None:
@@ -69,14 +76,17 @@ class CameraView:
 
 
 class CameraViews:
-    """All cameras of a fitter; `present` is each seeing camera's own time after the frame set's [s], by its index."""
+    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after
+    the frame set's [s], by its index."""
 
     def __init__(self, fitter: Fitter, params: Params) -> None:
-        self._fitter, self._params = fitter, params
+        self.fitter, self._params = fitter, params
         self.each = [
-            CameraView(d.camera.name, d.camera.size_px, d.image_scale, params) for d in fitter.drawings
+            CameraView(d.camera.name, d.camera.size_px, d.image_scale, params)
+            for d in fitter.drawings
         ]
         self._index = {view.name: i for i, view in enumerate(self.each)}
+        self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
         self.present: dict[int, float] = {}
 
     def reset(self) -> None:
@@ -104,7 +114,7 @@ class CameraViews:
     def mark_body(self, state: MotionState | None) -> None:
         """Where somebody is expected, drawn into every present picture."""
         for i, dt_s in self.present.items():
-            drawing = self._fitter.drawings[i]
+            drawing = self.fitter.drawings[i]
             roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
             if state is None or roi is None:
                 self.each[i].mark_body(None, (0, 0, 0, 0))
@@ -127,7 +137,7 @@ class CameraViews:
         p = self._params
         views = []
         for i, dt_s in self.present.items():
-            drawing, camera = self._fitter.drawings[i], self.each[i]
+            drawing, camera = self.fitter.drawings[i], self.each[i]
             roi = drawing.region(state, dt_s, p.margin_px)
             if roi is None:
                 continue
@@ -135,16 +145,32 @@ class CameraViews:
             before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
             drawn = drawing.render(state, dt_s, roi)
             ids = camera.appearance.classify(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]), before, region_distances(drawn)
+                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+                before,
+                region_distances(drawn),
+                self._floors[i].near(state.root_m, roi),
             )
             soft = int(255 * p.soft)
             views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
         return views
 
+    def silhouettes(self, state: MotionState) -> list[View]:
+        """Every present picture by what stands before the background where somebody of unknown colours is expected."""
+        views = []
+        for i, dt_s in self.present.items():
+            drawing, camera = self.fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, self._params.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            ids = ((camera.before == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
+            views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dt_s))
+        return views
+
     def learn_first_appearance(self, state: MotionState) -> None:
         """Learn the colours of a body of which none is known yet."""
         for i, dt_s in self.present.items():
-            roi = self._fitter.drawings[i].region(state, dt_s, self._params.margin_px)
+            roi = self.fitter.drawings[i].region(state, dt_s, self._params.margin_px)
             if roi is not None:
                 self._learn(i, state, dt_s, roi, None)
 
@@ -160,7 +186,7 @@ class CameraViews:
         x0, y0, x1, y1 = roi
         camera.appearance.learn(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
-            self._fitter.drawings[index].render(state, dt_s, roi),
+            self.fitter.drawings[index].render(state, dt_s, roi),
             np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
             ids,
         )
@@ -170,13 +196,30 @@ class CameraViews:
         for i in self.present:
             camera = self.each[i]
             if not camera.background.is_new:
-                cv2.dilate(((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8), camera.beside, dst=camera.body)
+                cv2.dilate(
+                    ((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8),
+                    camera.beside,
+                    dst=camera.body,
+                )
 
     def learn_background(self) -> None:
         """Follow each background where nobody is marked."""
         for i in self.present:
             camera = self.each[i]
             camera.background.learn(camera.picture, camera.body)
+
+    def outline_contrast(self) -> float:
+        """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""
+        on = beside = 0.0
+        for i in self.present:
+            camera = self.each[i]
+            if camera.drawn.any():
+                edges = brightness_edges(camera.picture)
+                wide = np.asarray(cv2.dilate(camera.drawn, _ASIDE), np.uint8)
+                narrow = np.asarray(cv2.erode(camera.drawn, _ASIDE), np.uint8)
+                on += float(edges[_outline(camera.drawn)].mean())
+                beside += float(edges[_outline(wide) | _outline(narrow)].mean())
+        return on / max(beside, 1e-3)
 
     def seed_background(self) -> None:
         """Take what is beside the marked body for the background."""
@@ -193,3 +236,7 @@ class CameraViews:
             x0, y0, x1, y1 = v.roi
             where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
         return ids, where
+
+
+def _outline(mask: Bytes) -> NDArray[np.bool_]:
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _LINE) > 0)

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from mocapd.body.pose_space import SIDES
 from mocapd.body.regions import Label
 from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX, N_JOINTS

@@ -27,7 +27,9 @@ class StartParams:
     accept_explained: float = 0.75  # of silhouette and body together
     likely_explained: float = 0.6  # the same, at two attempts in a row
     same_place_m: float = 0.4  # between which the person moved no more than this
-    farther_per_m: float = 0.08  # of such agreement a person who is a metre farther away must have more
+    farther_per_m: float = (
+        0.08  # of such agreement a person who is a metre farther away must have more
+    )
     people: int = 2  # of whom the best is taken
     pause_s: float = 0.2  # between attempts that failed
 
@@ -40,38 +42,46 @@ class Params:
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(uncertain_arm=0.7, hand_px=0.0, hand_cost=0.0)
+        default_factory=lambda: LimbSearchParams(uncertain_arm=0.55, hand_px=0.0, hand_cost=0.0)
     )
     background: BackgroundParams = field(default_factory=BackgroundParams)
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
     floor: FloorParams = field(default_factory=FloorParams)
-    distances: MeasuringParams = field(default_factory=MeasuringParams)
+    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
     uncovered_turns: int = 10  # from one look for what was uncovered to the next
     absorb_turns: int = 13  # of so many looks one learns what stands before the background, too, while nobody is known
-    soft: float = 60.0 / 255.0  # weight of a drawn pixel where something else stands before the background
+    soft: float = (
+        60.0 / 255.0
+    )  # weight of a drawn pixel where something else stands before the background
 
     # motion from frame to frame
     prediction_damping: float = 0.6
     fastest_rad_s: float = 15.0
     fastest_m_s: float = 4.0
     arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
-    hidden_arm_glide: float = 0.7  # share of its velocity that such an arm keeps from frame to frame
+    hidden_arm_glide: float = (
+        0.7  # share of its velocity that such an arm keeps from frame to frame
+    )
 
     blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
-    # which way somebody looks
-    facing_turns: int = 5  # from one such look to the next
-    sure_head: float = 0.6  # share of face and hair in their places above which nobody asks
-    facing_gain: float = 10.0  # by how much the cost must fall to look the other way [disagreeing pixels]
+    crossed_turns: int = 3  # from one look at crossed legs to the next
+    crossed_iterations: int = 4
 
     # decisions
-    live_explained: float = 0.45  # share of drawn and seen pixels that agree, for the pose to be believed
+    live_explained: float = (
+        0.45  # share of drawn and seen pixels that agree, for the pose to be believed
+    )
     least_body_px: int = 300  # confirmed work px, all cameras together
-    learn_explained: float = 0.6  # of a frame that teaches colours
+    least_contrast: float = (
+        1.2  # of the outline of a body that is taken over, against what is beside it
+    )
+    learn_explained: float = 0.45  # of a frame that teaches colours
+    alike: float = 0.55  # share of two regions' colours that is the same, above which they are one
 
     # with the upper body known from another tracker
     guided_iterations: int = 3

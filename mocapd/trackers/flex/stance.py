@@ -35,7 +35,7 @@ class Blob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Standing:
-    """Somebody of the known height at a place (3,) on the floor, as the blobs of some cameras, by index, show; error [work px^2]."""
+    """Somebody of the known height at a place (3,) on the floor, as blobs of cameras, by index, show; error [work px^2]."""
 
     place_m: Floats
     blobs: Mapping[int, Blob]
@@ -43,7 +43,7 @@ class Standing:
 
 
 def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
-    """The largest pieces of a picture (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
+    """The largest pieces (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
     mask = (before == BEFORE) | (before >= SHADOW) if shadows else before == BEFORE
     n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
@@ -75,7 +75,8 @@ def standing(
     found = [
         best
         for blob in blobs[first]
-        if (best := _best_place(first, blob, blobs, cameras, image_scales, stature_m, params)) is not None
+        if (best := _best_place(first, blob, blobs, cameras, image_scales, stature_m, params))
+        is not None
     ]
     return sorted(found, key=lambda one: one.error)
 
@@ -101,7 +102,8 @@ def _best_place(
         error, mine = 0.0, {}
         for i, some in blobs.items():
             height_px = cameras[i].size_px[1] / image_scales[i]
-            top, foot = (project(cameras[i], place + np.array([[0.0, stature_m, 0.0], [0.0, 0.0, 0.0]])) + 0.5) / image_scales[i] - 0.5  # fmt: skip
+            ends = project(cameras[i], place + np.array([[0.0, stature_m, 0.0], [0.0, 0.0, 0.0]]))
+            top, foot = (ends + 0.5) / image_scales[i] - 0.5
             one = blob if i == first else min(some, key=lambda b: _misfit(b, top, foot, height_px))
             mine[i] = one
             error += _misfit(one, top, foot, height_px)
@@ -147,9 +149,12 @@ def first_fit(
     def fitted(state: MotionState, iterations: int) -> Fit:
         return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
 
-    roughly = sorted((fitted(state, params.rough_iterations) for state in begins), key=lambda fit: fit.cost)
+    roughly = sorted(
+        (fitted(state, params.rough_iterations) for state in begins), key=lambda fit: fit.cost
+    )
     return min(
-        (fitted(fit.state, params.iterations) for fit in roughly[: params.refined]), key=lambda fit: fit.cost
+        (fitted(fit.state, params.iterations) for fit in roughly[: params.refined]),
+        key=lambda fit: fit.cost,
     )
 
 

@@ -1,38 +1,42 @@
 """The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.body.pose_space import SIDES, full_body
-from mocapd.body.regions import as_silhouette, by_region
+from mocapd.body.pose_space import SIDES, full_body, upper_body
+from mocapd.body.regions import Region, as_silhouette
 from mocapd.body.shape import BodyShape
-from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
-from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, known_of, moved, step_between
+from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.trackers.blending import Residual, blended, later, residual_of
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
+from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
+from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
-from mocapd.trackers.flex.turning import head_share, turned_round
 from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, FrameSet, Pose, Rig, Tracking
 
 _TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
+_UPPER = np.flatnonzero(upper_body().group_of_joint >= 0)  # joints that a guide knows
+_LEGS = (Region.LEG, Region.FOOT)
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
 
 
@@ -56,7 +60,7 @@ class _Wearer:
 
 
 class FlexTracker:
-    """Two calibrated cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
+    """Two cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
 
     name = "flex"
 
@@ -71,11 +75,12 @@ class FlexTracker:
         self.rig = rig
         body = build_model(stature_m, full_body())
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self._fitter = Fitter(by_region(body), rig.cameras, smaller, p.fit)
+        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs)
+        self._fitter, self._arms = self._fitters.of(ALL_DIFFER)
         self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit)
         self._model = self._fitter.model
+        self._skeleton = standard_skeleton(stature_m)
         self._floor = FloorTerm(self._model, p.floor)
-        self._arms = ArmSearch(self._fitter, p.limbs)
         self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
         self._cameras = CameraViews(self._fitter, p)
         self._tracking = TrackingState(tracking)
@@ -85,6 +90,7 @@ class FlexTracker:
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""
         self._cameras.reset()
+        self._dress(ALL_DIFFER)
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
         self._near = near
@@ -94,14 +100,7 @@ class FlexTracker:
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
-        self._turn += 1
-        require_stature(shape, self._model.stature_m)
-        wearer = _Wearer(*known_of(shape, self._model.space))
-        self._cameras.look(frames)
-        self.probe("picture")
-        known = self._known
-        if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
-            known = None  # too old to predict from
+        wearer, known = self._begin(frames, shape)
         views: list[View] = []
         if self._cameras.present:
             if known is not None:
@@ -111,6 +110,35 @@ class FlexTracker:
                 self._near = None
             else:
                 known, views = self._start(wearer, frames)
+        return self._end(known, views, frames, shape)
+
+    def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
+        """Track one frame set whose upper body another tracker knows: legs and head alone are fitted. Raises as `step`,
+        and ValueError for an upper body without a pose."""
+        if upper.pose is None:
+            raise ValueError("a guide that knows no pose")
+        wearer, known = self._begin(frames, shape)
+        self._near = None
+        views: list[View] = []
+        if self._cameras.present:
+            known, views = self._follow_guide(known, upper.pose, wearer, frames)
+        return self._end(known, views, frames, shape)
+
+    def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[_Wearer, _Memory | None]:
+        """The wearer of this step, and what is known of the last one."""
+        self._turn += 1
+        require_stature(shape, self._model.stature_m)
+        self._cameras.look(frames)
+        self.probe("picture")
+        known = self._known
+        if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
+            known = None  # too old to predict from
+        return _Wearer(*known_of(shape, self._model.space)), known
+
+    def _end(
+        self, known: _Memory | None, views: list[View], frames: FrameSet, shape: BodyShape
+    ) -> Track:
+        """Judge, learn, and tell."""
         evidence = known is not None and known.t_ns == frames.t_ns
         tracking = self._tracking.step(frames.t_ns, evidence)
         if tracking is Tracking.LOST and not evidence:
@@ -150,11 +178,6 @@ class FlexTracker:
         self.probe("fit")
         fit, switched = self._arms.improve(fit, views, dt_s, self._turn, False, terms)
         self.probe("arms")
-        before = fit
-        fit = self._facing(fit, views, dt_s, terms)
-        if fit is not before:
-            switched = SIDES
-        self.probe("facing")
         if not self._believed(fit):
             return known, views
         state = fit.state
@@ -166,27 +189,88 @@ class FlexTracker:
             frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), left
         ), views
 
+    def _follow_guide(
+        self, known: _Memory | None, upper: Pose, wearer: _Wearer, frames: FrameSet
+    ) -> tuple[_Memory | None, list[View]]:
+        """One frame of legs and head below and above a body that another tracker knows."""
+        p, cameras, model = self.params, self._cameras, self._model
+        last = known.state if known is not None else self._standing_below(upper, wearer)
+        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else _TAKEN_OVER_S
+        local = moved(model, last, dt_s, p.prediction_damping)[1]
+        local[_UPPER] = local_from_global(self._skeleton, upper.quats_xyzw)[_UPPER]
+        predicted = MotionState(
+            upper.root_m.copy(), local, last.velocity, wearer.factors, wearer.information
+        )
+        cameras.mark_body(predicted)
+        if cameras.are_new:
+            cameras.seed_background()
+        cameras.stand_before()
+        self.probe("background")
+        is_first = not cameras.know_appearance
+        fitter = self._silhouettes if is_first else self._fitter
+        views = cameras.silhouettes(predicted) if is_first else cameras.classified(predicted)
+        self.probe("classify")
+        if not views:
+            return known, views
+        held = np.zeros(model.n_pose)
+        held[:3] = p.guided_sd_m**-2
+        held[3 : upper_body().n_pose] = p.guided_sd_rad**-2
+        terms: tuple[PoseTerm, ...] = (self._floor,)
+        if not is_first:
+            terms = self._terms(predicted, views, frames, _LEGS)
+        self.probe("distances")
+        loose = np.diag(held + 1.0 / (fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+        fit = fitter.fit(
+            predicted, views, dt_s, p.guided_iterations, learn_shape=False, motion=loose, terms=terms,
+        )  # fmt: skip
+        self.probe("fit")
+        if not is_first:
+            fit = self._legs_apart(fit, views, dt_s, terms)
+        if is_first and fit.explained >= p.learn_explained:
+            self._learn_first(fit.state)
+        if not self._believed(fit):
+            return known, views
+        velocity = np.zeros(model.n_pose)
+        if known is not None:
+            velocity = self._velocity(fit, last, dt_s, ())
+        return _Memory(
+            frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views)
+        ), views
+
+    def _standing_below(self, upper: Pose, wearer: _Wearer) -> MotionState:
+        """Somebody with this upper body whose legs hang straight down."""
+        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+        return MotionState(
+            upper.root_m, local, np.zeros(self._model.n_pose), wearer.factors, wearer.information
+        )
+
     def _terms(
-        self, predicted: MotionState, views: Sequence[View], frames: FrameSet
+        self,
+        predicted: MotionState,
+        views: Sequence[View],
+        frames: FrameSet,
+        only: Collection[int] = (),
     ) -> tuple[PoseTerm, ...]:
-        """What holds the pose beside the regions: the floor, and distances where two cameras look from one side."""
+        """What holds the pose beside the regions: the floor, and distances where two cameras look from one side, of all
+        regions or of these only."""
         measured = texture_distances(
-            self._fitter, predicted, views, frames, self._turn, self.params.distances
+            self._fitter, predicted, views, frames, self._turn, self.params.distances, only
         )
         return (self._floor, *measured)
 
-    def _facing(
+    def _legs_apart(
         self, fit: Fit, views: Sequence[View], dt_s: float, terms: Sequence[PoseTerm]
     ) -> Fit:
-        """The fit, or that of a body which looks the other way, when face and hair are not where they should be."""
+        """The fit, or that with the legs exchanged: both look alike, and below known hips crossed ones are unusual."""
         p = self.params
-        if self._turn % p.facing_turns or head_share(fit) > p.sure_head:
+        if self._turn % p.crossed_turns or not are_crossed(self._fitter.joints(fit.state)[0]):
             return fit
+        start = with_legs_exchanged(self._fitter, fit.state)
         other = self._fitter.fit(
-            turned_round(fit.state), views, _TAKEN_OVER_S, p.fit.iterations, learn_shape=False, terms=terms,
-        )  # fmt: skip
-        better = other.cost < fit.cost - p.facing_gain and head_share(other) > head_share(fit)
-        return other if better else fit
+            start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
+        )
+        costs = [one.cost + unusual_legs(one.state.local_xyzw) for one in (fit, other)]
+        return other if costs[1] < costs[0] else fit
 
     def _velocity(
         self, fit: Fit, last: MotionState, dt_s: float, switched: Sequence[str]
@@ -205,8 +289,6 @@ class FlexTracker:
             velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
             if side in switched:
                 velocity[columns] = 0.0
-        if len(switched) == len(SIDES):
-            velocity[3:] = 0.0
         return velocity
 
     def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
@@ -225,11 +307,13 @@ class FlexTracker:
         if not likely:
             return None, []
         # who is nearer wants to be tracked: a passer-by is seldom in front
-        fit, names = max(likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0]))
+        fit, names = max(
+            likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0])
+        )
         again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
         if fit.explained < p.start.accept_explained and not again:
             return None, []
-        cameras.learn_first_appearance(fit.state)
+        self._learn_first(fit.state)
         return _Memory(frames.t_ns, fit.state, fit, names), []
 
     def _standing(self, wearer: _Wearer, shadows: bool) -> list[tuple[Fit, tuple[str, ...]]]:
@@ -255,23 +339,25 @@ class FlexTracker:
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
     ) -> tuple[_Memory | None, list[View]]:
-        """Begin from another tracker's body, if the pictures confirm it: what is beside it is the background, and its regions
-        differ from that."""
+        """Begin from another tracker's body, if the pictures have its outline: what is beside it is the background."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
             return None, []
-        local = local_from_global(standard_skeleton(self._model.stature_m), pose.quats_xyzw)
+        local = local_from_global(self._skeleton, pose.quats_xyzw)
         still = np.zeros(self._model.n_pose)
         there = MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
         self._cameras.mark_body(there)
+        if self._cameras.outline_contrast() < self.params.least_contrast:
+            return None, []
         self._cameras.seed_background()
         self._cameras.stand_before()
-        self._cameras.learn_first_appearance(there)
+        self._learn_first(there)
         views = self._cameras.classified(there)
         if not views:
             return None, []
         fit = self._fitter.fit(
-            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False, terms=self._terms(there, views, frames),
+            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False,
+            terms=self._terms(there, views, frames),
         )  # fmt: skip
         if not self._believed(fit):
             return None, []
@@ -293,6 +379,20 @@ class FlexTracker:
         elif nobody:
             self._cameras.mark_body(None)
         self._cameras.learn_background()
+
+    def _learn_first(self, state: MotionState) -> None:
+        """Learn the look of somebody who was found."""
+        self._dress(ALL_DIFFER)
+        self._cameras.learn_first_appearance(state)
+        seen = [self._cameras.each[i].appearance for i in self._cameras.present]
+        look = look_of(seen, self.params.alike)
+        for camera in self._cameras.each:
+            camera.appearance.join(look)
+        self._dress(look)
+
+    def _dress(self, look: Look) -> None:
+        self._fitter, self._arms = self._fitters.of(look)
+        self._cameras.fitter = self._fitter
 
     def _names(self, views: Sequence[View]) -> tuple[str, ...]:
         return tuple(self._cameras.each[v.index].name for v in views)

@@ -120,7 +120,9 @@ class PaperView:
         foreground = None
         if not self.background.is_new:
             size = self.camera.size_px
-            foreground = np.asarray(cv2.resize(self.person(), size, interpolation=cv2.INTER_NEAREST), np.uint8)
+            foreground = np.asarray(
+                cv2.resize(self.person(), size, interpolation=cv2.INTER_NEAREST), np.uint8
+            )
         return HeadPicture(self._pixels, self.offset_s, foreground)
 
     def limb_view(self, reference: Singles) -> LimbView:

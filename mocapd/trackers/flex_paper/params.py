@@ -49,4 +49,6 @@ class Params:
     # background
     beside_px: int = 15  # about the body nothing is learned as background [work px]
     uncovered_turns: int = 10  # from one look for what was uncovered to the next
-    absorb_turns: int = 13  # of so many looks one learns what stands before, too, while nobody is known
+    absorb_turns: int = (
+        13  # of so many looks one learns what stands before, too, while nobody is known
+    )

@@ -262,7 +262,9 @@ class FlexPaperTracker:
         p, parts = self.params, _PARTS[limb]
 
         def constrained(particles_m: Floats) -> Floats:
-            return project_limb(self._body, limb, particles_m, points_m, None, _FLOOR_M, params=p.simulation)
+            return project_limb(
+                self._body, limb, particles_m, points_m, None, _FLOOR_M, params=p.simulation
+            )
 
         return step_cloud(
             cloud, dt_s, self._radii_m()[list(parts)], parts, views,
@@ -306,13 +308,18 @@ class FlexPaperTracker:
     def _limbs_edge(self, points_m: Floats) -> float:
         """The mean edge penalty 0..1 of the limbs of points (16,3), of what is seen of them; 1 where nothing is."""
         views = self._limb_views()
-        each = [self._edges(limb, points_m[list(which)][None], views)[0] for limb, which in LIMBS.items()]
+        each = [
+            self._edges(limb, points_m[list(which)][None], views)[0]
+            for limb, which in LIMBS.items()
+        ]
         return float(np.mean(each))
 
     def _edges(self, limb: str, points_m: Floats, views: Sequence[LimbView]) -> Floats:
         """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
         parts = list(_PARTS[limb])
-        one = limb_penalties(points_m, self._radii_m()[parts], _PARTS[limb], views, self.params.score)
+        one = limb_penalties(
+            points_m, self._radii_m()[parts], _PARTS[limb], views, self.params.score
+        )
         seen = one.seen[..., EDGE].sum(axis=0)
         total = (one.seen[..., EDGE] * one.mean[..., EDGE]).sum(axis=0)
         return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)

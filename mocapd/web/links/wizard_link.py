@@ -117,5 +117,6 @@ def view_json(shown: WizardView) -> dict[str, object]:
         },
         "refused": asdict(shown.refused) if shown.refused is not None else None,
         "saved": shown.saved,
+        "shirt": shown.has_shirt,
         "ended": shown.ended,
     }

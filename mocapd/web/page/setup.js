@@ -8,6 +8,9 @@ const TITLES = {
   body: "Body",
   check: "Check",
 };
+const NO_SHIRT =
+  "Two cameras or more follow you in any clothes: leave the room empty for a second when tracking begins, then stand " +
+  "upright and face them. It is some 5 to 12 cm off, where the shirt is 2 to 4.";
 const STATES = {
   waiting: "Your turn",
   working: "Working",
@@ -71,6 +74,9 @@ export class Setup {
       id: "next",
       class: "primary",
     });
+    this.shirt = element("input", { type: "checkbox", id: "no-shirt", "aria-describedby": "no-shirt-note" });
+    this.shirt.addEventListener("change", () => this.link.send("wear", { shirt: !this.shirt.checked }));
+    this.shirtNote = element("span", { id: "no-shirt-note", class: "hint-text" });
     this.saved = element("p", { id: "saved", class: "good", role: "status", hidden: true });
     this.saved.textContent = "The calibration is saved.";
     this.root.replaceChildren(
@@ -83,6 +89,7 @@ export class Setup {
       this.cameras,
       this.place,
       element("div", { class: "step-buttons" }, this.again, this.next),
+      element("p", { class: "no-shirt" }, element("label", {}, this.shirt, "I have no shirt"), " ", this.shirtNote),
       this.saved,
     );
   }
@@ -104,6 +111,9 @@ export class Setup {
     this.next.hidden = last;
     this.next.disabled = view.state !== "done" || !wizard.driver;
     this.again.disabled = !wizard.driver;
+    this.shirt.checked = !wizard.shirt;
+    this.shirt.disabled = !wizard.driver;
+    setText(this.shirtNote, wizard.shirt ? "" : NO_SHIRT);
     this.saved.hidden = !wizard.saved;
     this.root.classList.toggle("watching", !wizard.driver);
     if (wizard.step !== this.step) this.open(wizard.step);

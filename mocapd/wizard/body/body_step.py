@@ -147,6 +147,8 @@ class BodyStep:
         draft = self._context.draft
         if draft.stature_m is None:
             return Problem("the stature is not known", "", "type it first")
+        if not draft.has_shirt:
+            return Problem("they are measured with the shirt", "", "go on with the stature alone")
         if draft.rig is None:
             return Problem("the room is not known", "", "do the step Room first")
         if not set(draft.colours) & set(draft.rig.names):

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.regions import as_silhouette
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, initial_information, step_between
+from mocapd.fit.motion_state import MotionState, initial_information, known_of, step_between
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry.camera_model import to_camera
 from mocapd.trackers.base import Track, Tracker
@@ -54,17 +56,28 @@ class MeasuringTracker:
     """
 
     def __init__(
-        self, tracker: Tracker, rig: Rig, known: BodyShape, add: Callable[[Measure], None]
+        self,
+        tracker: Tracker,
+        rig: Rig,
+        known: BodyShape,
+        add: Callable[[Measure], None],
+        by_outline: bool = False,
     ) -> None:
+        """by_outline: what the tracker saw of the body is compared as one, not colour by colour."""
         self.name, self.probe = tracker.name, tracker.probe
         self._tracker, self._rig, self._add = tracker, rig, add
-        self._known, stature_m = known.factors, known.stature_m
+        stature_m = known.stature_m
         self._mean = skeleton_of(mean_shape(stature_m))
         params = FitParams()
         self._work = image_scales(rig.cameras, params.work_width_px)
-        self._fitter = Fitter(build_model(stature_m), rig.cameras, self._work, params)
+        self._by_outline = by_outline
+        model = build_model(stature_m)
+        if by_outline:
+            model = as_silhouette(build_model(stature_m, full_body()))
+        self._fitter = Fitter(model, rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)
         self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
+        self._known = known_of(known, model.space)[0]
         self._last: tuple[int, Floats, Floats] | None = None
         self._turn = 0
 
@@ -116,6 +129,8 @@ class MeasuringTracker:
         image_scale, camera = self._work[index], self._rig.cameras[index]
         x0, y0, x1, y1 = (edge // image_scale for edge in track.roi_px[name])
         ids = np.ascontiguousarray(track.evidence[name])
+        if self._by_outline:
+            ids = (ids > 0).astype(np.uint8)
         late_s = seconds(frames.frames[name].t_ns - frames.t_ns)
         view = View(index, (x0, y0, x1, y1), ids, np.zeros_like(ids), late_s)
         way_m, matches = np.zeros(3), []  # that this camera alone would move the whole body

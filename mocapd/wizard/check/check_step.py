@@ -46,6 +46,11 @@ _NOBODY = Problem(
     "all cameras",
     "stand where the cameras see you; else do the step Colour again, in the light as it is now",
 )
+_NOBODY_PLAIN = Problem(
+    "nobody is found",
+    "all cameras",
+    "leave the room empty for two seconds, come back, and stand upright where all cameras see you, facing them",
+)
 
 
 class Phase(StrEnum):
@@ -104,7 +109,7 @@ class CheckStep:
             if self._tracking.metrics().tracking is Tracking.LIVE:
                 self._move(now_ns)
             elif elapsed_ns > SEEK_S * NS_PER_S:
-                self._problems = (_NOBODY, *self._slowness())
+                self._problems = (self._nobody, *self._slowness())
         elif self._phase is Phase.MOVING:
             self._seen += fresh
             enough = len(self._seen) >= LEAST_MEASURES
@@ -112,7 +117,7 @@ class CheckStep:
                 self._judge()
             elif elapsed_ns > LONGEST_S * NS_PER_S:
                 self._seek()
-                self._problems = (_NOBODY, *self._slowness())
+                self._problems = (self._nobody, *self._slowness())
 
     def command(self, command: Command) -> None:
         """See Step."""
@@ -163,6 +168,10 @@ class CheckStep:
         self._phase, self._began_ns = Phase.SEEKING, None
         self._problems, self._verdicts = (), ()
 
+    @property
+    def _nobody(self) -> Problem:
+        return _NOBODY if self._context.draft.has_shirt else _NOBODY_PLAIN
+
     def _move(self, now_ns: int) -> None:
         assert self._tracking is not None
         self._phase, self._began_ns = Phase.MOVING, now_ns
@@ -183,6 +192,7 @@ class CheckStep:
                     asked_hz.get(camera.name, 30.0),
                     camera.size_px[0],
                 ),
+                draft.has_shirt,
             )
             for camera in self._tracking.rig.cameras
         )
@@ -248,12 +258,20 @@ def missing(draft: Draft) -> tuple[Problem, ...]:
         problems.append(
             Problem("where the cameras stand is not known", "room", "do the step Room first")
         )
-    elif not draft.colours:
+    elif draft.has_shirt and not draft.colours:
         problems.append(
             Problem(
                 "the shirt's colours in this light are not known",
                 "colour",
                 "do the step Colour first",
+            )
+        )
+    elif not draft.has_shirt and len(draft.rig.cameras) < 2:
+        problems.append(
+            Problem(
+                "one camera alone cannot track without a shirt",
+                "cameras",
+                "add a second camera in the step Cameras, or wear the shirt",
             )
         )
     if draft.stature_m is None:

@@ -15,7 +15,7 @@ from mocapd.pipeline.smoothing import Smoother
 from mocapd.session.tracker_setup import cached, ready_tracker
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.known import known_shape
-from mocapd.trackers.registry import shirt_tracker
+from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
 from mocapd.wizard.check.check_settings import CheckSettings
@@ -50,17 +50,18 @@ def prepare(
 
     progress("loading the pose database", 0, 1)
     measures = TrackingMeasures()
-    name = shirt_tracker(section.name)
+    name = measuring_tracker(section.name, known.wearer.has_shirt)
     shape = known_shape(known)
     ready = ready_tracker(
         name,
         known,
-        cached(cache_dir, progress, section),
-        section.sections[name],
+        cached(cache_dir, progress, section, section.sections),
         rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
-        watched=lambda one: MeasuringTracker(one, rig, shape, measures.add),
+        watched=lambda one: MeasuringTracker(
+            one, rig, shape, measures.add, by_outline=not entry(name).reads_shirt
+        ),
     )
     measures.taken()
     return CheckTracker(ready.tracker, ready.shape, rig, measures)

@@ -61,19 +61,32 @@ class Delivery:
         return self.lost / max(self.received + self.lost, 1)
 
 
-def camera_verdict(camera: str, measures: Sequence[Measure], delivery: Delivery) -> CameraVerdict:
-    """How well this camera agrees with the others' body, and what to do when it does not."""
+def camera_verdict(
+    camera: str, measures: Sequence[Measure], delivery: Delivery, has_shirt: bool = True
+) -> CameraVerdict:
+    """How well this camera agrees with the others' body, and what to do when it does not. Without a shirt a body is judged
+    by its outline, which clothes and hair widen."""
+    wide = 1.0 if has_shirt else _OUTLINE_WIDER
+    who = "shirt" if has_shirt else "body"
     own = [m.cameras[camera] for m in measures if camera in m.cameras]
     seen = len(own) / max(len(measures), 1)
     px, cm, match = _middle(own)
     scaled_px = px * _WIDTH_PX / delivery.width_px
     judged = [
-        (_grade(scaled_px, GOOD_PX, BAD_PX), _ROOM.format(f"{px:.1f} px"), _ROOM_FIX),
-        (_grade(cm, GOOD_CM, BAD_CM), _ROOM.format(f"{cm:.1f} cm"), _ROOM_FIX),
+        (
+            _grade(scaled_px, wide * GOOD_PX, wide * BAD_PX),
+            _ROOM.format(who, f"{px:.1f} px"),
+            _ROOM_FIX,
+        ),
+        (_grade(cm, wide * GOOD_CM, wide * BAD_CM), _ROOM.format(who, f"{cm:.1f} cm"), _ROOM_FIX),
         (
             _grade(1.0 - match, 1.0 - GOOD_MATCH, 1.0 - BAD_MATCH),
-            f"only {100 * match:.0f} % of the shirt has its colours",
-            "do the step Colour again, in the light as it is now",
+            f"only {100 * match:.0f} % of the shirt has its colours"
+            if has_shirt
+            else f"only {100 * match:.0f} % of the body is seen where it is drawn",
+            "do the step Colour again, in the light as it is now"
+            if has_shirt
+            else "wear what differs from the room behind you, or turn the light up",
         ),
         (
             _grade(delivery.dropped, GOOD_DROPPED, BAD_DROPPED),
@@ -88,7 +101,7 @@ def camera_verdict(camera: str, measures: Sequence[Measure], delivery: Delivery)
     ]
     if not own:
         judged = [
-            (Grade.BAD, "it did not see the shirt", "turn it to the person, then do Room again")
+            (Grade.BAD, f"it did not see the {who}", "turn it to the person, then do Room again")
         ]
     grades = list(Grade)
     worst, what, fix = max(judged, key=lambda one: grades.index(one[0]))
@@ -98,7 +111,8 @@ def camera_verdict(camera: str, measures: Sequence[Measure], delivery: Delivery)
     )
 
 
-_ROOM = "the shirt is seen {} from where the other cameras have it"
+_OUTLINE_WIDER = 2.0  # shifts of an outline that count as those of the shirt's patches do
+_ROOM = "the {} is seen {} from where the other cameras have it"
 _ROOM_FIX = "do the step Room again; the camera may have been moved"
 
 

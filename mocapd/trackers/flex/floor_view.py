@@ -1,0 +1,32 @@
+"""Which pixels of a camera see the floor about somebody, where shadows fall."""
+
+import numpy as np
+
+from mocapd.fit.body_drawing import Roi
+from mocapd.geometry.camera_model import centre, rays
+from mocapd.types import Bytes, Camera, Floats
+
+_REACH_M = 1.5  # shadows of a lamp at the ceiling are shorter than that; those of low lamps fall on walls, too
+_FAR_M = 1e3
+
+
+class FloorView:
+    """Where each work pixel's ray meets the plane y = 0."""
+
+    def __init__(self, camera: Camera, image_scale: int) -> None:
+        w, h = camera.size_px[0] // image_scale, camera.size_px[1] // image_scale
+        y, x = np.mgrid[:h, :w]
+        pixels = (np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5) * image_scale - 0.5
+        along = rays(camera, pixels)[1]
+        eye = centre(camera)
+        down = np.minimum(along[:, 1], -1e-6)
+        met = eye + along * (-eye[1] / down)[:, None]
+        met[along[:, 1] > -1e-3] = _FAR_M
+        self._met = met[:, [0, 2]].reshape(h, w, 2).astype(np.float32)
+
+    def near(self, root_m: Floats, roi: Roi) -> Bytes:
+        """(h,w) of the region: 1 where the floor about a body with this root (3,) is seen, if nothing stands before it."""
+        x0, y0, x1, y1 = roi
+        away = self._met[y0:y1, x0:x1] - np.asarray(root_m[[0, 2]], np.float32)
+        near: Bytes = (np.einsum("hwc,hwc->hw", away, away) < _REACH_M**2).astype(np.uint8)
+        return near

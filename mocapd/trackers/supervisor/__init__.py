@@ -1,0 +1,1 @@
+"""Which tracker speaks, frame by frame, and one body of what several know."""

@@ -1,0 +1,236 @@
+"""The supervisor's step machine: step those whose turn it is, judge, choose, join, glide; keep the others warm."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
+from mocapd.trackers.supervisor.choice import Claim, chosen
+from mocapd.trackers.supervisor.gliding import Glider, Sourced
+from mocapd.trackers.supervisor.joining import apart_m, joined, placed
+from mocapd.trackers.supervisor.kinds import Kind
+from mocapd.trackers.supervisor.params import Params
+from mocapd.trackers.supervisor.standby import (
+    Standby,
+    compared,
+    offered,
+    overrules,
+    stepped,
+    wants_offer,
+)
+from mocapd.trackers.supervisor.standing import Standing, is_well, judged
+from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
+
+GLIDE = "glide"  # the stage of a frame that is told between one speaker's body and the next one's
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidate:
+    """A tracker that can run, and what it is good for."""
+
+    tracker: Tracker
+    kind: Kind
+
+    @property
+    def name(self) -> str:
+        return self.tracker.name
+
+
+@dataclass(slots=True, eq=False)
+class _Known:
+    """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
+    body led to it; has_offer: it was offered a body that it has not looked for yet."""
+
+    track: Track | None = None
+    now: bool = False
+    guided: bool = False
+    has_offer: bool = False
+    standing: Standing = field(default_factory=Standing)
+    standby: Standby = field(default_factory=Standby)
+
+    @property
+    def live(self) -> bool:
+        return self.now and self.track is not None and self.track.body.tracking is Tracking.LIVE
+
+    def is_well(self, cameras: int, kind: Kind) -> bool:
+        """Whether its track is one to be believed, of a frame set of so many cameras."""
+        return self.now and self.track is not None and is_well(self.track, cameras, kind)
+
+    @property
+    def body(self) -> BodyState | None:
+        """Of this frame set; None when it is lost, or was not asked."""
+        if not self.now or self.track is None or self.track.body.pose is None:
+            return None
+        return self.track.body
+
+
+class Supervisor:
+    """Several trackers as one; see `mocapd.trackers.base.Tracker` for the promises. A body says who spoke: one
+    tracker's name, or two as in colour+flex; a lost one is the supervisor's own."""
+
+    name = "auto"
+
+    def __init__(self, candidates: Sequence[Candidate], params: Params | None = None) -> None:
+        """candidates: the one to be preferred first; at least one."""
+        self.params = params if params is not None else Params()
+        self.probe: Probe = unprobed
+        self.candidates = tuple(candidates)
+        self._glider = Glider(self.params)
+        for one in self.candidates:
+            one.tracker.probe = partial(self._heard, one.name)
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """See Tracker. near: offered to all of them."""
+        for one in self.candidates:
+            one.tracker.reset(near)
+        self._known = {one.name: _Known() for one in self.candidates}
+        self._speaker: str | None = None
+        self._glider.reset(near)
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """See Tracker. Raises ConfigError as its trackers do."""
+        before = self._bodies()
+        for known in self._known.values():
+            known.now = False
+        shape = self._ask(frames, shape, lambda one: self._is_due(one, frames.t_ns))
+        if self._speaker is not None and self._known[self._speaker].body is None:
+            shape = self._ask(frames, shape, lambda one: not self._known[one.name].now)
+        skeleton = skeleton_of(shape)
+        self._speaker = self._choose(frames)
+        if self._speaker is None:
+            self._glider.reset()
+            return Track(lost_body(frames.t_ns, self.name), shape)
+        track, now = self._known[self._speaker].track, self._composed(self._bodies(), skeleton)
+        assert track is not None
+        assert now is not None
+        self._mind_the_others(now.body, frames)
+        is_new = self._glider.is_new(now)
+        was = self._composed(before, skeleton) if is_new else None
+        body, glides = self._glider.step(now, was, skeleton)
+        self.probe(GLIDE if glides else "join")
+        return replace(track, body=body, shape=shape)
+
+    # --- stages ---
+
+    def _ask(
+        self, frames: FrameSet, shape: BodyShape, asked: Callable[[Candidate], bool]
+    ) -> BodyShape:
+        """Step some of them; the shape as known after that."""
+        for one in self.candidates:
+            if asked(one):
+                shape = self._step_one(one, frames, shape)
+        return shape
+
+    def _is_due(self, one: Candidate, t_ns: int) -> bool:
+        """Whether it is stepped: who speaks, who completes that, who may take over now; others now and then, but all
+        while nobody is believed."""
+        if not self._is_believed(self._speaker) or one.name == self._speaker or one is self._lower:
+            return True
+        assert self._speaker is not None
+        known = self._known[one.name]
+        is_preferred = self._rank(one.name) < self._rank(self._speaker)
+        was_live = known.track is not None and known.track.body.tracking is Tracking.LIVE
+        return (is_preferred and was_live) or t_ns >= known.standby.next_ns
+
+    def _step_one(self, one: Candidate, frames: FrameSet, shape: BodyShape) -> BodyShape:
+        """The shape as known after it."""
+        known, tracker = self._known[one.name], one.tracker
+        # who was offered a body looks for it whole, once
+        upper = None if known.has_offer else self._guide(one)
+        known.guided = upper is not None and isinstance(tracker, GuidedTracker)
+        if upper is not None and isinstance(tracker, GuidedTracker):
+            track = tracker.step_guided(frames, shape, upper)
+        else:
+            track = tracker.step(frames, shape)
+        known.track, known.now, known.has_offer = track, True, False
+        known.standing = judged(known.standing, track, len(frames.frames), one.kind, self.params)
+        known.standby = stepped(known.standby, frames.t_ns, self.params)
+        return track.shape
+
+    def _guide(self, one: Candidate) -> BodyState | None:
+        """The upper body that leads this candidate in this frame, as another that comes before it sees it."""
+        if one.kind.upper_only:
+            return None
+        for other in self.candidates:
+            known = self._known[other.name]
+            leads = other.kind.upper_only and self._speaker in (None, other.name)
+            if leads and known.live and known.track and known.track.quality >= other.kind.poor:
+                return known.body
+        return None
+
+    def _choose(self, frames: FrameSet) -> str | None:
+        told = None if self._speaker is None else self._known[self._speaker].body
+        claims = []
+        for one in self.candidates:
+            known = self._known[one.name]
+            near = told is None or self._is_near(known.body, told)
+            claims.append(
+                Claim(
+                    one.name,
+                    believed=known.standing.believed,
+                    known=known.body is not None,
+                    live=known.live,
+                    well=known.is_well(len(frames.frames), one.kind),
+                    agrees=near or overrules(known.standby, frames.t_ns, self.params),
+                )
+            )
+        return chosen(self._speaker, claims)
+
+    def _bodies(self) -> dict[str, Sourced]:
+        """Those of this frame set, and whose: a tracker that is guided is another one."""
+        return {
+            name: Sourced(known.body, f"guided {name}" if known.guided else name)
+            for name, known in self._known.items()
+            if known.body is not None
+        }
+
+    def _composed(self, bodies: Mapping[str, Sourced], skeleton: Skeleton) -> Sourced | None:
+        """The body of who speaks, of those of one frame set, completed where it is an upper body alone."""
+        assert self._speaker is not None
+        upper = bodies.get(self._speaker)
+        if upper is None:
+            return None
+        is_upper = self.candidates[self._rank(self._speaker)].kind.upper_only
+        lower = bodies.get(self._lower.name) if self._lower is not None and is_upper else None
+        if lower is None or apart_m(upper.body, lower.body) > self.params.near_m:
+            return Sourced(placed(upper.body, skeleton), upper.source)
+        both = joined(upper.body, lower.body, skeleton)
+        return Sourced(both, f"{upper.source}+{lower.source}")
+
+    def _mind_the_others(self, told: BodyState, frames: FrameSet) -> None:
+        """Who does not speak is compared with what is told, and offered that when it went astray."""
+        t_ns = frames.t_ns
+        is_sure = told.tracking is Tracking.LIVE and self._is_believed(self._speaker)
+        for one in self.candidates:
+            known = self._known[one.name]
+            if one.name == self._speaker:
+                known.standby = Standby(next_offer_ns=known.standby.next_offer_ns)
+            elif known.now:
+                near = self._is_near(known.body, told)
+                standby = compared(known.standby, t_ns, self.params, live=known.live, near=near)
+                can_begin = len(frames.frames) >= one.kind.least_cameras
+                if is_sure and can_begin and wants_offer(standby, t_ns, self.params):
+                    one.tracker.reset(near=told)
+                    standby, known.has_offer = offered(standby, t_ns, self.params), True
+                known.standby = standby
+
+    # --- who is who ---
+
+    @property
+    def _lower(self) -> Candidate | None:
+        """Who completes an upper body."""
+        return next((one for one in self.candidates if not one.kind.upper_only), None)
+
+    def _rank(self, name: str) -> int:
+        return next(i for i, one in enumerate(self.candidates) if one.name == name)
+
+    def _is_near(self, one: BodyState | None, other: BodyState) -> bool:
+        return one is not None and apart_m(one, other) <= self.params.near_m
+
+    def _is_believed(self, name: str | None) -> bool:
+        return name is not None and self._known[name].standing.believed
+
+    def _heard(self, tracker: str, stage: str) -> None:
+        self.probe(f"{tracker}.{stage}")

@@ -1,0 +1,109 @@
+"""What stands before a background: people, not their shadows, not the light, not what somebody uncovered."""
+
+import numpy as np
+import pytest
+
+from mocapd.vision.foreground_kernels import (
+    BACKGROUND,
+    BEFORE,
+    CLOTH_OR_SHADOW,
+    SHADOW,
+    UNKNOWN,
+    stands_before,
+)
+from mocapd.vision.room_background import BackgroundParams, RoomBackground
+
+H, W = 60, 80
+SURE, LIKELY = (0.5, 7.0), (0.25, 12.0)
+NOBODY = np.zeros((H, W), np.uint8)
+
+
+def wall(seed: int = 0) -> np.ndarray:
+    """A coloured wall with texture, and noise from picture to picture."""
+    rng = np.random.default_rng(3)
+    texture = rng.normal(0.0, 6.0, (H // 4, W // 4, 1)).repeat(4, 0).repeat(4, 1)
+    noise = np.random.default_rng(seed).normal(0.0, 1.5, (H, W, 3))
+    return np.clip(np.array([110.0, 130.0, 160.0]) + texture + noise, 0, 255).astype(np.uint8)
+
+
+def learned(looks: int = 20) -> RoomBackground:
+    background = RoomBackground(H, W, BackgroundParams())
+    for seed in range(looks):
+        background.learn(wall(seed), NOBODY)
+    return background
+
+
+def naive(pixel: np.ndarray, mean: np.ndarray) -> int:
+    """`stands_before` of one known pixel, by its definition."""
+    a, m = pixel.astype(float), mean.astype(float)
+    if np.abs(a - m).max() <= 16.0:
+        return BACKGROUND
+    share = float(a @ m / (m @ m + 1.0))
+    off = float(np.abs(a - share * m).max())
+    if share < 1.0 and share > SURE[0] and off < SURE[1]:
+        return SHADOW
+    if LIKELY[0] <= share < 1.0 and off < LIKELY[1]:
+        return CLOTH_OR_SHADOW
+    return BEFORE
+
+
+def test_the_kernel_does_what_its_definition_says() -> None:
+    rng = np.random.default_rng(1)
+    mean = rng.uniform(5.0, 250.0, (40, 50, 3)).astype(np.float32)
+    share = rng.uniform(0.1, 1.3, (40, 50, 1))
+    picture = np.clip(share * mean + rng.normal(0.0, 5.0, mean.shape), 0, 255).astype(np.uint8)
+    age = np.where(rng.random((40, 50)) < 0.1, 2, 9).astype(np.uint8)
+    out = np.empty((40, 50), np.uint8)
+    stands_before(picture, mean, age, 6, 16.0, SURE, LIKELY, out)
+    assert (out[age < 6] == UNKNOWN).all()
+    told = {int(k) for k in np.unique(out)}
+    assert told == {BACKGROUND, BEFORE, UNKNOWN, SHADOW, CLOTH_OR_SHADOW}
+    for y, x in zip(*np.nonzero(age >= 6), strict=True):
+        assert out[y, x] == naive(picture[y, x], mean[y, x])
+
+
+def test_somebody_stands_before_it_and_a_shadow_does_not() -> None:
+    picture = wall(99)
+    picture[10:40, 20:35] = (40, 200, 90)
+    picture[45:58, 20:60] = (0.65 * picture[45:58, 20:60]).astype(np.uint8)
+    before = learned().before(picture)
+    assert (before[12:38, 22:33] == BEFORE).all()
+    assert np.mean(before[46:57, 21:59] == SHADOW) > 0.95
+    assert not before[:8].any()
+
+
+def test_nothing_is_known_before_it_was_seen() -> None:
+    background = learned(3)
+    assert background.is_new
+    assert (background.before(wall(5)) == UNKNOWN).all()
+
+
+def test_a_lamp_that_goes_out_is_followed_also_behind_somebody() -> None:
+    background = learned()
+    body = NOBODY.copy()
+    body[20:40, 30:50] = 1
+    dark = (0.45 * wall(50)).astype(np.uint8)
+    seen = dark.copy()
+    seen[20:40, 30:50] = (20, 90, 40)
+    gain = background.follow_light(seen, body)
+    assert gain is not None
+    assert gain == pytest.approx(0.45, abs=0.03)
+    assert np.mean(background.before(dark) == BACKGROUND) > 0.95
+    assert background.follow_light(dark, NOBODY) is None
+
+
+def test_what_somebody_uncovers_is_background_and_somebody_who_comes_is_not() -> None:
+    """A person who stood there while the background was learned, and goes."""
+    background = RoomBackground(H, W, BackgroundParams())
+    for seed in range(20):
+        occupied = wall(seed)
+        occupied[10:50, 10:22] = (30, 60, 200)
+        background.learn(occupied, NOBODY)
+    now = wall(70)
+    now[10:50, 50:62] = (200, 60, 30)
+    before = background.before(now)
+    assert (before[12:48, 12:20] > 0).all()
+    background.take_uncovered(now, before, NOBODY)
+    assert not before[:, :30].any()
+    assert (before[12:48, 52:60] == BEFORE).all()
+    assert not background.before(wall(71))[:, :30].any()
