@@ -224,6 +224,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             FlexSection,
             _pair_lacks,
             sees=True,
+            reads_outline=True,
             compared_with={"paper": ("flex_paper", FlexPaperSection())},
         ),
         "flex_paper": TrackerEntry(

@@ -28,7 +28,7 @@ class PaperView:
     """One camera: its newest evidence at work size (h,w)."""
 
     def __init__(self, index: int, camera: Camera, image_scale: int, params: Params) -> None:
-        self.index, self.camera, self._params = index, camera, params
+        self.index, self.camera, self.image_scale, self._params = index, camera, image_scale, params
         w, h = (n // image_scale for n in camera.size_px)
         self._size_px = w, h
         self._scale = np.array([w, h]) / camera.size_px

@@ -1,4 +1,4 @@
-"""The published tracker without a shirt: a mass-spring body that hangs from a tracked head, its limbs led by particle filters.
+"""The published tracker without a shirt: a mass-spring body hangs from a tracked head, its limbs led by particle filters.
 
 Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009.
 """
@@ -36,6 +36,7 @@ from mocapd.fit.mass_spring.skeleton_conversion import points_from_skeleton, ske
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.trackers.flex_paper.confidence import joint_confidence, joint_uncertainty_m
+from mocapd.trackers.flex_paper.head_of_standing import StandingHead, head_of_standing
 from mocapd.trackers.flex_paper.paper_views import PaperViews
 from mocapd.trackers.flex_paper.params import Params
 from mocapd.trackers.flex_paper.stances import stances_of
@@ -78,7 +79,7 @@ class _Known:
 
 
 class FlexPaperTracker:
-    """Two calibrated cameras or more see a whole person in any clothes; see `mocapd.trackers.base.Tracker` for the promises."""
+    """Two calibrated cameras or more see a whole person; see `mocapd.trackers.base.Tracker` for the promises."""
 
     name = "flex_paper"
 
@@ -109,6 +110,7 @@ class FlexPaperTracker:
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
         self._hanging: _Hanging | None = None
+        self._standing: StandingHead | None = None
         self._known: _Known | None = None
         self._last_ns: int | None = None
         self._turn = 0
@@ -136,6 +138,7 @@ class FlexPaperTracker:
             view.stand_before(self._turn % self.params.uncovered_turns == 0)
         self.probe("background")
         head = self._head.step([view.head_picture() for view in self._views.each], dt_s)
+        head = self._or_standing(head)
         self.probe("head")
         if head.state is HeadState.TRACKED and self._views.present:
             if known is None:
@@ -155,6 +158,17 @@ class FlexPaperTracker:
         return self._track(tracking, frames, shape)
 
     # --- starting ---
+
+    def _or_standing(self, head: HeadTrack) -> HeadTrack:
+        """The head that is tracked; or, when none is, that of somebody who stands there is tracked from the next step on."""
+        if head.state is not HeadState.LOST or self._known is not None:
+            self._standing = None
+            return head
+        self._standing = head_of_standing(self._views.present, self._standing, self._stature_m)
+        if self._standing is not None and self._standing.is_sure:
+            self._head.reset(self._standing.middle_m)
+            self._standing = None
+        return head
 
     def _matched(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _Known | None:
         """A body that hangs from the head, if the pictures match it."""
