@@ -90,7 +90,9 @@ class HeadTracker:
         self._search.remember(views, dt_s)
         if self._near_m is not None and views:
             # what stands there is the head, with no face seen of it
-            self._evidence.learn_first(views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0))
+            self._evidence.learn_first(
+                views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
+            )
             self._faceless_s = self._params.facing_s + 1e-6
             self._near_m = None
         if self._cloud is not None:

@@ -28,7 +28,7 @@ _PART = _part_of_joints()
 
 
 def joint_uncertainty_m(spread_m: Floats, head_m: float) -> Floats:
-    """(22,) one standard deviation [m] of each joint's place; spread_m (16,): of the points that filters know, inf for others;
+    """(22,) one standard deviation [m] of each joint's place; spread_m (16,): of points that filters know, else inf;
     head_m: of the head's."""
     out = np.full(N_JOINTS, np.inf)
     out[JOINTS_OF_POINTS] = spread_m[JOINT_POINTS]
@@ -42,6 +42,6 @@ def joint_uncertainty_m(spread_m: Floats, head_m: float) -> Floats:
 
 
 def joint_confidence(before: Floats, uncertainty_m: Floats) -> Floats:
-    """(22,) in 0..1: how much of a joint's part (11,) stands before the background, the less the less certain its place is."""
+    """(22,) in 0..1: how much of a joint's part (11,) stands before the background, less the less certain its place is."""
     out: Floats = before[_PART] / (1.0 + (uncertainty_m / _HALF_M) ** 2)
     return out

@@ -1,4 +1,4 @@
-"""A head found without a face, where small or dark heads have no clear outline: that of somebody who stands before the background."""
+"""A head found without a face, where heads are small or dark: that of somebody who stands before the background."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,7 +38,11 @@ def head_of_standing(
     start = StartParams()
     blobs = {k: blobs_of(view.before, True, start) for k, view in enumerate(views)}
     found = standing(
-        blobs, [view.camera for view in views], [view.image_scale for view in views], stature_m, start
+        blobs,
+        [view.camera for view in views],
+        [view.image_scale for view in views],
+        stature_m,
+        start,
     )
     if not found or found[0].error > _MOST_ERROR_PX2 * len(views):
         return None

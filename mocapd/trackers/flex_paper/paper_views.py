@@ -191,7 +191,7 @@ class PaperViews:
         return [view for view in self.each if view.present]
 
     def share_before(self, ends_m: Floats) -> Floats:
-        """How much (C,) of each part stands before the backgrounds, the mean of the cameras that tell; NaN where none does."""
+        """How much (C,) of each part stands before the backgrounds, the mean of cameras that tell; NaN where none does."""
         shares = np.array([view.share_before(ends_m) for view in self.present])
         seen = np.isfinite(shares)
         total = np.where(seen, shares, 0.0).sum(axis=0)
