@@ -36,7 +36,7 @@ def joint_uncertainty_m(spread_m: Floats, head_m: float) -> Floats:
     # the trunk hangs between the head and the limbs' roots
     roots = [INDEX[s + b] for s in ("left", "right") for b in ("UpperArm", "UpperLeg")]
     trunk = np.hypot(_SPRINGS_M, np.sqrt(np.mean(out[roots] ** 2)))
-    known = np.where(np.isfinite(out), np.hypot(out, 0.5 * _SPRINGS_M), trunk)
+    known: Floats = np.where(np.isfinite(out), np.hypot(out, 0.5 * _SPRINGS_M), trunk)
     known[[INDEX["neck"], INDEX["head"]]] = np.hypot(_SPRINGS_M, head_m)
     return known
 

@@ -11,7 +11,7 @@ from mocapd.trackers.flex_paper.paper_views import PaperView
 from mocapd.types import Floats
 
 _HEAD_MIDDLE = 0.935  # of the stature, above the floor
-_LOOKS = 4  # at which somebody stood in one place
+_LOOKS = 3  # at which somebody stood in one place
 _SAME_PLACE_M = 0.25
 _MOST_ERROR_PX2 = 100.0  # of each camera: blob and person agree within 10 work px
 

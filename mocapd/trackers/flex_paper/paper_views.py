@@ -144,7 +144,7 @@ class PaperView:
         along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
         xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
         w, h = self._size_px
-        inside = np.isfinite(xy).all(axis=1)
+        inside = np.asarray(np.isfinite(xy).all(axis=1))
         inside &= (np.nan_to_num(xy) >= 0.0).all(axis=1) & (np.nan_to_num(xy) < (w, h)).all(axis=1)
         at = np.where(inside[:, None], np.nan_to_num(xy), 0.0).astype(int)
         there = self.before[at[:, 1], at[:, 0]]

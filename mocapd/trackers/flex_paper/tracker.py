@@ -138,7 +138,7 @@ class FlexPaperTracker:
             view.stand_before(self._turn % self.params.uncovered_turns == 0)
         self.probe("background")
         head = self._head.step([view.head_picture() for view in self._views.each], dt_s)
-        head = self._or_standing(head)
+        head = self._or_standing(head, dt_s)
         self.probe("head")
         if head.state is HeadState.TRACKED and self._views.present:
             if known is None:
@@ -159,8 +159,8 @@ class FlexPaperTracker:
 
     # --- starting ---
 
-    def _or_standing(self, head: HeadTrack) -> HeadTrack:
-        """The head that is tracked; or, when none is, that of somebody who stands there is tracked from the next step on."""
+    def _or_standing(self, head: HeadTrack, dt_s: float) -> HeadTrack:
+        """The head that is tracked; or, when none is, that of somebody who stands there."""
         if head.state is not HeadState.LOST or self._known is not None:
             self._standing = None
             return head
@@ -168,6 +168,7 @@ class FlexPaperTracker:
         if self._standing is not None and self._standing.is_sure:
             self._head.reset(self._standing.middle_m)
             self._standing = None
+            return self._head.step([view.head_picture() for view in self._views.each], dt_s)
         return head
 
     def _matched(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _Known | None:
