@@ -15,6 +15,7 @@ from mocapd.fit.cylinders.limb_particles import LimbCloud, start_cloud, step_clo
 from mocapd.fit.cylinders.limb_score import EDGE, LimbView, limb_penalties
 from mocapd.fit.cylinders.occlusion import part_ends
 from mocapd.fit.cylinders.part_colours import learn, reference_colours
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.head.head_track import HeadState, HeadTrack
 from mocapd.fit.head.head_tracker import HeadTracker
 from mocapd.fit.mass_spring.body_points import LIMBS, N_POINTS
@@ -126,6 +127,7 @@ class FlexPaperTracker:
         if since_s > self.params.too_old_s:
             self._hanging = self._known = None
             self._head.reset()
+            since_s = TICK_S  # nothing is known that would move over the gap
         dt_s = float(np.clip(since_s, 1e-3, self.params.too_old_s))
         self._views.look(frames)
         self.probe("picture")
