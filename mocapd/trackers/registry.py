@@ -17,6 +17,7 @@ from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.flex.section import FlexSection
+from mocapd.trackers.flex_paper.section import FlexPaperSection
 from mocapd.trackers.supervisor.kinds import KINDS
 from mocapd.trackers.supervisor.section import AutoSection
 from mocapd.trackers.tracking_state import TrackingStateParams
@@ -146,6 +147,14 @@ def _flex(calibration: Calibration, section: FlexSection, resources: Resources) 
     return build_flex_tracker(calibration, section, resources.tracking)
 
 
+def _flex_paper(
+    calibration: Calibration, section: FlexPaperSection, resources: Resources
+) -> Tracker:
+    from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
+
+    return build_flex_paper_tracker(calibration, section, resources.tracking)
+
+
 def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     """For one that is content with any of its trackers: what the first lacks, when all lack something."""
     missing = [TRACKERS[name].lacks(calibration, cameras) for name in KINDS]
@@ -210,7 +219,29 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
-        "flex": TrackerEntry(_flex, FlexSection, _pair_lacks, sees=True, reads_outline=True),
+        "flex": TrackerEntry(
+            _flex,
+            FlexSection,
+            _pair_lacks,
+            sees=True,
+            reads_outline=True,
+            compared_with={"paper": ("flex_paper", FlexPaperSection())},
+        ),
+        "flex_paper": TrackerEntry(
+            _flex_paper,
+            FlexPaperSection,
+            _pair_lacks,
+            sees=True,
+            compared_with={
+                "no depth noise": ("flex_paper", FlexPaperSection(depth_noise=False)),
+                "no particle constraints": (
+                    "flex_paper",
+                    FlexPaperSection(particle_constraints=False),
+                ),
+                "no occlusion": ("flex_paper", FlexPaperSection(occlusion=False)),
+                "no appearance": ("flex_paper", FlexPaperSection(appearance=False)),
+            },
+        ),
     }
 )
 

@@ -15,6 +15,7 @@ from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.colour_paper.build import build_paper_tracker
 from mocapd.trackers.flex.build import build_flex_tracker
+from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 from mocapd.trackers.supervisor.kinds import KINDS
@@ -159,4 +160,5 @@ CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "colour": lambda: shirt_case(build_colour_tracker),
     "colour_paper": lambda: shirt_case(build_paper_tracker),
     "flex": lambda: plain_case(build_flex_tracker),
+    "flex_paper": lambda: plain_case(build_flex_paper_tracker),
 }

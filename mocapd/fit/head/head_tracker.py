@@ -80,6 +80,7 @@ class HeadTracker:
         self._since_check_s = 0.0
         self._box_age_s = [0.0] * len(self._cameras)
         self._yaw_rad: float | None = None
+        self._near_m = near_m
         if near_m is not None:
             self._cloud = cloud_at(near_m, 0.05**2 * np.eye(3), self._params, self._rng)
 
@@ -87,6 +88,13 @@ class HeadTracker:
         """The head in these pictures, one for each camera, dt after those before."""
         views = head_views(self._cameras, self._arrays, pictures)
         self._search.remember(views, dt_s)
+        if self._near_m is not None and views:
+            # what stands there is the head, with no face seen of it
+            self._evidence.learn_first(
+                views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
+            )
+            self._faceless_s = self._params.facing_s + 1e-6
+            self._near_m = None
         if self._cloud is not None:
             track = self._tracked(self._cloud, views, dt_s)
             if self._faceless_s > _SEARCH_AGAIN_S and self._is_doubtful(track):
