@@ -4,8 +4,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.vision.sampling_kernels import grey_at
-
 Array = NDArray[np.float64]
 
 
@@ -15,12 +13,26 @@ def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -
     h, w = grey.shape
     if x < half or y < half or x >= w - 1 - half or y >= h - 1 - half:
         return 0.0
-    n, total = 0, 0.0
-    for j in range(-half, half + 1):
-        for i in range(-half, half + 1):
-            out[n] = grey_at(grey, x + i, y + j)
-            total += out[n]
-            n += 1
+    # pixels of a patch lie alike between those of the picture: the weights of `grey_at` are the same for all
+    left, top = int(x) - half, int(y) - half
+    a, b = x - int(x), y - int(y)
+    upper_left, upper_right = (1.0 - b) * (1.0 - a), (1.0 - b) * a
+    lower_left, lower_right = b * (1.0 - a), b * a
+    side = 2 * half + 1
+    total = 0.0
+    for j in range(side):
+        row, below = grey[top + j], grey[top + j + 1]
+        line = out[j * side : (j + 1) * side]
+        for i in range(side):
+            value = (
+                upper_left * row[left + i]
+                + upper_right * row[left + i + 1]
+                + lower_left * below[left + i]
+                + lower_right * below[left + i + 1]
+            )
+            line[i] = value
+            total += value
+    n = side * side
     total /= n
     squares = 0.0
     for k in range(n):

@@ -382,7 +382,7 @@ class FlexTracker:
     def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool) -> None:
         """Learn the look of a body that agrees well, and the background beside it, or everywhere when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
-            self._cameras.learn_appearance(seen.state, views)
+            self._cameras.learn_appearance(seen.state, views, self._turn)
         if nobody and self._turn % self.params.absorb_turns:
             # what stays for long is furniture that was moved
             self._cameras.mark_unknown()
