@@ -34,9 +34,9 @@ _BESIDE = np.ones(
 class AppearanceParams:
     """How colours are learned, and what they decide."""
 
-    every: int = 4  # frames: a camera learns in one of so many
-    keep: float = 0.885  # share of what was counted that such a frame leaves
-    share: float = 0.12  # of a pixel that it adds
+    every: int = 2  # frames: a camera learns in one of so many
+    keep: float = 0.94  # share of what was counted that such a frame leaves
+    share: float = 0.06  # of a pixel that it adds
     new_light: float = 0.3  # share of what was counted that is left when a lamp goes on or off
     least_share: float = 2e-5  # of a colour that a region never had
     per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
