@@ -42,7 +42,12 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
             else plugged_cameras(infos, known)
         )
         # what was typed once need not be typed again
-        draft = Draft(cameras=cameras, board=before.board, stature_m=before.stature_m)
+        draft = Draft(
+            cameras=cameras,
+            board=before.board,
+            stature_m=before.stature_m,
+            has_shirt=before.has_shirt,
+        )
     return OwnHost(
         draft,
         settings_of(config),
@@ -104,7 +109,9 @@ def demo_host(config: "Config", step: "StepName | None") -> OwnHost:
             BoardKind.CHARUCO, shown.columns, shown.rows, shown.square_m, shown.marker_m,
             shown.dictionary,
         )  # fmt: skip
-        known = Draft(board=board, stature_m=demo.stature_m)  # nobody can measure them here
+        known = Draft(  # nobody can measure them here
+            board=board, stature_m=demo.stature_m, has_shirt=before.has_shirt
+        )
     return OwnHost(
         replace(known, cameras=cameras),
         settings_of(config),

@@ -15,7 +15,7 @@ from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.motion_prior import predicted_information
-from mocapd.fit.motion_state import MotionState, known_of, moved, step_between
+from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved, step_between
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
@@ -32,7 +32,7 @@ from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
 from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
-from mocapd.types import BodyState, Floats, FrameSet, Pose, Rig, Tracking
+from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig, Tracking
 
 _TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
 _UPPER = np.flatnonzero(upper_body().group_of_joint >= 0)  # joints that a guide knows
@@ -85,7 +85,35 @@ class FlexTracker:
         self._cameras = CameraViews(self._fitter, p)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = unprobed
+        self._rehearse()
         self.reset()
+
+    def _rehearse(self) -> None:
+        """Compile or load the kernels that no frame of an empty room reaches: whoever comes must not wait for them."""
+        model, cameras = self._model, self._cameras
+        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+        somebody = MotionState(
+            model.rest_m[0].copy(), local, np.zeros(model.n_pose), np.ones(model.n_shape), initial_information(model.space)
+        )  # fmt: skip
+        black = {
+            one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
+            for one in self.rig.cameras
+        }
+        self.reset()
+        cameras.look(FrameSet(0, black, 0))
+        cameras.mark_body(somebody)
+        cameras.seed_background()
+        cameras.stand_before()
+        self._learn_first(somebody)
+        views = cameras.classified(somebody)
+        if not views:
+            return  # nobody at the origin is in any picture
+        terms = self._terms(somebody, views, FrameSet(0, black, 0))
+        fit = self._fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
+        still, usual_sd = somebody.velocity, self._fitter.prediction_sd
+        predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
+        cameras.learn_appearance(somebody, views, 0)
+        self._arms.rehearse(somebody, views)
 
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""

@@ -23,6 +23,7 @@ from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 EVERY = 4  # frames: one in so many is measured
 _RADIUS_PX = 12  # work px within which a colour is looked for
 _STEPS = 3  # Gauss-Newton; edges that are in place hold back the first
+_OUTLINE_STEPS = 6  # of an outline, whose inside says nothing
 _RIDGE = 1e-3
 _STALE_S = 0.2  # a pose older than this tells no velocity
 
@@ -40,7 +41,8 @@ class CameraMeasure:
 @dataclass(frozen=True, slots=True, eq=False)
 class Measure:
     """One frame in which somebody is tracked. upright_rad: of hips to neck from the vertical; hips_m: height
-    above the floor; lengths: shoulders, upper arm and forearm against a mean body of this stature."""
+    above the floor; lengths: shoulders, upper arm and forearm against a mean body of this stature, NaN by outline,
+    where they are not learned."""
 
     t_ns: int
     cameras: Mapping[str, CameraMeasure]
@@ -102,9 +104,10 @@ class MeasuringTracker:
     def _measured(self, body: BodyState, local: Floats, track: Track, frames: FrameSet) -> Measure:
         assert body.pose is not None
         assert body.joints_m is not None
-        lengths = _lengths(skeleton_of(track.shape)) / _lengths(self._mean)
-        factors = self._known.copy()
-        factors[1:4] = np.clip(lengths, 0.5, 2.0)
+        factors, lengths = self._known.copy(), np.full(3, np.nan)
+        if not self._by_outline:
+            lengths = _lengths(skeleton_of(track.shape)) / _lengths(self._mean)
+            factors[1:4] = np.clip(lengths, 0.5, 2.0)
         model = self._fitter.model
         velocity = np.zeros(model.n_pose)
         if self._last is not None and 0 < body.t_ns - self._last[0] < nanoseconds(_STALE_S):
@@ -133,10 +136,13 @@ class MeasuringTracker:
             ids = (ids > 0).astype(np.uint8)
         late_s = seconds(frames.frames[name].t_ns - frames.t_ns)
         view = View(index, (x0, y0, x1, y1), ids, np.zeros_like(ids), late_s)
+        # an outline tells of nearness by its size only, which the clothes have a part in
+        ways = camera.R[:2] if self._by_outline else np.eye(3)
         way_m, matches = np.zeros(3), []  # that this camera alone would move the whole body
-        for _ in range(_STEPS):
+        for _ in range(_OUTLINE_STEPS if self._by_outline else _STEPS):
             rows = self._rows.gather(replace(state, root_m=state.root_m + way_m), view)
-            way_m = way_m + np.linalg.solve(rows.H[:3, :3] + _RIDGE * np.eye(3), rows.b[:3])
+            H = rows.H[:3, :3] + _RIDGE * np.eye(3)
+            way_m = way_m + ways.T @ np.linalg.solve(ways @ H @ ways.T, ways @ rows.b[:3])
             matches.append(rows.match)
         depth_m = max(float(to_camera(camera, state.root_m)[2]), 0.2)
         aside_m = (camera.R @ way_m)[:2]

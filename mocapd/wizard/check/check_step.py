@@ -133,7 +133,7 @@ class CheckStep:
         """See Step."""
         match command:
             case MeasureAgain():
-                if self._tracking is None:
+                if self._tracking is None or self._phase is Phase.EMPTY:
                     raise InputError("the tracker does not run yet", "check", "wait a moment")
                 self._seek()
             case Save():

@@ -61,7 +61,9 @@ class ExtrinsicsStep:
         self._method.enter()
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
+        """See Step. Without the shirt only the board is left."""
+        if not self._context.draft.has_shirt and self._context.job is None:
+            self._choose("board")
         self._method.tick(now_ns)
 
     @property

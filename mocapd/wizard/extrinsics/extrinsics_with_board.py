@@ -277,7 +277,7 @@ class ExtrinsicsWithBoard:
 
     def _sentence(self) -> str:
         if self._stage is BoardPhase.DONE:
-            return "The room is known. Go on to the colours."
+            return "The room is known. Go on."
         if self._stage is BoardPhase.FLOOR:
             if self._rest.seen:
                 return "Leave the board where it lies."
