@@ -63,7 +63,7 @@ def evaluate_captures(
     compare: Annotated[
         Compare | None,
         typer.Option(
-            help="Run the tracker, the method as published and its baseline, and compare."
+            help="Run the tracker, and beside it those it is measured by: as published, or without a step."
         ),
     ] = None,
     simulated: Annotated[
@@ -157,7 +157,7 @@ def evaluate_captures(
         cases = [open_case(folder) for folder in folders]
 
         def build(known: Calibration, method: str) -> ReadyTracker:
-            tracker, section = rivals.get(method, (name, sections[name]))
+            tracker, section = (name, sections[name]) if method == FULL else rivals[method]
             chosen = {**sections, tracker: section}
             resources = cached(effective.cache_dir, progress, sections=chosen)
             return ready_tracker(tracker, known, resources)
@@ -172,7 +172,7 @@ def evaluate_captures(
             results = runs.run(cases, FULL, setting)
             findings = runs.EvaluationResults(name, joints.value, results, {}, ())
         else:
-            findings = runs.compare(cases, name, setting)
+            findings = runs.compare(cases, name, rivals, setting)
     _print(findings, as_json)
     if out is not None:
         words = _command(captures or [], simulated, name, compare, joints, out)

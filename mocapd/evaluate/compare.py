@@ -1,4 +1,4 @@
-"""The full method against the paper's and against the paper's baseline (paper Fig. 9 and 10)."""
+"""The full method against others, and for the shirt against the paper's baseline (paper Fig. 9 and 10)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from mocapd.evaluate.capture_eval import CaptureResult
 from mocapd.evaluate.score import interior_angle_deg, match
 from mocapd.types import Floats
 
-FULL, PAPER, BASELINE = METHODS = ("full", "paper", "baseline")
+FULL, BASELINE = "full", "baseline"
 SHOULDER = ("neck", "leftUpperArm", "leftLowerArm")
 
 
-# Per method of METHODS its results, one per capture, in one order.
+# Per method, FULL first, its results, one per capture, in one order.
 Comparison = Mapping[str, Sequence[CaptureResult]]
 
 

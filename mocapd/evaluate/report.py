@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.compare import METHODS, Comparison
+from mocapd.evaluate.compare import Comparison
 from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability, near_from
 from mocapd.evaluate.roc import Roc, correct_at
 from mocapd.evaluate.tables import number, table
@@ -115,7 +115,7 @@ def roc_json(roc: Roc) -> dict[str, Any]:
 
 def _side_by_side(comparison: Comparison, key: str) -> str:
     title, digits, value = next(column[1:] for column in _COLUMNS if column[0] == key)
-    columns = [comparison[method] for method in METHODS]
+    columns = list(comparison.values())
     rows = [
         [results[0].case.name, *(number(value(result), digits) for result in results)]
         for results in zip(*columns, strict=True)
@@ -123,7 +123,7 @@ def _side_by_side(comparison: Comparison, key: str) -> str:
     for groups in zip(*map(_groups, columns), strict=True):
         means = [_mean([value(result) for result in group]) for _, group in groups]
         rows.append([groups[0][0], *(number(mean, digits) for mean in means)])
-    return table([title, *METHODS], rows)
+    return table([title, *comparison], rows)
 
 
 def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:

@@ -1,11 +1,11 @@
 """Whole evaluations: every capture with one method, or with all of them side by side."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 from mocapd.evaluate.capture_eval import BuildTracker, CaptureResult, Case, evaluate
-from mocapd.evaluate.compare import FULL, METHODS, Comparison
+from mocapd.evaluate.compare import FULL, Comparison
 from mocapd.evaluate.roc import Roc, no_roc
 from mocapd.evaluate.truth import labelled_frames
 from mocapd.session.tracker_setup import Progress
@@ -54,12 +54,14 @@ def run(cases: Sequence[Case], method: str, setting: EvaluationSettings) -> list
     ]
 
 
-def compare(cases: Sequence[Case], tracker: str, setting: EvaluationSettings) -> EvaluationResults:
-    """Every capture with every method, and the classifiers over the labelled frames."""
+def compare(
+    cases: Sequence[Case], tracker: str, rivals: Iterable[str], setting: EvaluationSettings
+) -> EvaluationResults:
+    """Every capture with the tracker and each of its rivals, and the classifiers over the labelled frames."""
     # the colour tracker is a second to import, and needed only here
     from mocapd.evaluate.roc_of_capture import roc_of_capture
 
-    comparison = {method: run(cases, method, setting) for method in METHODS}
+    comparison = {method: run(cases, method, setting) for method in (FULL, *rivals)}
     labelled = [result for result in comparison[FULL] if _labelled(result.case)]
     rocs = []
     for done, result in enumerate(labelled, start=1):

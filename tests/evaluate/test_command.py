@@ -82,6 +82,18 @@ def test_a_capture_without_truth_is_one_clear_line(
     assert str(blind / "truth.npz") in outcome.err
 
 
+def test_the_published_tracker_is_set_beside_itself_without_each_of_its_steps(
+    capture: Path, clean_env: dict[str, str]
+) -> None:
+    words = ("eval", capture, "--tracker", "flex_paper", "--compare", "baseline")
+    outcome = mocapd(clean_env, *words)
+    assert outcome.code == 0, outcome.err
+    compared = next(line for line in outcome.out.splitlines() if line.startswith("| RMS"))
+    assert [cell.strip() for cell in compared.split("|")[2:-1]] == [
+        "full", "no depth noise", "no particle constraints", "no occlusion", "no appearance",
+    ]  # fmt: skip
+
+
 def test_only_the_colour_tracker_has_a_baseline(capture: Path, clean_env: dict[str, str]) -> None:
     words = ("eval", capture, "--tracker", "canned", "--compare", "baseline")
     outcome = mocapd(clean_env, *words)

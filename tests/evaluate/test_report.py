@@ -144,6 +144,16 @@ def test_without_a_comparison_there_is_but_one_table(tmp_path: Path) -> None:
     assert written[0].read_text().count("![") == 1
 
 
+def test_against_other_ways_there_is_nothing_of_the_shirts_paper(tmp_path: Path) -> None:
+    compared = {"full": [result_of("desk", 0.02)], "no occlusion": [result_of("desk", 0.05)]}
+    others = EvaluationResults("flex_paper", "full", compared["full"], compared, ())
+    written = write_page(tmp_path, others, "mocapd eval desk")
+    assert [path.name for path in written] == ["evaluation.md", "eval_confidence.png"]
+    text = written[0].read_text()
+    assert "no occlusion" in text
+    assert "Wang" not in text
+
+
 def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(CannotCreateError, match=r"evaluation\.md: cannot be written.*--out"):
