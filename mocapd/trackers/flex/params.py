@@ -1,4 +1,4 @@
-"""The numbers of this tracker's own decisions, and those of its parts, with units and reasons."""
+"""The numbers of the tracker without a shirt: its own decisions and those of its parts, with units and reasons."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""The numbers of this tracker's own decisions, and those of its parts, with units and reasons."""
+"""The numbers of the published tracker without a shirt, with units and reasons."""
 
 from dataclasses import dataclass, field
 
