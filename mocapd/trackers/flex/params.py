@@ -70,7 +70,11 @@ class Params:
     blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
     crossed_turns: int = 3  # from one look at crossed legs to the next
+    crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment
     crossed_iterations: int = 4
+    crossed_gain: float = (
+        10.0  # by how much the cost must fall to exchange them [disagreeing pixels]
+    )
 
     # decisions
     live_explained: float = (

@@ -123,6 +123,7 @@ class FlexTracker:
         self._known: _Memory | None = None
         self._near = near
         self._next_start_ns = 0
+        self._crossed_looks = 0
         self._likely_m: list[Floats] = []
         self._turn = 0
 
@@ -252,8 +253,10 @@ class FlexTracker:
             terms = self._terms(predicted, views, frames, _LEGS)
         self.probe("distances")
         loose = np.diag(held + 1.0 / (fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+        # legs that were not seen before have a way to go
+        iterations = p.guided_iterations if known is not None else p.start.iterations
         fit = fitter.fit(
-            predicted, views, dt_s, p.guided_iterations, learn_shape=False, rendered=not is_first, fine=1, motion=loose,
+            predicted, views, dt_s, iterations, learn_shape=False, rendered=not is_first, fine=1, motion=loose,
             terms=terms,
         )  # fmt: skip
         self.probe("fit")
@@ -301,14 +304,19 @@ class FlexTracker:
     ) -> Fit:
         """The fit, or that with the legs exchanged: both look alike, and below known hips crossed ones are unusual."""
         p = self.params
-        if self._turn % p.crossed_turns or not are_crossed(self._fitter.joints(fit.state)[0]):
+        if self._turn % p.crossed_turns:
             return fit
+        crossed = are_crossed(self._fitter.joints(fit.state)[0])
+        self._crossed_looks = self._crossed_looks + 1 if crossed else 0
+        if self._crossed_looks < p.crossed_looks:
+            return fit
+        self._crossed_looks = 0
         start = with_legs_exchanged(self._fitter, fit.state)
         other = self._fitter.fit(
             start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
         )
         costs = [one.cost + unusual_legs(one.state.local_xyzw) for one in (fit, other)]
-        return other if costs[1] < costs[0] else fit
+        return other if costs[1] < costs[0] - p.crossed_gain else fit
 
     def _velocity(
         self, fit: Fit, last: MotionState, dt_s: float, switched: Sequence[str]
