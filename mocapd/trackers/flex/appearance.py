@@ -34,9 +34,8 @@ _BESIDE = np.ones(
 class AppearanceParams:
     """How colours are learned, and what they decide."""
 
-    every: int = 2  # frames: a camera learns in one of so many
-    keep: float = 0.94  # share of what was counted that such a frame leaves
-    share: float = 0.06  # of a pixel that it adds
+    keep: float = 0.97  # share of what was counted that such a frame leaves
+    share: float = 0.03  # of a pixel that it adds
     new_light: float = 0.3  # share of what was counted that is left when a lamp goes on or off
     least_share: float = 2e-5  # of a colour that a region never had
     per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
@@ -140,13 +139,12 @@ class Appearance:
 
 
 def region_distances(drawn: Bytes) -> Singles:
-    """Distances (7,h',w') [px] to where each region is drawn (h,w), at every second pixel each way; large where it is not."""
-    half = np.ascontiguousarray(drawn[::2, ::2])
-    out = np.empty((len(Region), *half.shape), np.float32)
+    """Distances (7,h,w) [px] from each pixel to where each region is drawn (h,w); large where it is not."""
+    out = np.empty((len(Region), *drawn.shape), np.float32)
     for region in Region:
-        away = (half != region).astype(np.uint8)
+        away = (drawn != region).astype(np.uint8)
         if away.all():
             out[region - 1] = 1e3
         else:
-            out[region - 1] = 2.0 * cv2.distanceTransform(away, cv2.DIST_L2, cv2.DIST_MASK_3)
+            out[region - 1] = cv2.distanceTransform(away, cv2.DIST_L2, cv2.DIST_MASK_3)
     return out

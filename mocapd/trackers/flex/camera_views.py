@@ -176,11 +176,9 @@ class CameraViews:
             if roi is not None:
                 self._learn(i, state, dt_s, roi, None)
 
-    def learn_appearance(self, state: MotionState, views: Sequence[View], turn: int) -> None:
-        """Learn the colours of a body that agrees with what was classified, in the camera whose turn it is."""
+    def learn_appearance(self, state: MotionState, views: Sequence[View]) -> None:
+        """Learn the colours of a body that agrees with what was classified."""
         for view in views:
-            if (turn + view.index) % self._params.appearance.every:
-                continue
             self._learn(view.index, state, view.dt_s, view.roi, view.ids)
 
     def _learn(

@@ -112,7 +112,7 @@ class FlexTracker:
         fit = self._fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
         still, usual_sd = somebody.velocity, self._fitter.prediction_sd
         predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
-        cameras.learn_appearance(somebody, views, 0)
+        cameras.learn_appearance(somebody, views)
         self._arms.rehearse(somebody, views)
 
     def reset(self, near: BodyState | None = None) -> None:
@@ -151,7 +151,7 @@ class FlexTracker:
         views: list[View] = []
         if self._cameras.present:
             known, views = self._follow_guide(known, upper.pose, wearer, frames)
-        return self._end(known, views, frames, shape)
+        return self._end(known, views, frames, shape, every=2)
 
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[_Wearer, _Memory | None]:
         """The wearer of this step, and what is known of the last one."""
@@ -165,15 +165,20 @@ class FlexTracker:
         return _Wearer(*known_of(shape, self._model.space)), known
 
     def _end(
-        self, known: _Memory | None, views: list[View], frames: FrameSet, shape: BodyShape
+        self,
+        known: _Memory | None,
+        views: list[View],
+        frames: FrameSet,
+        shape: BodyShape,
+        every: int = 1,
     ) -> Track:
-        """Judge, learn, and tell."""
+        """Judge, learn (in one of `every` cameras), and tell."""
         evidence = known is not None and known.t_ns == frames.t_ns
         tracking = self._tracking.step(frames.t_ns, evidence)
         if tracking is Tracking.LOST and not evidence:
             known = None
         self._known = known
-        self._learn(known if evidence else None, views, nobody=known is None)
+        self._learn(known if evidence else None, views, nobody=known is None, every=every)
         self.probe("learn")
         return self._track(tracking, frames, views, shape)
 
@@ -415,10 +420,11 @@ class FlexTracker:
         # every second pixel was counted
         return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
 
-    def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool) -> None:
-        """Learn the look of a body that agrees well, and the background beside it, or everywhere when nobody is known."""
+    def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool, every: int) -> None:
+        """Learn the look of a body that agrees well, in one of `every` cameras, and the background beside it, or everywhere
+        when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
-            self._cameras.learn_appearance(seen.state, views, self._turn)
+            self._cameras.learn_appearance(seen.state, views[self._turn % every :: every])
         if nobody and self._turn % self.params.absorb_turns:
             # what stays for long is furniture that was moved
             self._cameras.mark_unknown()
