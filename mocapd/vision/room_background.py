@@ -114,6 +114,8 @@ class RoomBackground:
         if within is None:
             return self._standing(picture, self._mean, self._age, self._before)
         x0, y0, x1, y1 = within
+        if x1 <= x0 or y1 <= y0:  # who was followed is in no part of the picture
+            return np.zeros_like(self._before)
         here = np.s_[y0:y1, x0:x1]
         mean, age = np.ascontiguousarray(self._mean[here]), np.ascontiguousarray(self._age[here])
         whole = np.zeros_like(self._before)

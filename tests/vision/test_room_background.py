@@ -107,3 +107,12 @@ def test_what_somebody_uncovers_is_background_and_somebody_who_comes_is_not() ->
     assert not before[:, :30].any()
     assert (before[12:48, 52:60] == BEFORE).all()
     assert not background.before(wall(71))[:, :30].any()
+
+
+def test_a_region_alone_is_looked_at_as_the_whole_is() -> None:
+    background, picture = learned(), wall(99)
+    picture[10:40, 20:35] = (40, 200, 90)
+    whole, part = background.before(picture).copy(), background.before(picture, (10, 4, 60, 50))
+    assert (part[6:48, 12:58] == whole[6:48, 12:58]).all()
+    assert not part[52:].any()
+    assert not background.before(picture, (0, 0, 0, 0)).any()
