@@ -15,7 +15,7 @@ BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev clients demo test test-clients check bench fuzz attack lock clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults load dist deb lock sbom test-lowest clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
@@ -87,16 +87,37 @@ check: dev ## lint, format, types, import contract, dead code
 bench: env ## time every tracker, stage by stage
 	@$(BIN)/mocapd bench
 
-fuzz: dev ## feed every parser changed input and count what comes out
-	$(BIN)/python -m tests.fuzz
+fuzz: dev ## feed every parser changed input and count what comes out; INPUTS=1000000 for so many in all
+	$(BIN)/python -m tests.fuzz $(if $(INPUTS),--inputs $(INPUTS))
 
 attack: dev ## attack a daemon of its own as another process of this machine could
 	$(BIN)/python -m tests.attacks
+
+faults: dev ## pull cameras, kill and starve daemons of its own at random for half an hour, and print the table
+	$(BIN)/python -m tests.faults
+
+load: dev ## many camera nodes, streams and subscribers on this machine: print what was measured
+	@$(BIN)/python -m tests.load
+
+# hatchling is of locks/build.txt; where pip chose the versions it is not there yet.
+dist: env ## build the wheel and the source distribution into dist/
+	@$(BIN)/python -c 'import hatchling' 2>/dev/null || $(PIP_INSTALL) hatchling
+	rm -rf dist
+	$(BIN)/python -m hatchling build
+
+deb: dist ## make a Debian package of it, with all that it runs on, for this machine's python3
+	deb/build.sh $(BIN)/python dist/*.whl dist
 
 lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
 	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)
 	@$(MAKE) --no-print-directory dev
 	$(BIN)/python -m tests.supply.third_party_notices
+
+sbom: dev ## write the bill of materials of what mocapd runs on to dist/ (CycloneDX)
+	@$(BIN)/python -m tests.supply.sbom
+
+test-lowest: dev ## run some tests with the oldest libraries that pyproject.toml allows, in an environment that is thrown away
+	$(BIN)/python -m tests.supply.lowest
 
 clean: ## remove the environment and every cache of the tools
 	rm -rf $(VENV) .venv-clients .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

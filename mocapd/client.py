@@ -21,13 +21,13 @@ from typing import Self
 
 import zenoh
 
+from mocapd.bus.zenoh_calls import hold_session, zenoh_call
+from mocapd.bus.zenoh_client_config import client_config
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_calls import hold_session, zenoh_call
-from mocapd.outputs.zenoh.zenoh_client_config import client_config
 
 ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]
@@ -115,6 +115,7 @@ class Link:
     connect_timeout_s: how long to try to find a daemon [s]; None: for ever
     tls_root_ca: PEM file, for a `tls/` endpoint
     user, password: for a daemon with a password file
+    certificate, private_key: PEM files of this program, for a daemon with `zenoh.tls_require_client`
     """
 
     endpoint: str = ENDPOINT
@@ -124,6 +125,8 @@ class Link:
     tls_root_ca: str = ""
     user: str = ""
     password: str = ""
+    certificate: str = ""
+    private_key: str = ""
 
     @property
     def key(self) -> str:
@@ -325,6 +328,8 @@ def _attempt(link: Link) -> zenoh.Session:
         tls_root_ca=link.tls_root_ca,
         user=link.user,
         password=link.password,
+        certificate=link.certificate,
+        private_key=link.private_key,
     )
     try:
         session = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))

@@ -28,10 +28,18 @@ class ConfigError(MocapdError):
     exit_code = 78
 
 
+class NewerFileError(ConfigError):
+    """A file of ours is of a schema that only a newer mocapd reads: never written over, never guessed at (78)."""
+
+
 class UnavailableError(MocapdError):
     """A resource such as a camera, a port or a service is not to be had now (69 EX_UNAVAILABLE)."""
 
     exit_code = 69
+
+
+class AmbiguousCameraError(UnavailableError):
+    """Several cameras may be the one that is meant: people must say which, by plugging or in the configuration."""
 
 
 class CannotCreateError(MocapdError):

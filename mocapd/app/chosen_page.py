@@ -1,44 +1,32 @@
-"""Which of this user's running processes a command is meant for."""
+"""Which of this user's running pages a command is meant for."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mocapd.errors import ConfigError, UnavailableError
-from mocapd.outputs.instance import chunk
 
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
     from mocapd.web.runtime_file import Running
 
 
-def pages_meant(pages: "Sequence[Running]", config: "Config") -> "Sequence[Running]":
-    """Of several those of this configuration: by its instance, then by its state directory."""
-    if len(pages) > 1 and config.instance:
-        named = [page for page in pages if page.instance == chunk(config.instance)]
-        pages = named or pages
-    if len(pages) > 1:
-        own = str(config.state_dir.resolve())
-        beside = [page for page in pages if page.state_dir == own]
-        pages = beside or pages
-    return pages
-
-
-def daemon_meant(config: "Config") -> "Running":
-    """The one daemon of this user that a command is meant for. Raises UnavailableError or ConfigError."""
-    from mocapd.web.runtime_file import running, runtime_folder
+def page_meant(config: "Config") -> "Running":
+    """The one daemon of this user with a page that a command is meant for. Raises UnavailableError or ConfigError."""
+    from mocapd.config.runtime_folder import runtime_folder
+    from mocapd.control.meant import meant
+    from mocapd.web.runtime_file import running
 
     # a setup by itself has no name
-    daemons = [page for page in running(runtime_folder(config.state_dir)) if page.instance]
-    meant = pages_meant(daemons, config)
-    if not meant:
+    pages = [page for page in running(runtime_folder(config.state_dir)) if page.instance]
+    chosen = meant(pages, config)
+    if not chosen:
         raise UnavailableError(
-            "no mocapd of yours is running that could be told",
+            "no mocapd of yours is running that has a page",
             "this machine",
-            "start `mocapd run`, with web.enabled = true: it is told through its page's port",
+            "start `mocapd run`, with web.enabled = true",
         )
-    if len(meant) > 1:
-        names = ", ".join(f"{one.instance} (pid {one.pid})" for one in meant)
+    if len(chosen) > 1:
+        names = ", ".join(f"{one.instance} (pid {one.pid})" for one in chosen)
         raise ConfigError(
             f"several are running: {names}", "command line", "choose by --set instance=NAME"
         )
-    return meant[0]
+    return chosen[0]

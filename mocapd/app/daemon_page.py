@@ -73,7 +73,8 @@ class DaemonPage:
 
     def _begin(self) -> None:
         # here, as it takes a third of a second that nobody waits for now
-        from mocapd.web.runtime_file import Place, runtime_folder
+        from mocapd.config.runtime_folder import runtime_folder
+        from mocapd.web.runtime_file import Place
         from mocapd.web.server import WebServer
         from mocapd.wizard.hosts.daemon_host import DaemonHost
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from types import FrameType
 
 SIGINT_EXIT = 130
-SERVICES = ("run", "demo", "calibrate")
+SERVICES = ("run", "demo", "calibrate", "camera-node")
 """Commands that end with 0 when they are told to end. The others had something to finish, and did not:
 they die of the signal."""
 RELOADING = ("run", "demo")

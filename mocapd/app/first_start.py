@@ -1,14 +1,18 @@
 """The first start in processes of their own: compiling and building takes memory that only its end gives back."""
 
+import ctypes
 import hashlib
 import logging
 import multiprocessing
 import os
 import platform
 import signal
+import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.metadata import version
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,15 +28,58 @@ MARKER = "prepared"  # in the cache folder: what was prepared for, one a line
 REMEMBERED = 8
 _MOST_BYTES = 1 << 16
 _DATABASE = " database"  # alone, without the tracker's code compiled
-_COMPILING = "preparing: compiling the tracker (once on this machine, some minutes on a slow one)"
+_COMPILING = "compiling the tracker (once on this machine, some minutes on a slow one)"
+FIRST_AFTER_S = 1.0  # what takes less, such as being refused, is not worth a line [s]
+_LOOK_S = 0.2  # how often whoever waits can be interrupted [s]
+_PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 _log = logging.getLogger(__name__)
 
 
-def prepare_apart(config: "Config") -> None:
-    """Make the caches that this code and tracker need, unless that was done before.
+class Preparation:
+    """What is prepared beside the process that begun it. `is_needed`: whether there is anything to do."""
 
-    A failure is not told here: the caller comes upon it again, and tells it. A signal that ends the
+    def __init__(self, child: BaseProcess | None) -> None:
+        self._child = child
+        self.is_needed = child is not None
+
+    def wait(self) -> None:
+        """Until it is over, well or not."""
+        began_s, told = time.monotonic(), False
+        bars = sys.stderr.isatty()  # the children's, which say it better
+        while self._child is not None and self._child.is_alive():
+            self._child.join(_LOOK_S)
+            if not told and not bars and time.monotonic() - began_s > FIRST_AFTER_S:
+                told = True
+                _log.info(_COMPILING)
+        if told:
+            _log.info("prepared after %.0f s", time.monotonic() - began_s)
+
+
+@contextmanager
+def preparing_apart(config: "Config") -> Iterator[Preparation]:
+    """`prepare_apart` in a process beside this one, which may go on and have threads; it ends with the block.
+
+    Called while the process has one thread.
+    """
+    if _fingerprint(config) in _prepared(config.cache_dir / MARKER):
+        yield Preparation(None)
+        return
+    import mocapd.session.session  # noqa: F401  all that the processes need, imported once for them
+
+    child = multiprocessing.get_context("fork").Process(target=_work, args=(prepare_apart, config))
+    child.start()
+    try:
+        yield Preparation(child)
+    finally:
+        child.kill()
+        child.join()
+
+
+def prepare_apart(config: "Config") -> None:
+    """Make the caches that this code and tracker need, in processes of their own, unless that was done before.
+
+    A failure is not told here: the caller comes upon it again, and tells it. What ends the
     caller ends the work too; what is half made is made anew next time. Called while the process has
     one thread.
     """
@@ -41,7 +88,7 @@ def prepare_apart(config: "Config") -> None:
     done = _prepared(marker)
     if want in done:
         return
-    import mocapd.session.session  # noqa: F401  all that the processes need, imported once for them
+    import mocapd.session.session  # noqa: F401  see above
     from mocapd.capture.kinds.source_kinds import is_simulated
 
     # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
@@ -116,11 +163,20 @@ def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]])
 
 
 def _work(work: Callable[["Config"], None], config: "Config") -> None:
+    _end_with_parent()
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     try:
         work(config)
     except MocapdError:
+        os._exit(1)
+
+
+def _end_with_parent() -> None:
+    """Also where the parent is killed, and has no time to end its children."""
+    parent = os.getppid()
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # it was too fast
         os._exit(1)
 
 
@@ -137,7 +193,6 @@ def _make_database(config: "Config") -> None:
     from mocapd.session.tracker_setup import make_caches
 
     with ProgressBars() as progress:
-        progress.begin(_COMPILING)
         progress("pose database", 0, 100)  # something to see while its maker is compiled
         make_caches(config.tracker.name, config.cache_dir, progress)
 
@@ -158,7 +213,7 @@ def _open(config: "Config") -> None:
     from mocapd.session.session import open_session
 
     with ProgressBars() as progress:
-        progress.begin(_COMPILING)
+        progress.begin("preparing the tracker")
         open_session(config, progress)
 
 

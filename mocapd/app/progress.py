@@ -1,4 +1,4 @@
-"""Progress on stderr, for what takes long: bars on a terminal, else a plain line every ten seconds."""
+"""Progress on stderr, for what takes long: bars on a terminal, else a plain line every ten seconds; none in the journal."""
 
 import sys
 import threading
@@ -22,20 +22,21 @@ TELL_EVERY_S = 10.0
 
 
 def say(line: str) -> None:
-    """One plain line on stderr, in the journal with its priority."""
-    prefix = "<6>" if stderr_is_journal() else ""
-    print(prefix + line, file=sys.stderr, flush=True)
+    """One plain line on stderr."""
+    print(line, file=sys.stderr, flush=True)
 
 
 class ProgressBars:
     """Call it with (what, done, total); each `what` gets a bar. Nothing is shown before that.
 
     Without a terminal it tells also while a single part takes long: a kernel to compile may take
-    minutes on a small machine.
+    minutes on a small machine. In the journal nothing is told: nobody waits there, and whoever reads it later
+    wants to know what happened.
     """
 
     def __init__(self) -> None:
         self._console = Console(stderr=True)
+        self._is_quiet = stderr_is_journal()
         self._bars = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -62,6 +63,8 @@ class ProgressBars:
 
     def __call__(self, what: str, done: int, total: int) -> None:
         """`done` of `total` parts are made."""
+        if self._is_quiet:
+            return
         if not self._console.is_terminal:
             self.begin(what)
             assert self._lines is not None
@@ -75,7 +78,7 @@ class ProgressBars:
 
     def begin(self, what: str) -> None:
         """Without a terminal: say it when it takes long to come to the first part."""
-        if self._lines is None and not self._console.is_terminal:
+        if self._lines is None and not self._is_quiet and not self._console.is_terminal:
             self._lines = _Lines(what)
 
 

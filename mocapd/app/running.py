@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from types import FrameType
 from typing import Protocol
 
@@ -15,7 +15,9 @@ from mocapd.app.status_line import StatusLine
 from mocapd.service.service import Service, Snapshot, ThreadDiedError
 
 SHOW_EVERY_S = 0.25  # how often the status line changes [s]
-TELL_EVERY = 4  # health goes out with every fourth of them
+TELL_EVERY = (
+    4  # health goes out with every fourth of them, and when something has happened to a camera
+)
 
 JOIN_S = 0.2  # what idle threads may take to end [s]
 
@@ -101,7 +103,7 @@ class Beside(Protocol):
 
 
 def run_daemon(
-    service: Service, signals: Signals, hint: str = "", beside: Beside | None = None
+    service: Service, signals: Signals, hint: str = "", beside: Sequence[Beside] = ()
 ) -> int:
     """Run until it ends; the exit code. Raises MocapdError when a named error killed a thread."""
     # a thread nobody watches must not die unseen either
@@ -114,16 +116,17 @@ def run_daemon(
             beats = 0
             try:
                 while not service.wait(SHOW_EVERY_S):
+                    service.watch()
                     snapshot = service.snapshot()
                     line.show(snapshot)
-                    if beats % TELL_EVERY == 0:
+                    if beats % TELL_EVERY == 0 or service.has_news(snapshot):
                         service.tell(snapshot)
                     beats += 1
-                    if beside is not None:
-                        beside.beat(snapshot)
+                    for one in beside:
+                        one.beat(snapshot)
             finally:
-                if beside is not None:
-                    beside.let_go()
+                for one in beside:
+                    one.let_go()
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR

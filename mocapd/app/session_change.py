@@ -10,9 +10,12 @@ from mocapd.app.daemon_page import DaemonPage
 from mocapd.app.heap import give_back
 from mocapd.app.logs import set_up_logs
 from mocapd.app.running import Signals
+from mocapd.app.supervised.notifier import Notifier
 from mocapd.app.unsafe_settings import unsafe_settings
 from mocapd.config.effective import Effective
 from mocapd.config.live_changes import taken_live
+from mocapd.control.messages import Reloaded
+from mocapd.control.reloads import Reloads
 from mocapd.errors import MocapdError
 from mocapd.service.service import Service, Snapshot
 from mocapd.session.session import Session, open_session
@@ -64,8 +67,8 @@ class _Preparation:
 
 
 class SessionChange:
-    """See Beside. Changes the session when a setup has saved what the service runs on, and when a signal asks
-    for it. `page`: what the browser shows, None without one."""
+    """See Beside. Changes the session when a setup has saved what the service runs on, and when a signal or
+    another thread, by `reloads`, asks for it. `page`: what the browser shows, None without one."""
 
     def __init__(
         self,
@@ -73,9 +76,12 @@ class SessionChange:
         read: Callable[[], Effective],
         signals: Signals,
         page: DaemonPage | None,
+        notifier: Notifier,
     ) -> None:
         """read: the configuration from its sources, as at the start."""
         self._service, self._read, self._signals, self._page = service, read, signals, page
+        self.reloads = Reloads()
+        self._notifier = notifier  # hears when a reload begins and ends
         self._preparation: _Preparation | None = None
         self._why = ""
 
@@ -93,11 +99,15 @@ class SessionChange:
                 _log.warning(
                     "%s, but the session goes on as it was: %s", self._why, preparation.refused
                 )
+                self.reloads.settle(preparation.refused)
+            if self._why == ASKED:
+                self._notifier.reloaded()
             if self._page is not None:
                 self._page.resume()
 
     def let_go(self) -> None:
         """See Beside."""
+        self.reloads.close()
         if self._page is not None:
             self._page.let_go()
 
@@ -106,7 +116,8 @@ class SessionChange:
             # its own tracker goes before another one comes
             self._page.rest()
             self._begin(SAVED)
-        elif self._signals.take_reload():
+        elif self._signals.take_reload() | self.reloads.take():
+            self._notifier.reloading()
             self._begin(ASKED)
 
     def _begin(self, why: str) -> None:
@@ -129,6 +140,7 @@ class SessionChange:
         took_s = time.monotonic() - began_s
         give_back()
         _log.info("%s: taken up, within %.2f s", self._why, took_s)
+        self.reloads.settle(Reloaded(took_s, ready.waiting))
 
 
 def _quiet(_what: str, _done: int, _total: int) -> None:

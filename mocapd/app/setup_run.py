@@ -42,14 +42,15 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
-    from mocapd.app.chosen_page import pages_meant
-    from mocapd.web.runtime_file import SETUP, Place, begin_setup, running, runtime_folder
+    from mocapd.config.runtime_folder import runtime_folder
+    from mocapd.control.meant import meant
+    from mocapd.web.runtime_file import SETUP, Place, begin_setup, running
 
     step = _step(options.step)
     folder = runtime_folder(config.state_dir)
     pages = () if options.demo else running(folder)
     if pages:
-        there = _the_one(pages_meant(pages, config))
+        there = _the_one(meant(pages, config))
         begin_setup(there.url, None if step is None else step.value)
         print(f"the running mocapd has the cameras; its page: {there.url}{SETUP}", flush=True)
         _browse(there.redirect, options.browser)

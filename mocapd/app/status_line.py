@@ -1,20 +1,15 @@
 """The one live line of a running daemon."""
 
 import math
-import sys
-import time
 from collections.abc import Callable
 
 from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from mocapd.app.logs import stderr_is_journal
-from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.service.service import Snapshot
-
-PLAIN_EVERY_S = 5.0  # where nothing can be overwritten [s]
 
 
 def status_text(snapshot: Snapshot) -> str:
@@ -36,7 +31,8 @@ def _camera(status: CaptureStatus) -> str:
     if status.is_silent:
         return f"{status.camera} silent {status.silent_s:.0f} s"
     if status.state is CaptureState.LIVE:
-        return f"{status.camera} {status.fps_hz:.1f}"
+        trouble = " (see the log)" if status.notice else ""
+        return f"{status.camera} {status.fps_hz:.1f}{trouble}"
     return f"{status.camera} {status.state.value}"
 
 
@@ -45,12 +41,11 @@ def _listeners(status: SinkStatus) -> str:
 
 
 class StatusLine:
-    """On a terminal a line that is overwritten; elsewhere a line every five seconds. On stderr."""
+    """On a terminal a line on stderr that is overwritten; elsewhere nothing: what changes is logged."""
 
     def __init__(self) -> None:
         self._console = Console(stderr=True)
         self._live: Live | None = None
-        self._printed_s = -math.inf
 
     def __enter__(self) -> "StatusLine":
         if self._console.is_terminal:
@@ -71,8 +66,3 @@ class StatusLine:
         if self._live is not None:
             line = Text(text(), no_wrap=True, overflow="ellipsis")
             self._live.update(line, refresh=True)
-        elif time.monotonic() - self._printed_s >= PLAIN_EVERY_S:
-            self._printed_s = time.monotonic()
-            # in the journal it is of the lowest priority, <7>
-            prefix = "<7>" if stderr_is_journal() else ""
-            print(prefix + text(), file=sys.stderr, flush=True)

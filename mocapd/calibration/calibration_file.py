@@ -1,6 +1,7 @@
 """`calibration.toml`, read and checked value by value, and written whole or not at all."""
 
 import hashlib
+import logging
 import re
 from collections.abc import Mapping
 from contextlib import suppress
@@ -34,7 +35,9 @@ from mocapd.errors import (
     InputError,
     MalformedError,
     MocapdError,
+    NewerFileError,
 )
+from mocapd.set_aside import set_aside
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.whole_file import tidy, whole_file
 
@@ -50,6 +53,7 @@ _HEADER = """\
 # The one before is kept beside it under the same name with .previous: rename it to go back.
 
 """
+_log = logging.getLogger(__name__)
 _PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
 
 
@@ -77,7 +81,8 @@ def _read(path: Path) -> SavedCalibration:
     schema = data.get("schema")
     if schema != SCHEMA:
         told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
-        raise ConfigError(
+        newer = isinstance(schema, int) and schema > SCHEMA
+        raise (NewerFileError if newer else ConfigError)(
             f"{told}, this mocapd reads schema {SCHEMA}",
             where,
             "use the mocapd that wrote it, or calibrate again (`mocapd calibrate`)",
@@ -105,7 +110,8 @@ def write_calibration(
     pictures: Mapping[str, LabelledPicture],
     own_folder: bool = True,
 ) -> None:
-    """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml.
+    """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml, or set aside where
+    this mocapd cannot read it.
 
     pictures: by camera id the picture with the strokes that its `colour` is from.
     Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
@@ -126,10 +132,7 @@ def write_calibration(
             cameras.append(msgspec.structs.replace(camera, colour=colour))
         text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
         if path.exists():
-            before, kept = _without_passwords(path)
-            known = {**kept, **known}
-            with whole_file(_previous(path), private=True) as partial:
-                partial.write_bytes(before)
+            known = {**_keep_before(path), **known}
         _write(path, text, known)
         _tidy(path)
     except OSError as error:
@@ -160,14 +163,20 @@ def _write(path: Path, text: str, known: Mapping[tuple[str, str], str]) -> None:
         partial.write_text(text, encoding="utf-8")
 
 
-def _without_passwords(path: Path) -> tuple[bytes, dict[tuple[str, str], str]]:
-    """The bytes of the calibration that is there, and what earlier versions kept within it."""
+def _keep_before(path: Path) -> dict[tuple[str, str], str]:
+    """The calibration that is there becomes the previous one, and that stays where this one is of no use; the
+    passwords that earlier versions kept within it. Raises OSError."""
     try:
         saved = _read(path)
-    except MocapdError:  # damaged: kept as it is, for whoever mends it
-        return path.read_bytes(), {}
-    kept = dict(passwords_of(saved))
-    return _text(saved).encode() if kept else path.read_bytes(), kept
+    except MocapdError as error:
+        aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        _log.warning("%s cannot be used (%s), and is kept as %s", path, error.what, aside.name)
+        return {}
+    passwords = dict(passwords_of(saved))
+    before = _text(saved).encode() if passwords else path.read_bytes()
+    with whole_file(_previous(path), private=True) as partial:
+        partial.write_bytes(before)
+    return passwords
 
 
 def _previous(path: Path) -> Path:
@@ -212,9 +221,9 @@ def _png(pixels: Bytes) -> bytes:
 
 
 def _named(folder: Path) -> str:
-    """What the calibrations of a folder say."""
+    """What the calibrations of a folder say, and those that were set aside."""
     said = b""
-    for path in folder.glob("*.toml"):
+    for path in folder.glob("*.toml*"):
         if path.name != SECRETS:
             with suppress(InputError):  # none of ours
                 said += read_file(path, _MOST_BYTES)

@@ -12,12 +12,14 @@ import tomli_w
 
 from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import convert, parse_toml
+from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import has_password, is_masked, without_password
 from mocapd.calibration.saved_calibration import SavedCalibration, Text
-from mocapd.errors import ConfigError, MalformedError
+from mocapd.errors import ConfigError, MalformedError, NewerFileError
 from mocapd.whole_file import whole_file
 
 SECRETS = "cameras.secret.toml"
+SCHEMA = 1
 
 _MOST_BYTES = 1 << 20
 _HEADER = """\
@@ -35,6 +37,9 @@ class _Camera(msgspec.Struct, frozen=True):
 
 
 class _File(msgspec.Struct, frozen=True):
+    """schema: what does not say it is of the first."""
+
+    schema: int = SCHEMA
     camera: tuple[_Camera, ...] = ()
 
 
@@ -51,6 +56,12 @@ def known_sources(folder: Path) -> Known:
         raise ConfigError(
             error.what, str(path), 'write [[camera]] with id = "..." and source = "..."'
         ) from None
+    if file.schema > SCHEMA:
+        raise NewerFileError(
+            f"has schema {brief(file.schema)}, this mocapd reads {SCHEMA}",
+            str(path),
+            "use the mocapd that wrote it, or move it away and set the cameras up again",
+        )
     return sources_by_shown((one.id, one.source) for one in file.camera)
 
 
@@ -76,7 +87,9 @@ def keep_sources(folder: Path, known: Known, named_in: str) -> None:
         path.unlink(missing_ok=True)
         return
     with whole_file(path, private=True) as partial:
-        partial.write_text(_HEADER + tomli_w.dumps({"camera": kept}), encoding="utf-8")
+        partial.write_text(
+            _HEADER + tomli_w.dumps({"schema": SCHEMA, "camera": kept}), encoding="utf-8"
+        )
 
 
 def shown_sources(saved: SavedCalibration) -> SavedCalibration:

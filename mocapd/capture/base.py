@@ -1,7 +1,8 @@
 """The interface of every camera source."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
+from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.types import Frame
 
 
@@ -23,5 +24,32 @@ class Source(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of the camera; may be called twice, and when open failed."""
+        """Let go of the camera; may be called twice, and when open failed. An `open` that is still going on gives up
+        what it got; a `read` that comes back later than the next `open` touches nothing of that."""
+        ...
+
+
+@runtime_checkable
+class CountsTorn(Protocol):
+    """A source that leaves out damaged frames and counts them."""
+
+    torn: int
+
+
+@runtime_checkable
+class Pluggable(Protocol):
+    """A source whose camera has a plug. From any thread, quickly, without opening it."""
+
+    def plugging(self) -> str:
+        """Another word after each plugging in; empty while it is not there, or not known among others."""
+        ...
+
+    @property
+    def identity(self) -> WebcamIdentity | None:
+        """What it is sought by; None for one that is sought by its node. Raises InputError or ConfigError."""
+        ...
+
+    @property
+    def place(self) -> str:
+        """Where it was found when it was opened, for people; empty where it was expected."""
         ...

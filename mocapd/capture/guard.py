@@ -2,7 +2,8 @@
 
 Releasing a VideoCapture while another thread is inside `grab` crashes or blocks for as long as
 the grab does. Here `close` never waits: when a reader is inside, the reader releases on its way
-out.
+out. A capture that is opened while somebody closes, or that a stuck driver gives when nobody waits for it any
+more, is let go at once.
 """
 
 import threading
@@ -45,3 +46,39 @@ class GuardedCapture:
         self._inside.release()
         if self._closing:  # asked for while we were inside
             self._release_if_free()
+
+
+class Openings:
+    """The opened capture of a source, of which the newest counts; from any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()  # guards what follows
+        self._begun = 0
+        self._current: GuardedCapture | None = None
+
+    @property
+    def current(self) -> GuardedCapture | None:
+        """What is open; None before, and after `close`."""
+        return self._current
+
+    def begin(self) -> int:
+        """An opening begins, and ends what was before it. Its number, for `take`."""
+        self.close()
+        return self._begun
+
+    def take(self, number: int, capture: cv2.VideoCapture) -> bool:
+        """What that opening has got; False, and it is released, where that was closed meanwhile."""
+        with self._lock:
+            if number == self._begun:
+                self._current = GuardedCapture(capture)
+                return True
+        capture.release()
+        return False
+
+    def close(self) -> None:
+        """Never blocks; may be called twice."""
+        with self._lock:
+            self._begun += 1
+            current, self._current = self._current, None
+        if current is not None:
+            current.close()

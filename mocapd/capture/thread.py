@@ -1,15 +1,21 @@
-"""One capture thread per camera: the newest frame to the mailbox, a lost camera opened again."""
+"""One capture thread per camera: the newest frame to the mailbox, a lost camera opened again.
+
+A thread that is stuck in a driver cannot be ended: it is abandoned, and another one takes its place. What the
+abandoned one brings, should it ever come back, is thrown away, and it touches its source no more.
+"""
 
 import logging
 import threading
-from collections.abc import Callable
-from dataclasses import dataclass
-from enum import StrEnum
-from typing import Protocol, runtime_checkable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Protocol
 
-from mocapd.capture.base import Source
-from mocapd.capture.rate import RateMeter
-from mocapd.clock import monotonic_ns, seconds
+from mocapd.capture.base import CountsTorn, Pluggable, Source
+from mocapd.capture.capture_record import CaptureRecord
+from mocapd.capture.capture_status import CaptureStatus
+from mocapd.capture.frame_faults import FrameFaults
+from mocapd.capture.reopening import BackOff, RestartBudget
+from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import (
     CameraLost,
     ConfigError,
@@ -23,7 +29,9 @@ from mocapd.types import Frame
 
 _LOG = logging.getLogger(__name__)
 
-SILENT_S = 1.0  # from a live camera: so long without a frame is told [s]
+STUCK_S = 8.0  # in one call of a driver; the longest of those that come back takes 3 [s]
+MOST_STUCK = 3  # threads of one camera that hang in its driver at a time
+_LOOK_S = 0.25  # how often a lost camera's socket is looked at [s]
 
 
 class Mailbox(Protocol):
@@ -32,72 +40,19 @@ class Mailbox(Protocol):
     def put(self, item: Frame, /) -> None: ...
 
 
-@runtime_checkable
-class CountsTorn(Protocol):
-    """A source that leaves out damaged frames and counts them."""
+class Presence(Protocol):
+    """Who must know of every loss of a camera before its next frame; called in the capture thread, never blocks."""
 
-    torn: int
-
-
-class CaptureState(StrEnum):
-    """`lost` is a state, not an error: the camera is sought again until it is back."""
-
-    OPENING = "opening"
-    LIVE = "live"
-    LOST = "lost"
-    ENDED = "ended"
-
-
-@dataclass(frozen=True, slots=True)
-class CaptureStatus:
-    """A snapshot of one capture thread.
-
-    `reason`: why it is lost or ended, and the mend; empty while live. `reopens`: how often it came
-    back after a loss. `fps_hz` is measured from the frames' own times over the last 2 s; it falls by
-    the clock while a read blocks. `last_frame_ns`: the newest frame's own time, None before the first.
-    `silent_s`: since the newest frame came [s]; 0 unless live.
-    """
-
-    camera: str
-    state: CaptureState
-    reason: str
-    frames: int
-    torn: int
-    reopens: int
-    fps_hz: float
-    last_frame_ns: int | None
-    silent_s: float = 0.0
-
-    @property
-    def is_silent(self) -> bool:
-        """Whether it counts as live and yet sends nothing: its driver does not come back."""
-        return self.state is CaptureState.LIVE and self.silent_s >= SILENT_S
-
-    @property
-    def trouble(self) -> str:
-        """What is wrong with it, for people; empty when nothing is."""
-        return f"silent for {self.silent_s:.0f} s" if self.is_silent else self.reason
-
-
-@dataclass(frozen=True, slots=True)
-class BackOff:
-    """The pause before opening a lost camera again: `first_s`, doubled each time up to `longest_s`."""
-
-    first_s: float = 0.1
-    longest_s: float = 5.0
-
-    def pause_s(self, failures: int) -> float:
-        """The pause [s] after that many failures in a row (1 or more)."""
-        return min(self.longest_s, self.first_s * 2.0 ** min(failures - 1, 30))
+    def went(self, camera: str, /) -> None: ...
 
 
 class CaptureThread:
     """Reads one source until `stop` or the end of a recording.
 
     `on_death` is called, in the capture thread, with whatever unexpected ended it. A ConfigError of
-    the first opening is among them, as waiting does not mend it; a camera that was open before, and now
-    has another size, is lost: the other cameras go on. `expected_hz`: warns, once per opening, when the
-    measured rate is under nine tenths of it.
+    the first attempt to open it is among them, as waiting does not mend it; a camera that comes later, or
+    comes back, and has another size, is lost: the other cameras go on. `expected_hz`: warns, once per
+    opening, when the measured rate is under nine tenths of it. `size_px`: of its calibration.
     """
 
     def __init__(
@@ -107,25 +62,36 @@ class CaptureThread:
         on_death: Callable[[BaseException], None],
         expected_hz: float | None = None,
         back_off: BackOff | None = None,
+        *,
+        budget: RestartBudget | None = None,
+        size_px: tuple[int, int] | None = None,
+        presence: Presence | None = None,
+        stuck_s: float = STUCK_S,
     ) -> None:
         self._source = source
+        self._counts_torn = (
+            source if isinstance(source, CountsTorn) else None
+        )  # asked once: it takes 0.1 ms
+        self._plug = source if isinstance(source, Pluggable) else None
         self._mailbox = mailbox
         self._on_death = on_death
         self._expected_hz = expected_hz
         self._back_off = back_off if back_off is not None else BackOff()
+        self._budget = budget if budget is not None else RestartBudget()
+        self._faults = FrameFaults(size_px)
+        self._presence = presence
+        self._stuck_s = stuck_s
         self._stopping = threading.Event()
-        self._lock = threading.Lock()  # guards what follows; never held while reading or opening
-        self._state = CaptureState.OPENING
-        self._reason = ""
-        self._frames = 0
-        self._openings = 0  # that delivered
-        self._last_frame_ns: int | None = None
-        self._came_ns = 0  # the newest frame, by the clock
-        self._rate = RateMeter()
-        # A daemon thread: a driver that never returns must not keep the process from ending.
-        self._thread = threading.Thread(
-            target=self._run, name=f"capture-{source.name}", daemon=True
-        )
+        self._woken = threading.Event()  # the pause before reopening is over
+        self._record = CaptureRecord(source.name)
+        self._turn = 0  # of the thread that reads; those before it were abandoned
+        self._called_ns: int | None = None  # since when it is in its driver
+        self._renewal = ""  # why it is opened anew though it does not fail
+        self._plugging = ""  # see Pluggable
+        self._stuck: list[threading.Thread] = []  # abandoned
+        self._thread = self._new_thread()
+
+    # -- the owner's -----------------------------------------------------------------------------
 
     def start(self) -> None:
         """Begin; returns at once."""
@@ -134,6 +100,7 @@ class CaptureThread:
     def let_go(self) -> None:
         """First pass of stopping: wakes the thread; never blocks."""
         self._stopping.set()
+        self._woken.set()
         self._source.close()
 
     def stop(self, timeout_s: float = 1.4) -> bool:
@@ -143,87 +110,139 @@ class CaptureThread:
             self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
+    def look_again(self) -> None:
+        """A camera was plugged in, maybe this one: where it is lost it is sought now. From any thread."""
+        self._woken.set()
+
+    def renew(self, why: str) -> None:
+        """Open it again, although it has not failed; from any thread, never blocks."""
+        self._renewal = why
+        self._woken.set()
+        self._source.close()
+
+    def watch(self) -> None:
+        """Replace the thread where its driver has not come back; call it about once a second, from one thread.
+
+        Of recordings, which may be slow, nothing is expected. Where several hang already, no further one is
+        risked until one of them comes back.
+        """
+        self._stuck = [one for one in self._stuck if one.is_alive()]
+        called_ns = self._called_ns
+        stuck_ns = 0 if called_ns is None else monotonic_ns() - called_ns
+        if stuck_ns >= nanoseconds(self._stuck_s) and not self._source.recorded:
+            self._abandon(stuck_ns)
+        never_ran = self._turn > 0 and self._thread.ident is None
+        if never_ran and len(self._stuck) < MOST_STUCK and not self._stopping.is_set():
+            self._thread.start()
+
+    def _abandon(self, stuck_ns: int) -> None:
+        self._turn += 1
+        self._called_ns = None
+        self._stuck.append(self._thread)
+        self._thread = self._new_thread()
+        self._lost(
+            CameraLost(
+                f"its driver has not come back for {seconds(stuck_ns):.0f} s, and is left to itself",
+                fix="unplug the camera and plug it in again",
+            )
+        )
+        self._source.close()
+
     def status(self) -> CaptureStatus:
         """A snapshot, at any time from any thread; does not wait for a read that blocks."""
-        with self._lock:
-            live = self._state is CaptureState.LIVE
-            silent_ns = monotonic_ns() - self._came_ns if live else 0
-            return CaptureStatus(
-                camera=self._source.name,
-                state=self._state,
-                reason=self._reason,
-                frames=self._frames,
-                torn=self._source.torn if isinstance(self._source, CountsTorn) else 0,
-                reopens=max(0, self._openings - 1),
-                fps_hz=self._rate.rate_hz(silent_ns) if live else 0.0,
-                last_frame_ns=self._last_frame_ns,
-                silent_s=seconds(silent_ns),
-            )
+        return self._record.status(self._torn())
 
-    def _run(self) -> None:
+    # -- the thread's ----------------------------------------------------------------------------
+
+    def _new_thread(self) -> threading.Thread:
+        # A daemon thread: a driver that never returns must not keep the process from ending.
+        name = f"capture-{self._source.name}"
+        return threading.Thread(target=self._run, args=(self._turn,), name=name, daemon=True)
+
+    def _over(self, turn: int) -> bool:
+        return self._stopping.is_set() or turn != self._turn
+
+    def _run(self, turn: int) -> None:
         try:
-            self._capture()
+            self._capture(turn)
         except MocapdError as error:  # says all there is to say: no traceback
-            self._die(error)
+            self._die(error, turn)
         except BaseException as error:
-            self._die(error)
+            self._die(error, turn)
             raise
         finally:
-            self._source.close()
+            if turn == self._turn:
+                self._source.close()
 
-    def _die(self, error: BaseException) -> None:
-        self._set(CaptureState.ENDED, str(error) or type(error).__name__)
+    def _die(self, error: BaseException, turn: int) -> None:
+        if turn == self._turn:
+            self._record.ended(str(error) or type(error).__name__)
         self._on_death(error)
 
-    def _capture(self) -> None:
-        failures, opened = 0, False
-        while not self._stopping.is_set():
-            frames_before = self._frames
+    def _capture(self, turn: int) -> None:
+        failures, first = 0, turn == 0
+        while not self._over(turn):
+            frames_before = self._record.frames
             try:
-                self._source.open()
-                opened = True
-                self._read_until_it_fails()
+                self._woken.clear()
+                self._renewal = ""
+                self._plugging = self._plugged_now()
+                with self._called(turn):
+                    self._source.open()
+                self._read_until_it_fails(turn)
             except EndOfStream as end:
-                if self._stopping.is_set():
+                if self._over(turn):
                     break
-                self._set(CaptureState.ENDED, str(end))
+                self._record.ended(str(end))
                 level = logging.WARNING if end.fix else logging.INFO  # fix: it was cut short
                 _LOG.log(level, "%s: %s", self._source.name, end)
                 return
             except (
                 CameraLost, UnavailableError, PermissionDeniedError, InputError, ConfigError
             ) as error:  # fmt: skip
-                if isinstance(error, ConfigError) and not opened:
+                if self._over(turn):
+                    break
+                if isinstance(error, ConfigError) and first:
                     raise
                 self._source.close()  # else the camera comes back under another number
-                if self._stopping.is_set():
-                    break
-                failures = 1 if self._frames > frames_before else failures + 1
-                self._lost(error)
-                self._stopping.wait(self._back_off.pause_s(failures))
-        self._set(CaptureState.ENDED, "stopped")
+                delivered = self._record.frames > frames_before
+                failures = 1 if delivered else failures + 1
+                self._wait_after(error, delivered, failures)
+            first = False
+        if turn == self._turn:
+            self._record.ended("stopped")
 
-    def _read_until_it_fails(self) -> None:
+    def _read_until_it_fails(self, turn: int) -> None:
         first, judged = True, False
-        while not self._stopping.is_set():
-            frame = self._source.read()
-            came_ns = monotonic_ns()
-            with self._lock:
-                if first:  # a camera that opens and sends nothing is still lost
-                    first = False
-                    self._openings += 1
-                    self._rate.clear()
-                    self._state, self._reason = CaptureState.LIVE, ""
-                self._frames += 1
-                self._last_frame_ns, self._came_ns = frame.t_ns, came_ns
-                self._rate.add(frame.t_ns)
+        self._faults.clear()
+        while not self._over(turn):
+            with self._called(turn):
+                frame = self._source.read()
+            if turn != self._turn:
+                return
+            if first:
+                self._record.opened(self._place())
+            self._record.came(frame)
+            first = False
             self._mailbox.put(frame)
-            if not judged and self._rate.full:
+            if not self._source.recorded:
+                self._look_at(frame)
+            if not judged and self._record.rate.full:
                 judged = True
                 self._judge_rate()
 
+    def _look_at(self, frame: Frame) -> None:
+        """Raises CameraLost for a camera that shows the past."""
+        if self._faults.add(frame, self._torn()):
+            self._record.noticed(self._faults.notice, self._place())
+        if self._faults.frozen:
+            raise CameraLost(
+                "sends the same picture over and over",
+                fix="it is opened again; where that does not help, unplug it and plug it in again",
+            )
+
     def _judge_rate(self) -> None:
-        measured_hz = self._rate.rate_hz()
+        measured_hz = self._record.rate.rate_hz()
         if self._expected_hz is not None and measured_hz < 0.9 * self._expected_hz:
             _LOG.warning(
                 "%s: delivers %.1f Hz, asked for %g Hz: in dim light turn off automatic exposure, "
@@ -233,21 +252,51 @@ class CaptureThread:
                 self._expected_hz,
             )
 
-    def _lost(self, error: MocapdError) -> None:
-        # Told once for each loss: the attempts that follow fail for reasons of their own. But that it
-        # is back, and does not fit, is news.
-        was, reason = self._set(CaptureState.LOST, str(error))
-        news = isinstance(error, ConfigError) and str(error) != reason
-        _LOG.log(
-            logging.WARNING if news or was is not CaptureState.LOST else logging.DEBUG,
-            "%s: lost: %s",
-            self._source.name,
-            error,
-        )
+    def _wait_after(self, error: MocapdError, delivered: bool, failures: int) -> None:
+        renewal, self._renewal = self._renewal, ""
+        if renewal:
+            self._lost(CameraLost(renewal))
+            self._woken.clear()
+            return
+        # who pulls its plug does not wear a camera out: only that it is still there, and fails, counts
+        there = self._plug is None or bool(self._plugged_now())
+        spent = delivered and there and self._budget.spend(monotonic_ns())
+        if spent:
+            error = self._budget.left_out(error, self._plug is not None)
+        self._lost(error)
+        self._pause(self._budget.rest_s if spent else self._back_off.pause_s(failures))
 
-    def _set(self, state: CaptureState, reason: str) -> tuple[CaptureState, str]:
-        """Change state and reason; returns those before."""
-        with self._lock:
-            before = self._state, self._reason
-            self._state, self._reason = state, reason
-            return before
+    def _pause(self, pause_s: float) -> None:
+        """Ends sooner when it is plugged in, woken or to stop."""
+        until_ns = monotonic_ns() + nanoseconds(pause_s)
+        while (left_s := seconds(until_ns - monotonic_ns())) > 0.0:
+            if self._woken.wait(min(left_s, _LOOK_S)):
+                self._woken.clear()
+                return
+            now = self._plugged_now()
+            if now and now != self._plugging:
+                self._budget.renew()
+                return
+
+    def _plugged_now(self) -> str:
+        return self._plug.plugging() if self._plug is not None else ""
+
+    def _place(self) -> str:
+        return self._plug.place if self._plug is not None else ""
+
+    @contextmanager
+    def _called(self, turn: int) -> Iterator[None]:
+        """Within it the thread is in its driver, for who watches it."""
+        self._called_ns = monotonic_ns()
+        try:
+            yield
+        finally:
+            if turn == self._turn:
+                self._called_ns = None
+
+    def _torn(self) -> int:
+        return self._counts_torn.torn if self._counts_torn is not None else 0
+
+    def _lost(self, error: MocapdError) -> None:
+        if self._record.lost(error) and self._presence is not None:
+            self._presence.went(self._source.name)

@@ -7,7 +7,7 @@ import cv2
 from mocapd.boundary.pictures import MOST_PIXELS, decode_picture
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
-from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, MalformedError, UnavailableError
@@ -47,11 +47,11 @@ class UrlSource:
         self.torn = 0
         self._seq = 0
         self._is_mjpg = False
-        self._capture: GuardedCapture | None = None
+        self._openings = Openings()
 
     def open(self) -> None:
         """Raises UnavailableError, or ConfigError for another size than its calibration."""
-        self.close()
+        number = self._openings.begin()
         open_ms, read_ms = self._timeouts_ms
         capture = cv2.VideoCapture(
             self._url,
@@ -88,14 +88,17 @@ class UrlSource:
             raise size_error(self._shown, self.name, size_px, self._size_px)
         is_mjpg = int(capture.get(cv2.CAP_PROP_FOURCC)) == _MJPG
         self._is_mjpg = is_mjpg and capture.set(cv2.CAP_PROP_FORMAT, -1)  # files, not pixels
-        self._capture = GuardedCapture(capture)
+        if not self._openings.take(number, capture):
+            raise CameraLost(
+                "was closed while it was opened", self._shown, "it is opened again by itself"
+            )
 
     def read(self) -> Frame:
         """Raises CameraLost when nothing came within the read timeout, only damage did, or the stream
         ended."""
-        guarded = self._capture
+        guarded = self._openings.current
         if guarded is None:
-            raise CameraLost("not open", self.name, "call open first")
+            raise CameraLost("is closed", self._shown, "it is opened again by itself")
         began_ns = monotonic_ns()
         while True:
             with guarded as capture:
@@ -115,10 +118,9 @@ class UrlSource:
                     continue
                 break
             return Frame(self.name, seq, t_ns, pixels, delivered_jpeg(raw, pixels))
-        self.close()
+        guarded.close()
         raise CameraLost("the network camera stopped sending", self._shown, "check its network")
 
     def close(self) -> None:
         """Let go; a blocked `read` ends after its timeout at the latest."""
-        if self._capture is not None:
-            self._capture.close()
+        self._openings.close()

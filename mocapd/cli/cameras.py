@@ -17,6 +17,13 @@ def add_to(app: typer.Typer) -> None:
 
 def cameras(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a camera.")] = False,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            help="List those of a camera node instead, or of all behind a Zenoh router.",
+            metavar="zenohs://[USER:PASSWORD@]HOST[:PORT][/NODE][?ca=FILE]",
+        ),
+    ] = None,
 ) -> None:
     """List the webcams, and why one cannot be used.
 
@@ -24,6 +31,9 @@ def cameras(
 
     Example: mocapd cameras
     """
+    if at is not None:
+        _print_remote(at, as_json)
+        return
     from mocapd.capture.webcam.listing import list_cameras
 
     found = list_cameras()
@@ -31,6 +41,28 @@ def cameras(
         print(json.dumps(_as_dict(info)) if as_json else _as_text(info))
     if not found and not as_json:
         typer.echo("mocapd: no webcam found -- plug one in, or see `mocapd demo`", err=True)
+
+
+def _print_remote(place: str, as_json: bool) -> None:
+    import msgspec
+
+    from mocapd.capture.remote.remote_listing import list_remote
+
+    for one in list_remote(place):
+        state = one.state
+        if as_json:
+            print(json.dumps({"source": one.spec, **msgspec.to_builtins(state)}))
+            continue
+        width, height = state.size_px
+        how = f"{width}x{height} {state.rate_hz:.1f} Hz" if state.state == "live" else state.state
+        lines = [f"{state.node}/{state.camera}  {how}", f"source  {one.spec}"]
+        if state.reason:
+            lines.append(f"cannot be used: {state.reason}")
+        if not state.can_set:
+            lines.append(
+                "note    its controls cannot be set from here: node.paired_user of its node"
+            )
+        print("\n    ".join(lines))
 
 
 def _as_dict(info: "CameraInfo") -> dict[str, object]:

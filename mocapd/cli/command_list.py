@@ -6,6 +6,7 @@ from mocapd.cli import (
     bench,
     board,
     calibrate,
+    camera_node,
     cameras,
     check_config,
     demo,
@@ -19,7 +20,9 @@ from mocapd.cli import (
     web_link,
 )
 from mocapd.cli import eval as evaluation
+from mocapd.cli.care import completion, doctor, man, reload, status
 from mocapd.cli.recordings import export, record, replay
+from mocapd.cli.service import as_service, install_service
 
 app = typer.Typer(
     name="mocapd",
@@ -40,12 +43,20 @@ for command in (
     evaluation,
     bench,
     watch,
+    status,
+    doctor,
+    reload,
     recenter,
     web_link,
     send_test,
     cameras,
+    camera_node,
     check_config,
+    install_service,
+    as_service,
     version,
+    completion,
+    man,
 ):
     command.add_to(app)
 calibrate.add_to(app)

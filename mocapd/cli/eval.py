@@ -21,6 +21,7 @@ from mocapd.errors import ConfigError
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
     from mocapd.evaluate.capture_eval import BuildTracker, Case
+    from mocapd.evaluate.failures_page import FailureOutcome
     from mocapd.evaluate.runs import EvaluationResults
     from mocapd.session.tracker_setup import Progress, ReadyTracker
 
@@ -98,7 +99,10 @@ def evaluate_captures(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Write evaluation.md here, with plots when comparing."),
+        typer.Option(
+            "--out",
+            help="Write evaluation.md here, with plots when comparing; failures.md for --failures.",
+        ),
     ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
@@ -125,9 +129,10 @@ def evaluate_captures(
 
     from mocapd.app.progress import ProgressBars
     from mocapd.calibration.record import Calibration
-    from mocapd.evaluate import runs
+    from mocapd.evaluate import failures_page, runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.compare import FULL
+    from mocapd.evaluate.failures_page import outcomes
     from mocapd.evaluate.page import write_page
     from mocapd.evaluate.simulated import recorded_set
     from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
@@ -149,8 +154,8 @@ def evaluate_captures(
         sessions = []
         if simulated is not None:
             sessions += recorded_set.planned(simulated, plain=clothes is Worn.PLAIN)
-        if failures:
-            sessions += recorded_set.failures()
+        hard = recorded_set.failures() if failures else []
+        sessions += hard
         made = recorded_set.recorded(sessions, effective.cache_dir, progress)
         recorded_set.check_suits(name, sessions, made)
         folders += made
@@ -173,12 +178,18 @@ def evaluate_captures(
             findings = runs.EvaluationResults(name, joints.value, results, {}, ())
         else:
             findings = runs.compare(cases, name, rivals, setting)
-    _print(findings, as_json)
+    scenes = outcomes(hard, findings.results[len(findings.results) - len(hard) :], joints.value)
+    _print(findings, scenes, as_json)
     if out is not None:
         words = _command(captures or [], simulated, name, compare, joints, out)
         words[2:2] = ["--clothes", clothes.value] if simulated and clothes is Worn.PLAIN else []
         words[2:2] = ["--failures"] if failures else []
-        for path in write_page(out, findings, shlex.join(words)):
+        command, written = shlex.join(words), []
+        if len(findings.results) > len(hard):
+            written += write_page(out, findings, command)
+        if scenes:
+            written += failures_page.write_page(out, scenes, name, joints.value, command)
+        for path in written:
             typer.echo(f"{path}: written", err=True)
 
 
@@ -218,8 +229,8 @@ def _prediction(cases: "list[Case]", config: "Config", build: "BuildTracker") ->
     return prediction_table(cases, built, config.smoothing.preset)
 
 
-def _print(findings: "EvaluationResults", as_json: bool) -> None:
-    from mocapd.evaluate import report
+def _print(findings: "EvaluationResults", scenes: "list[FailureOutcome]", as_json: bool) -> None:
+    from mocapd.evaluate import failures_page, report
 
     if as_json:
         told: dict[str, Any] = {"tracker": findings.tracker, "joints": findings.joints}
@@ -231,6 +242,8 @@ def _print(findings: "EvaluationResults", as_json: bool) -> None:
             }
         if findings.rocs:
             told["roc"] = report.roc_json(findings.roc)
+        if scenes:
+            told["failures"] = failures_page.as_json(scenes)
         typer.echo(json.dumps(told))
         return
     tables = [report.score_table(findings.results)]
@@ -238,6 +251,8 @@ def _print(findings: "EvaluationResults", as_json: bool) -> None:
         tables += report.comparison_tables(findings.comparison)
     if findings.rocs:
         tables.append(report.roc_table(findings.roc))
+    if scenes:
+        tables.append(failures_page.outcomes_table(scenes))
     typer.echo("\n\n".join(tables))
 
 

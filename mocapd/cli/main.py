@@ -17,10 +17,12 @@ def main() -> None:
     end_at_once(sys.argv)  # before the imports, which take long
 
     import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
+    from mocapd.cli.care.completion import ready_to_complete
     from mocapd.cli.command_list import app
     from mocapd.errors import MocapdError
 
     interruptible(sys.argv)
+    ready_to_complete()
     try:
         app(prog_name="mocapd")
     except MocapdError as error:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, MocapdError
 
 if TYPE_CHECKING:
     from mocapd.config.effective import Effective
@@ -27,6 +27,10 @@ CameraOption = Annotated[
         help="A camera, instead of those of the config; repeat it. See `mocapd cameras`.",
         metavar="ID=SOURCE",
     ),
+]
+CaptureOption = Annotated[
+    str | None,
+    typer.Option(help="All cameras of a capture folder, or of sim:SCENARIO.", metavar="FOLDER"),
 ]
 
 VrmOption = Annotated[
@@ -66,12 +70,7 @@ def effective_config(
     """
     from mocapd.config.effective import load_config
 
-    given: dict[str, str] = {}
-    for text in settings or ():
-        key, equals, value = text.partition("=")
-        if not equals:
-            raise ConfigError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
-        given[key.strip()] = value.strip()
+    given = _given(settings)
     if capture is not None:
         from mocapd.session.session import cameras_of
 
@@ -80,6 +79,30 @@ def effective_config(
         given["camera"] = _camera_list([_camera(text) for text in cameras])
     given |= {key.replace("__", "."): value for key, value in flags.items() if value is not None}
     return load_config(given, config)
+
+
+def config_to_look_after(
+    config: Path | None, settings: list[str] | None
+) -> "tuple[Effective, MocapdError | None]":
+    """The configuration, for commands that look after a daemon whatever has become of it since: where it cannot be
+    used, what is built in with these flags, and why. Raises ConfigError for wrong flags."""
+    from mocapd.config.effective import load_config
+
+    try:
+        return effective_config(config, settings), None
+    except MocapdError as error:
+        return load_config(_given(settings), env={}, candidates=()), error
+
+
+def _given(settings: list[str] | None) -> dict[str, str]:
+    """The flags --set by their keys. Raises ConfigError."""
+    given: dict[str, str] = {}
+    for text in settings or ():
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise ConfigError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
+        given[key.strip()] = value.strip()
+    return given
 
 
 def _camera(text: str) -> tuple[str, str]:

@@ -2,7 +2,7 @@
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 
 
 def add_to(app: typer.Typer) -> None:
@@ -17,10 +17,9 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd recenter
     """
-    from mocapd.app.chosen_page import daemon_meant
-    from mocapd.web import runtime_file
+    from mocapd.control.meant import daemon_meant
 
-    told = runtime_file.recenter(daemon_meant(effective_config(config, settings).config).url)
+    told = daemon_meant(config_to_look_after(config, settings)[0].config).recenter()
     side = "left" if told.yaw_deg >= 0.0 else "right"
     print(
         f"forward is {abs(told.yaw_deg):.0f} degrees to the {side} of the room's +Z;"

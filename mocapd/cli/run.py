@@ -1,6 +1,9 @@
 """`mocapd run`"""
 
+import faulthandler
 import logging
+import os
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,6 +12,7 @@ import typer
 from mocapd.app.unsafe_settings import unsafe_settings
 from mocapd.cli.options import (
     CameraOption,
+    CaptureOption,
     ConfigOption,
     SetOption,
     VrmOption,
@@ -33,10 +37,7 @@ def run(
     config: ConfigOption = None,
     settings: SetOption = None,
     cameras: CameraOption = None,
-    capture: Annotated[
-        str | None,
-        typer.Option(help="All cameras of a capture folder, or of sim:SCENARIO.", metavar="FOLDER"),
-    ] = None,
+    capture: CaptureOption = None,
     rig: Annotated[Path | None, typer.Option(help="The rig file: the calibration.")] = None,
     tracker: Annotated[str | None, typer.Option(help="Which tracker.")] = None,
     instance: Annotated[str | None, typer.Option(help="This daemon's name in the keys.")] = None,
@@ -74,20 +75,39 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
         _log.warning("unsafe: %s", line)
 
     from mocapd.app.daemon_page import DaemonPage
-    from mocapd.app.first_start import prepare_apart
-    from mocapd.app.progress import ProgressBars
+    from mocapd.app.first_session import prepared_session
     from mocapd.app.running import Signals, end_despite_work, run_daemon
     from mocapd.app.session_change import SessionChange
+    from mocapd.app.supervised.notifier import Notifier
+    from mocapd.app.supervised.supervision import Supervision
+    from mocapd.config.runtime_folder import runtime_folder
+    from mocapd.control.daemon_control import DaemonControl
+    from mocapd.control.last_trouble import LastTrouble
+    from mocapd.control.socket_place import socket_path
+    from mocapd.service.open_outputs import OpenOutputs
     from mocapd.service.service import Service
-    from mocapd.session.session import open_session
 
+    faulthandler.enable()  # a service manager that waits in vain for a sign of life sends SIGABRT
     signals = Signals(reloads=True)
-    prepare_apart(config)
-    with ProgressBars() as progress:
-        service = Service(config, open_session(config, progress))
-    page = DaemonPage(service) if config.web.enabled else None
+    notifier = Notifier.of_environment()
+    outputs = OpenOutputs(config)
+    page = None
     try:
-        code = run_daemon(service, signals, hint, SessionChange(service, read, signals, page))
+        path = socket_path(runtime_folder(config.state_dir), os.getpid())
+        with (
+            closing(notifier),
+            LastTrouble() as trouble,
+            DaemonControl(path, config, outputs, trouble) as control,
+            outputs,
+        ):
+            session = prepared_session(config, outputs, notifier, control.open)
+            service = Service(config, session, outputs)
+            page = DaemonPage(service) if config.web.enabled else None
+            change = SessionChange(service, read, signals, page, notifier)
+            control.attach(service, change.reloads)
+            code = run_daemon(service, signals, hint, (change, control, Supervision(notifier)))
+    except SystemExit as end:  # told to end while the first session was still prepared
+        code = end.code if isinstance(end.code, int) else 0
     finally:
         if page is not None:
             page.close()

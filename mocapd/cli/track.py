@@ -1,5 +1,6 @@
 """`mocapd track`"""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,13 @@ from mocapd.cli.options import (
     effective_config,
     refuse_variant,
 )
+
+
+class RoomSeen(StrEnum):
+    """What a recording shows of the empty room."""
+
+    EMPTY = "empty"
+    WHOLE = "whole"
 
 
 def add_to(app: typer.Typer) -> None:
@@ -40,6 +48,13 @@ def track(
             metavar="PLACE",
         ),
     ] = None,
+    room: Annotated[
+        RoomSeen,
+        typer.Option(
+            help="Where a tracker without the shirt learns the empty room: before anybody comes, or from the "
+            "whole recording, for one that shows somebody from its first frame on.",
+        ),
+    ] = RoomSeen.EMPTY,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -60,7 +75,7 @@ def track(
     from mocapd.app.progress import ProgressBars
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
-    from mocapd.session.offline import check_writable, track_all, write_track
+    from mocapd.session.offline import check_writable, learn_room, track_all, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
 
@@ -77,6 +92,8 @@ def track(
             known.assuming(own.stature_m),
             cached(effective.cache_dir, progress, own, own.sections),
         )
+        if room is RoomSeen.WHOLE:
+            learn_room(ready.tracker, origin.frame_sets(), origin.count)
         result = track_all(
             ready.tracker,
             ready.shape,

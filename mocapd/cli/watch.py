@@ -27,9 +27,17 @@ def watch(
         typer.Option(help="Zenoh endpoint of the daemon [default: that of the config]"),
     ] = None,
     instance: Annotated[str, typer.Option(help="Name of the daemon; *: any.")] = "*",
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a frame.")] = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="Every daemon on the bus in one line, once a second.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="One JSON object a frame; with --all: a daemon.")
+    ] = False,
     count: Annotated[
-        int, typer.Option("--count", min=0, help="Stop after so many frames; 0: never.")
+        int,
+        typer.Option(
+            "--count", min=0, help="Stop after so many frames or, with --all, seconds; 0: never."
+        ),
     ] = 0,
     timeout_s: Annotated[
         float, typer.Option("--timeout", min=0.0, help="How long to look for a daemon [s].")
@@ -37,7 +45,8 @@ def watch(
 ) -> None:
     """Print the frames of a running daemon.
 
-    It subscribes like any client; the newest frame wins.
+    It subscribes like any client; the newest frame wins. With --all it takes no frames, but what all daemons
+    behind one router say of themselves.
 
     Example: mocapd watch --json | head -n 1
     """
@@ -45,9 +54,13 @@ def watch(
     from mocapd.outputs.registry import zenoh_section
 
     zenoh = zenoh_section(effective_config(config, settings).config.outputs)
-    bodies = client.stream(
-        endpoint or endpoint_of(zenoh), instance=instance, connect_timeout_s=timeout_s
-    )
+    place = endpoint or endpoint_of(zenoh)
+    if every:
+        from mocapd.app.watch_all import watch_all
+
+        watch_all(client.Link(place, instance, connect_timeout_s=timeout_s), as_json, count)
+        return
+    bodies = client.stream(place, instance=instance, connect_timeout_s=timeout_s)
     for number, body in enumerate(bodies, start=1):
         print(_as_json(body) if as_json else _as_text(body), flush=True)
         if number == count:

@@ -10,7 +10,7 @@ import platformdirs
 from msgspec import Meta
 
 from mocapd.capture.webcam.controls import Controls
-from mocapd.config import web_params
+from mocapd.config import node_params, web_params
 from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
 from mocapd.outputs.registry import OutputSection, default_sections, output_sections
@@ -51,7 +51,7 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
-    source: what `mocapd cameras` prints, a video file, FOLDER#camN, a URL, sim:SCENARIO#camN; a wrong one is told all kinds
+    source: what `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, sim:NAME#camN; a wrong one tells all
     fps_hz: rate to ask a webcam for [Hz]
     wait_s: how long a frame set waits for it after its first frame came [s], in place of [bundler]; for one on a network
     white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
@@ -73,10 +73,12 @@ class TrackerSection(TrackingStateParams):
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
     confirm_s: how long evidence must persist before a lost person is believed to be back [s]
+    stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]
     """
 
     name: str = "auto"
     stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
+    stuck_s: Annotated[float, Meta(ge=1, le=3600)] = 30.0
     sections: Annotated[Mapping[str, Any], SectionTable(tracker_sections)] = field(
         default_factory=lambda: {name: section() for name, section in tracker_sections().items()}
     )
@@ -152,6 +154,7 @@ class Config:
         default_factory=default_sections
     )
     web: WebSection = field(default_factory=WebSection)
+    node: node_params.Params = field(default_factory=node_params.Params)
 
 
 # Keys of earlier versions: what to write now.

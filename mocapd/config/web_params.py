@@ -22,11 +22,13 @@ class Params:
     enabled: serve the page
     port: its TCP port; 0: a free one, told when it starts
     allow_origins: sites whose pages may have the frames, and nothing else, once given `mocapd web-link`
+    metrics: serve figures for Prometheus at /metrics, to who has the key in metrics.key of state_dir
     """
 
     enabled: bool = True
     port: Annotated[int, Meta(ge=0, le=65535)] = 0
     allow_origins: tuple[str, ...] = ()
+    metrics: bool = False
 
     def __post_init__(self) -> None:
         for origin in self.allow_origins:

@@ -13,6 +13,7 @@ from mocapd.evaluate.compare import BASELINE, FULL, ShoulderAngles
 from mocapd.evaluate.interruptions import Interruptions
 from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability
 from mocapd.evaluate.roc import Roc
+from mocapd.types import Floats
 
 Spans = Sequence[tuple[float, float]]  # from, to [s]
 
@@ -65,6 +66,31 @@ def speakers_plot(of: Interruptions, limit_cm: float, spans: Mapping[str, Spans]
                 label = what if number == 0 and panel is steps else None
                 panel.axvspan(from_s, to_s, color=colour, alpha=0.18, linewidth=0, label=label)
     steps.legend(loc="upper right", ncols=4, fontsize=9)
+    return figure
+
+
+def recovery_plot(
+    scenes: Mapping[str, Sequence[tuple[str, Floats, Floats]]],
+    clear_s: Mapping[str, float],
+    wanted_s: float,
+    limit_cm: float,
+) -> Figure:
+    """RMS error over time, one panel a scene, one line (label, times [s], errors [cm]) a rig; clear_s: from when on the
+    person is in the open, wanted_s: how long it may take until the error is below the limit."""
+    figure = Figure(figsize=(10.0, 1.7 * len(scenes)), layout="constrained")
+    panels = figure.subplots(len(scenes), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, (scene, lines) in zip(panels, scenes.items(), strict=True):
+        for label, times_s, errors_cm in lines:
+            told = np.where(np.isfinite(errors_cm), errors_cm, np.nan)
+            panel.plot(times_s, told, label=label, linewidth=1.2)
+        panel.axvspan(clear_s[scene], clear_s[scene] + wanted_s, color="0.88", linewidth=0)
+        panel.axhline(limit_cm, color="0.4", linewidth=0.9, linestyle="--")
+        panel.set_title(scene.replace("_", " "), fontsize=10)
+        panel.set_ylabel("RMS [cm]")
+        panel.set_ylim(bottom=0.0)
+        panel.grid(alpha=0.3)
+    panels[0].legend(loc="upper right", ncols=2, fontsize=9)
+    panels[-1].set_xlabel("time [s]")
     return figure
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
-from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM, TORSO
+from mocapd.body.surface import LEFT_ARM, LEFT_LEG, LEGS, RIGHT_ARM, RIGHT_LEG, TORSO
 from mocapd.fit.limb_search_kernels import ArmSamples
 from mocapd.types import Floats, Ints
 
@@ -49,6 +49,18 @@ def arm_of(model: BodyModel, side: str) -> Arm:
         side, chain, _samples(model, chain, np.flatnonzero(sleeve)[::3], model.colour),
         _samples(model, chain, np.flatnonzero(hand)[::3], np.full_like(model.colour, SKIN_ID)),
         np.flatnonzero(~mine), np.append(bare[~mine], False),
+    )  # fmt: skip
+
+
+def leg_of(model: BodyModel, side: str) -> Arm:
+    """Cut one leg out of a whole body: its chain is thigh, shank, foot and toes; nothing of it is bare."""
+    mine = model.part == (LEFT_LEG if side == "left" else RIGHT_LEG)
+    chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_leg"].joints])
+    nothing = np.empty(0, np.int64)
+    return Arm(
+        side, chain, _samples(model, chain, np.flatnonzero(mine)[::3], model.colour),
+        _samples(model, chain, nothing, model.colour), np.flatnonzero(~mine),
+        np.zeros(int((~mine).sum()) + 1, np.bool_),
     )  # fmt: skip
 
 

@@ -75,3 +75,20 @@ class LimbSearchParams:
     hand_px: float = 1.0  # what a hand's pixel that is skin, or is not, counts beside a sleeve's
     hand_cost: float = 1.0  # the same beside the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
+
+
+@dataclass(frozen=True, slots=True)
+class LegSearchParams:
+    """When other poses of a leg are tried, and how many."""
+
+    uncertain: float = 0.6  # share of a leg's pixels confirmed, below which others are tried
+    cloud: int = 48  # tries about the present pose
+    library: int = 96  # tries over the range of legs, another part each frame
+    fits: int = 2  # of which so many are fitted
+    farther_px: float = 5.0  # how much more must speak for a pose that is farther away [px/rad^2]
+    empty: float = 0.5  # share of a leg's area before background that denies it
+    unusual_px: float = (
+        1.4  # what a pose costs that legs seldom have, by its squared Mahalanobis distance
+    )
+    unusual_cost: float = 1.0  # the same in the cost of a fit
+    gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

@@ -22,11 +22,11 @@ from mocapd.fit.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
-from mocapd.types import Floats
+from mocapd.types import Camera, Floats
 
 _LIBRARY = 2048
 _ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
-_PX = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
+PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
 
 
 def candidates(
@@ -45,23 +45,35 @@ def candidates(
     collar, upper, lower, hand = arm.chain
     present = state.local_xyzw[[collar, upper, lower]]
     out = [present]
-    a, b = joints[lower] - joints[upper], joints[hand] - joints[lower]
     for view in views:
         camera = fitter.drawings[view.index].camera
-        ray = joints[lower] + camera.R.T @ camera.t_m
-        ray = ray / np.linalg.norm(ray)
-        a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
-        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip)):
-            q_upper = rotations.multiply(_shortest(a, new_a), globals_[upper])
-            q_lower = rotations.multiply(_shortest(b, new_b), globals_[lower])
+        for q_upper, q_lower in mirrored_bones(joints, globals_, (upper, lower, hand), camera):
             local = present.copy()
             local[1] = rotations.multiply(rotations.inverse(globals_[collar]), q_upper)
             local[2] = rotations.multiply(rotations.inverse(q_upper), q_lower)
             out.append(local)
     turned = np.repeat(present[None], len(cloud), axis=0)
-    turned[:, 1] = rotations.multiply(rotations.exp(cloud[:, :3]), turned[:, 1])
-    turned[:, 2] = rotations.multiply(rotations.exp(cloud[:, 3:]), turned[:, 2])
+    turned[:, 1:] = turned_about(present[1:], cloud)
     return np.concatenate([np.array(out), turned, library])
+
+
+def mirrored_bones(
+    joints: Floats, globals_: Floats, limb: tuple[int, int, int], camera: Camera
+) -> list[tuple[Floats, Floats]]:
+    """Global rotations (4,) of the two bones between the joints of a limb, either or both mirrored in depth: they project
+    alike."""
+    upper, lower, end = limb
+    a, b = joints[lower] - joints[upper], joints[end] - joints[lower]
+    ray = joints[lower] + camera.R.T @ camera.t_m
+    ray = ray / np.linalg.norm(ray)
+    a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
+    return [
+        (
+            rotations.multiply(_shortest(a, new_a), globals_[upper]),
+            rotations.multiply(_shortest(b, new_b), globals_[lower]),
+        )
+        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip))
+    ]
 
 
 def _shortest(a: Floats, b: Floats) -> Floats:
@@ -91,18 +103,18 @@ def score_arm_poses(
     model = fitter.model
     body = fitter.shaper(state.factors)
     samples = placed(body, arm, arm.sleeve)
-    scores = -farther / _PX * _turned_rad2(hypotheses, hypotheses[0])
+    scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
     crowd_arms(
         hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.torso(body),
         fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
     )  # fmt: skip
-    scores -= fitter.params.collision_information / _PX * depths_m2
+    scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
     for view in views:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
-        _score(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, scores)
-    seen_px: Floats = _PX * scores
+        score_in_view(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, scores)
+    seen_px: Floats = PX_OF_M2 * scores
     return seen_px
 
 
@@ -124,12 +136,12 @@ def score_hand_places(
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
         drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
         seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
-        _score(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
-    seen_px: Floats = _PX * scores
+        score_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
+    seen_px: Floats = PX_OF_M2 * scores
     return seen_px
 
 
-def _score(
+def score_in_view(
     fitter: Fitter,
     view: View,
     base: PartialRender,
@@ -150,26 +162,35 @@ def _score(
     )  # fmt: skip
 
 
-def best_arm_poses(hypotheses: Floats, scores: Floats, keep: int) -> list[int]:
-    """Places of the `keep` best hypotheses (N,3,4), best first, no two alike; none below the first, the present pose."""
+def best_poses(bones_xyzw: Floats, scores: Floats, keep: int) -> list[int]:
+    """Places of the `keep` best poses of a limb's two long bones (N,2,4), best first, no two alike; none below the first, the
+    present pose."""
     out: list[int] = []
     for n in np.argsort(-scores, kind="stable").tolist():
         if n == 0 or len(out) == keep:
             break
         # a hypothesis close to one already kept would end where that one ends
-        if not any(_is_alike(hypotheses[n], hypotheses[kept]) for kept in out):
+        if not any(_is_alike(bones_xyzw[n], bones_xyzw[kept]) for kept in out):
             out.append(n)
     return out
 
 
 def _is_alike(a_xyzw: Floats, b_xyzw: Floats) -> bool:
-    return bool(np.abs((a_xyzw[1:] * b_xyzw[1:]).sum(axis=1)).min() > _ALIKE)
+    return bool(np.abs((a_xyzw * b_xyzw).sum(axis=1)).min() > _ALIKE)
 
 
-def _turned_rad2(poses_xyzw: Floats, from_xyzw: Floats) -> Floats:
-    """By how much upper arm and forearm differ: squared angles (N,), of poses (N,3,4) from one (3,4) [rad^2]."""
-    cosines = np.abs((poses_xyzw[:, 1:] * from_xyzw[1:]).sum(axis=2))
+def turned_rad2(bones_xyzw: Floats, from_xyzw: Floats) -> Floats:
+    """By how much a limb's two long bones differ: squared angles (N,), of poses (N,2,4) from one (2,4) [rad^2]."""
+    cosines = np.abs((bones_xyzw * from_xyzw).sum(axis=2))
     turned: Floats = ((2.0 * np.arccos(np.minimum(cosines, 1.0))) ** 2).sum(axis=1)
+    return turned
+
+
+def turned_about(bones_xyzw: Floats, cloud: Floats) -> Floats:
+    """Poses (C,2,4) of a limb's two long bones (2,4), turned by the rotation vectors of a cloud (C,6)."""
+    turned = np.repeat(bones_xyzw[None], len(cloud), axis=0)
+    turned[:, 0] = rotations.multiply(rotations.exp(cloud[:, :3]), turned[:, 0])
+    turned[:, 1] = rotations.multiply(rotations.exp(cloud[:, 3:]), turned[:, 1])
     return turned
 
 
@@ -177,7 +198,7 @@ def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
     """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
     limits = space.limits
     upper, fore = space.group(side + "UpperArm"), space.group(side + "LowerArm")
-    u = _halton(size)
+    u = spread(size)
     out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
     for place, group, span in ((1, upper, slice(0, 3)), (2, fore, slice(3, 6))):
         low, high = limits.lower_rad[group], limits.upper_rad[group]
@@ -193,7 +214,7 @@ class ArmSearch:
         self.fitter, self.params = fitter, params
         self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
         self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
-        u = _halton(_LIBRARY)
+        u = spread(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
         self._usual = arm_motions()
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
@@ -230,7 +251,7 @@ class ArmSearch:
                 continue
             tries = candidates(
                 self.fitter, fit.state, arm, views,
-                _part(self._cloud, turn, p.arm_cloud), _part(self._library[side], turn, p.arm_library),
+                part(self._cloud, turn, p.arm_cloud), part(self._library[side], turn, p.arm_library),
             )  # fmt: skip
             scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px, empty)
             scores -= p.unusual_px * unusualness(tries, self._usual[side])
@@ -240,7 +261,7 @@ class ArmSearch:
             here = tries[0]
             seen_px = self._hand_px(arm, fit, views, empty)
             best, least = fit, fit.cost + self._price(side, here, here) - seen_px - p.arm_gain
-            for n in best_arm_poses(tries, scores, p.arm_fits):
+            for n in best_poses(tries[:, 1:], scores, p.arm_fits):
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
                 state = replace(fit.state, local_xyzw=local)
@@ -267,8 +288,8 @@ class ArmSearch:
         """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""
         p = self.params
         unusual = float(unusualness(there_xyzw[None], self._usual[side])[0])
-        turned_rad2 = float(_turned_rad2(there_xyzw[None], here_xyzw)[0])
-        return p.unusual_cost * unusual + p.farther_px * turned_rad2
+        away_rad2 = float(turned_rad2(there_xyzw[None, 1:], here_xyzw[1:])[0])
+        return p.unusual_cost * unusual + p.farther_px * away_rad2
 
 
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
@@ -276,12 +297,13 @@ def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
     return fit.confirmed_arms[side] < params.uncertain_arm
 
 
-def _part(rows: Floats, turn: int, size: int) -> Floats:
+def part(rows: Floats, turn: int, size: int) -> Floats:
+    """As many of the rows (N,...), others each turn."""
     first = (turn * size) % len(rows)
     return rows[first : first + size]
 
 
-def _halton(size: int) -> Floats:
+def spread(size: int) -> Floats:
     """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960)."""
     out = np.zeros((size, 6))
     for column, base in enumerate((2, 3, 5, 7, 11, 13)):

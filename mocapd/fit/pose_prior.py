@@ -35,7 +35,7 @@ _LEG_SD_RAD = {
     "LowerLeg": (0.55, 0.05, 0.1),
     "Foot": (0.35, 0.25, 0.2),
 }
-_WHOLE_SPINE_SD_RAD = (0.42, 0.17, 0.14)
+_WHOLE_SPINE_SD_RAD = (0.3, 0.08, 0.14)
 _NECK_REST_RAD, _NECK_SD_RAD = (0.25, 0.0, 0.0), (0.35, 0.45, 0.2)
 
 
@@ -92,15 +92,30 @@ def _hold_whole(model: BodyModel, rest: Floats, information: Floats) -> None:
             rest[INDEX[side + bone]] = rotations.exp(np.array([x, mirror * y, mirror * z]))
 
 
+def usual_leg(side: str) -> Floats:
+    """Local rotations (3,4) of thigh, shank and foot where they usually are."""
+    mirror = 1.0 if side == "left" else -1.0
+    return np.array([
+        rotations.exp(np.array([x, mirror * y, mirror * z])) for x, y, z in _LEG_REST_RAD.values()
+    ])  # fmt: skip
+
+
+def unusual_leg(poses_xyzw: Floats, side: str) -> Floats:
+    """Squared Mahalanobis distances (N,) of poses (N,3,4) of thigh, shank and foot from where they usually are."""
+    turned = rotations.log(rotations.multiply(poses_xyzw, rotations.inverse(usual_leg(side))))
+    squared = (turned / np.array(list(_LEG_SD_RAD.values()))) ** 2
+    out: Floats = squared.reshape(len(poses_xyzw), -1).sum(axis=1)
+    return out
+
+
 def unusual_legs(local_xyzw: Floats) -> float:
     """Squared Mahalanobis distance of both legs of a pose (J,4) from where they usually are."""
-    total = 0.0
-    for side, mirror in (("left", 1.0), ("right", -1.0)):
-        for bone, (x, y, z) in _LEG_REST_RAD.items():
-            rest = rotations.exp(np.array([x, mirror * y, mirror * z]))
-            turned = rotations.multiply(local_xyzw[INDEX[side + bone]], rotations.inverse(rest))
-            total += float(np.sum((rotations.log(turned) / np.array(_LEG_SD_RAD[bone])) ** 2))
-    return total
+    return sum(
+        float(
+            unusual_leg(local_xyzw[None, [INDEX[side + bone] for bone in _LEG_REST_RAD]], side)[0]
+        )
+        for side in ("left", "right")
+    )
 
 
 def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:

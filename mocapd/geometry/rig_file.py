@@ -7,9 +7,11 @@ import numpy as np
 
 from mocapd.boundary.files import read_text
 from mocapd.boundary.messages import parse_json
-from mocapd.errors import ConfigError, MalformedError
+from mocapd.boundary.numbers import brief
+from mocapd.errors import ConfigError, MalformedError, NewerFileError
 from mocapd.types import Camera, Floats, Rig
 
+SCHEMA = "mocapd.Rig.v1"  # what says none, as the capture format, is of this one too
 _RECALIBRATE = "calibrate again, or restore the file"
 _MOST_BYTES = 16 << 20
 _LARGEST_PX = 16_384  # of a picture's side
@@ -73,6 +75,13 @@ def read_json(path: Path) -> Any:
 def load_rig(path: Path) -> Rig:
     """Read a rig file. Raises InputError or ConfigError, naming file, camera and field."""
     data = read_json(path)
+    schema = data.get("schema", SCHEMA) if isinstance(data, dict) else SCHEMA
+    if schema != SCHEMA:
+        raise NewerFileError(
+            f"is a rig of the schema {brief(schema)}, this mocapd reads {SCHEMA}",
+            str(path),
+            "use the mocapd that wrote it, or calibrate again",
+        )
     entries = data.get("cameras") if isinstance(data, dict) else None
     if not isinstance(entries, list) or not entries:
         raise ConfigError("the field 'cameras' is missing or empty", str(path), _RECALIBRATE)

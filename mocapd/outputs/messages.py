@@ -41,6 +41,9 @@ class Health(msgspec.Struct, frozen=True):
     frame_sets: Annotated[int, Meta(description="frame sets tracked since the start")]
     dropped: Annotated[int, Meta(description="frame sets displaced by newer ones since the start")]
     outputs: Annotated[tuple[OutputHealth, ...], Meta(description="every open output")] = ()
+    detail: Annotated[
+        str, Meta(description="one line for people: what is wrong with it as a whole; mostly empty")
+    ] = ""
     schema: Annotated[str, Meta(description=f"always `{HEALTH}`")] = HEALTH
 
 
@@ -52,7 +55,12 @@ class CameraStatus(msgspec.Struct, frozen=True):
     state: Annotated[
         str, Meta(description="`live`, `starting`, `lost` (being reopened) or `ended`")
     ]
-    detail: Annotated[str, Meta(description="one line for people: why it is not live")]
+    detail: Annotated[
+        str,
+        Meta(
+            description="one line for people: why it is not live, or what is wrong with its pictures or its port"
+        ),
+    ]
     source: Annotated[str, Meta(description="device node, path or URL it is read from")]
     identity: Annotated[
         str, Meta(description="USB port path, vid:pid and serial; empty: no webcam")
@@ -65,7 +73,8 @@ class CameraStatus(msgspec.Struct, frozen=True):
     mounting: Annotated[
         str,
         Meta(
-            description="`steady`; `bumped`: turned since the start, calibrate the room again; or `unknown`"
+            description="`steady`; `bumped`: turned since the start, calibrate the room again; `swapped`: shows what "
+            "another camera should; or `unknown`"
         ),
     ] = "unknown"
     schema: Annotated[str, Meta(description=f"always `{CAMERA_STATUS}`")] = CAMERA_STATUS

@@ -48,6 +48,7 @@ class PipelineLoop:
         self._on_death = on_death
         self._absence = absence
         self._stopping = threading.Event()
+        self._began_ns: int | None = None  # the step that runs
         self._recorder = MetricsRecorder()
         # A daemon thread: a kernel that hangs must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
@@ -67,6 +68,12 @@ class PipelineLoop:
         if self._thread.ident is not None:
             self._thread.join(timeout_s)
         return not self._thread.is_alive()
+
+    @property
+    def step_s(self) -> float:
+        """How long the step that runs has taken so far [s]; 0 between steps. From any thread."""
+        began_ns = self._began_ns
+        return 0.0 if began_ns is None else seconds(monotonic_ns() - began_ns)
 
     def metrics(self) -> Metrics:
         """A snapshot, at any time from any thread."""
@@ -91,11 +98,12 @@ class PipelineLoop:
                 self._none(self._absence)
             if self._collector.idle:
                 garbage.idle(monotonic_ns())
+            self._recorder.turned()
 
     def _one(self, frames: FrameSet) -> None:
-        start_ns = monotonic_ns()
+        self._began_ns = start_ns = monotonic_ns()
         track = self._tracker.step(frames, self._shape)
-        step_ns = monotonic_ns() - start_ns
+        step_ns, self._began_ns = monotonic_ns() - start_ns, None
         if track.shape is not self._shape:
             self._shape = track.shape
             self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)

@@ -1,11 +1,12 @@
 """How the pipeline does, for the status line and the health message."""
 
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mocapd.clock import NS_PER_S
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
+from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
 from mocapd.types import BodyState, FrameSet, Tracking
 
@@ -26,7 +27,9 @@ class Metrics:
     rate_hz: bodies of frames published per second over the last 2 s; latency_ms: capture (the set's
     `t_ns`) to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
-    was busy; tracking: as told last, also by the clock while no frames come.
+    was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
+    since the start; turns: how often the pipeline's thread
+    has come round, with frames or without.
     """
 
     rate_hz: float
@@ -39,6 +42,8 @@ class Metrics:
     tracking: Tracking
     tracker: str
     cameras: dict[str, CameraMetrics]
+    latency_counts: LatencyCounts = field(default_factory=LatencyCounts)
+    turns: int = 0
 
 
 class MetricsRecorder:
@@ -48,9 +53,11 @@ class MetricsRecorder:
         self._lock = threading.Lock()
         self._rate = RollingRate()
         self._latency_ms = RollingPercentiles()
+        self._latencies = LatencyHistogram()
         self._step_ms = RollingPercentiles()
         self._spread_ms = RollingPercentiles()
         self._published = 0
+        self._turns = 0
         self._tracking = Tracking.LOST
         self._tracker = ""
 
@@ -59,7 +66,9 @@ class MetricsRecorder:
         per_ms = NS_PER_S // 1000
         with self._lock:
             self._rate.add(now_ns)
-            self._latency_ms.add((now_ns - frames.t_ns) / per_ms)
+            latency_ms = (now_ns - frames.t_ns) / per_ms
+            self._latency_ms.add(latency_ms)
+            self._latencies.add(latency_ms)
             self._step_ms.add(step_ns / per_ms)
             self._spread_ms.add(frames.spread_ns / per_ms)
             self._published += 1
@@ -70,13 +79,19 @@ class MetricsRecorder:
         with self._lock:
             self._tracking = body.tracking
 
+    def turned(self) -> None:
+        """The pipeline's thread has come round."""
+        with self._lock:
+            self._turns += 1
+
     def snapshot(self, collected: CollectorCounts, now_ns: int) -> Metrics:
         """The figures now, with the collector's counts."""
         with self._lock:
             rate_hz = self._rate.rate_hz(now_ns)
             latency, step = self._latency_ms.samples(), self._step_ms.samples()
             spread, published = self._spread_ms.samples(), self._published
-            tracking, tracker = self._tracking, self._tracker
+            tracking, tracker, turns = self._tracking, self._tracker, self._turns
+            latencies = self._latencies.counts()
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -91,4 +106,6 @@ class MetricsRecorder:
                 name: CameraMetrics(collected.rates_hz[name], collected.delays_ms[name], counts)
                 for name, counts in collected.cameras.items()
             },
+            latency_counts=latencies,
+            turns=turns,
         )

@@ -5,7 +5,7 @@ import os
 
 import mocapd
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
@@ -26,6 +26,7 @@ def health_message(
     now_unix_ns: int,
     metrics: Metrics,
     outputs: dict[str, SinkStatus],
+    detail: str = "",
 ) -> Health:
     """How the daemon fares; figures that nobody measured yet are 0."""
     return Health(
@@ -45,6 +46,7 @@ def health_message(
             OutputHealth(name, s.sent, s.refused, s.listeners, s.detail)
             for name, s in outputs.items()
         ),
+        detail=detail,
     )
 
 

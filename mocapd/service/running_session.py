@@ -1,11 +1,16 @@
 """The part of a service that can be replaced: the threads of one session's cameras and of its pipeline."""
 
+import logging
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.thread import CaptureState, CaptureStatus, CaptureThread
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.suspension import SuspensionWatch
+from mocapd.capture.thread import CaptureThread
+from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.config.sections import Config
 from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.body_hub import BodyHub
@@ -16,8 +21,13 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.service.mountings import Mountings
+from mocapd.service.room_memory import RoomMemory
+from mocapd.service.step_watch import StepWatch
+from mocapd.service.twins import Twins
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
+
+_log = logging.getLogger(__name__)
 
 STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
 
@@ -41,12 +51,25 @@ class RunningSession:
         collector = FrameCollector(self.inputs, bundler)
         sizes_px = {name: c.size_px for name, c in self.inputs.items() if any(c.size_px)}
         guard = SizeGuard(sizes_px, collector)
+        sources = [camera.source for camera in session.cameras]
+        self._twins = Twins(sources, session.rig, guard, RoomMemory(config.state_dir))
         # who looks at the pictures joins it
-        self.hub = FrameHub(self.inputs, guard, bundler=bundler)
+        self.hub = FrameHub(self.inputs, self._twins, bundler=bundler)
         self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
-            CaptureThread(c.source, self.hub, died, c.expected_hz) for c in session.cameras
+            CaptureThread(
+                c.source,
+                self.hub,
+                died,
+                c.expected_hz,
+                size_px=c.size_px if any(c.size_px) else None,
+                presence=self._twins,
+            )
+            for c in session.cameras
         ]
+        self._plugs = PlugEvents(self._look_again)
+        self._suspension = SuspensionWatch()
+        self._steps = StepWatch(config.tracker.stuck_s)
         smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
         self._loop = PipelineLoop(
             collector,
@@ -61,11 +84,13 @@ class RunningSession:
     def start(self) -> None:
         """Begin; returns at once."""
         self._loop.start()
+        self._plugs.start()
         for capture in self._captures:
             capture.start()
 
     def stop(self) -> None:
         """First everything lets go, then everything ends, within STOP_S."""
+        self._plugs.stop()
         self._loop.let_go()
         for capture in self._captures:
             capture.let_go()
@@ -74,6 +99,10 @@ class RunningSession:
         for capture in self._captures:
             capture.stop(max(0.0, until_s - time.monotonic()))
 
+    def _look_again(self) -> None:
+        for capture in self._captures:
+            capture.look_again()
+
     @property
     def over(self) -> bool:
         """Whether every recording has ended."""
@@ -81,7 +110,13 @@ class RunningSession:
 
     def statuses(self) -> dict[str, CaptureStatus]:
         """How each camera fares, by id."""
-        return {status.camera: status for status in (c.status() for c in self._captures)}
+        return {
+            status.camera: self._noticed(status) for status in (c.status() for c in self._captures)
+        }
+
+    def _noticed(self, status: CaptureStatus) -> CaptureStatus:
+        notice = self._twins.notice(status.camera)
+        return replace(status, notice=notice) if notice else status
 
     def metrics(self) -> Metrics:
         """How the pipeline does."""
@@ -91,9 +126,27 @@ class RunningSession:
         """How each camera is mounted, as last seen."""
         return {name: self._mountings.of(name) for name in self.inputs}
 
+    @property
+    def detail(self) -> str:
+        """What people should know of the pipeline; empty when all is well."""
+        return self._steps.detail
+
     def look(self) -> None:
-        """After the cameras' mountings, about once a second, by one thread."""
+        """After the cameras' mountings, and twins among them, about once a second, by one thread."""
         self._mountings.look()
+        self._twins.look()
+
+    def watch(self) -> None:
+        """What hangs or has slept is set right; about once a second or more often, by one thread. Raises
+        StuckStepError."""
+        self._steps.look(self._loop.step_s)
+        slept_s = self._suspension.slept_s()
+        if slept_s:
+            _log.info("the machine has slept for %.0f s: every camera is opened again", slept_s)
+        for capture in self._captures:
+            if slept_s:
+                capture.renew(f"the machine has slept for {slept_s:.0f} s")
+            capture.watch()
 
 
 def _absence(config: Config, session: Session) -> Absence | None:

@@ -3,25 +3,23 @@
 import threading
 import time
 from collections.abc import Mapping
-from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.thread import CaptureStatus
+from mocapd.capture.capture_status import CaptureStatus
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.from_rig import calibration_info
-from mocapd.outputs.instance import instance_name
-from mocapd.outputs.messages import CalibrationInfo, Facing
-from mocapd.outputs.registry import build_sinks
+from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Facing
 from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.metrics import Metrics
 from mocapd.service.health import camera_message, gone_message, health_message
+from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.publisher import Publisher
 from mocapd.service.running_session import RunningSession
 from mocapd.session.session import Session
@@ -49,25 +47,25 @@ class Service:
     everything else by the owner.
     """
 
-    def __init__(self, config: Config, session: Session) -> None:
-        self.instance = instance_name(config.instance)
-        self._sinks = build_sinks(config.outputs, self.instance)
+    def __init__(
+        self, config: Config, session: Session, outputs: OpenOutputs | None = None
+    ) -> None:
+        """outputs: those of this configuration where they are open already; closed with the service."""
+        self._outputs = OpenOutputs(config) if outputs is None else outputs
+        self.instance = self._outputs.instance
+        self._sinks = self._outputs.sinks
         self._publisher = Publisher(self._sinks, self.instance)
         self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
         self._running = RunningSession(config, session, self.bodies, self.died)
         self._earlier: Metrics | None = None  # of all sessions before
         self._ended = threading.Event()
         self._death: BaseException | None = None
-        self._opened = ExitStack()
         self._started_unix_ns = 0
+        self._told: dict[str, tuple[object, ...]] = {}  # the cameras' troubles
 
     def __enter__(self) -> "Service":
         """Open the outputs, then start the threads. Raises what opening an output raises."""
-        with ExitStack() as opened:
-            for sink in self._sinks:
-                opened.callback(sink.close)
-                sink.open()
-            self._opened = opened.pop_all()
+        self._outputs.open()
         self._started_unix_ns = time.time_ns()
         if self.session.rig:
             self._tell_calibration()
@@ -77,7 +75,7 @@ class Service:
     def __exit__(self, *_: object) -> None:
         """First everything lets go, then everything closes."""
         self._running.stop()
-        self._opened.close()
+        self._outputs.close()
 
     def replace(self, config: Config, session: Session) -> None:
         """Go on with this session, on the same outputs: frames are numbered on, and state is told anew.
@@ -131,7 +129,14 @@ class Service:
 
     def snapshot(self) -> Snapshot:
         """How everything fares now; what is counted is counted since the start of the service."""
-        running = self._running
+        return self._snapshot_of(self._running)
+
+    @property
+    def uptime_s(self) -> float:
+        """Since its outputs were opened [s]."""
+        return self._outputs.uptime_s
+
+    def _snapshot_of(self, running: RunningSession) -> Snapshot:
         return Snapshot(
             _added(running.metrics(), self._earlier),
             running.statuses(),
@@ -162,11 +167,20 @@ class Service:
             raise ThreadDiedError from self._death
         return ended or self._running.over
 
+    def watch(self) -> None:
+        """Look after what may hang: call it several times a second. Raises StuckStepError."""
+        self._running.watch()
+
     # -- state for the outputs -------------------------------------------------------------------
+
+    def has_news(self, snapshot: Snapshot) -> bool:
+        """Whether something has happened to a camera that was not told yet."""
+        return _troubles(snapshot) != self._told
 
     def tell(self, snapshot: Snapshot) -> None:
         """Look after the cameras, then health and camera status to the outputs; call it about once a second."""
         running = self._running
+        self._told = _troubles(snapshot)
         running.look()
         self._publisher.tell(
             health_message(
@@ -175,18 +189,30 @@ class Service:
                 time.time_ns(),
                 snapshot.metrics,
                 snapshot.outputs,
+                running.detail,
             )
         )
-        for name, status in snapshot.cameras.items():
-            self._publisher.tell(
-                camera_message(
-                    self.instance,
-                    running.inputs[name],
-                    status,
-                    snapshot.metrics.cameras[name],
-                    snapshot.mountings[name],
-                )
+        for message in self._camera_messages(running, snapshot):
+            self._publisher.tell(message)
+
+    def camera_messages(self) -> tuple[CameraStatus, ...]:
+        """How each camera of the session that runs fares now."""
+        running = self._running
+        return self._camera_messages(running, self._snapshot_of(running))
+
+    def _camera_messages(
+        self, running: RunningSession, snapshot: Snapshot
+    ) -> tuple[CameraStatus, ...]:
+        return tuple(
+            camera_message(
+                self.instance,
+                running.inputs[name],
+                status,
+                snapshot.metrics.cameras[name],
+                snapshot.mountings[name],
             )
+            for name, status in snapshot.cameras.items()
+        )
 
     def recenter(self) -> Facing:
         """The way the person faces is forward from now on: for the outputs that turn it so. Raises
@@ -201,6 +227,14 @@ class Service:
             if session.rig
             else CalibrationInfo(instance, "", ())
         )
+
+
+def _troubles(snapshot: Snapshot) -> dict[str, tuple[object, ...]]:
+    """What of the cameras' states is news when it changes."""
+    return {
+        name: (one.state, one.is_silent, one.reason, one.notice)
+        for name, one in snapshot.cameras.items()
+    }
 
 
 def _is_same_world(before: Rig | None, after: Rig | None) -> bool:
@@ -225,4 +259,5 @@ def _added(metrics: Metrics, earlier: Metrics | None) -> Metrics:
         published=metrics.published + earlier.published,
         sets_made=metrics.sets_made + earlier.sets_made,
         sets_dropped=metrics.sets_dropped + earlier.sets_dropped,
+        latency_counts=metrics.latency_counts + earlier.latency_counts,
     )

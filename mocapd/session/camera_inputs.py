@@ -6,7 +6,14 @@ from dataclasses import dataclass, field, replace
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
-from mocapd.capture.kinds.source_kinds import identities_of, identity_of, is_settable, open_source
+from mocapd.capture.kinds.source_kinds import (
+    identities_of,
+    identity_of,
+    is_settable,
+    is_simulated,
+    open_source,
+    origin_of,
+)
 from mocapd.capture.origin import Origin
 from mocapd.capture.pace import Pace
 from mocapd.capture.source_request import SourceRequest
@@ -43,10 +50,13 @@ class CameraInput:
 
 
 def camera_inputs(
-    cameras: Sequence[CameraSection], rig: Rig | None, origin: Origin | None = None
+    cameras: Sequence[CameraSection],
+    rig: Rig | None,
+    origin: Origin | None = None,
+    usual_px: tuple[int, int] = WebcamSettings().size_px,
 ) -> tuple[CameraInput, ...]:
-    """Sources for these cameras, checked but not opened; origin: of all of them. Raises ConfigError or
-    InputError."""
+    """Sources for these cameras, checked but not opened; origin: of all of them; usual_px: asked of a webcam that
+    the rig has not. Raises ConfigError or InputError."""
     sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
     identities = identities_of((camera.id, camera.source) for camera in cameras)
     pace = Pace(live=True)  # recordings start together and keep their own time
@@ -54,7 +64,7 @@ def camera_inputs(
     for camera in in_rig_order(cameras, rig):
         size_px = sizes.get(camera.id)
         settings = WebcamSettings(
-            size_px=size_px or WebcamSettings().size_px,
+            size_px=size_px or usual_px,
             fps_hz=camera.fps_hz,
             controls=camera.controls,
         )
@@ -66,6 +76,20 @@ def camera_inputs(
         expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
+
+
+def common_origin(cameras: Sequence[CameraSection]) -> str:
+    """The one capture folder or scenario that all cameras are of; empty when there is none. Raises
+    ConfigError for simulated cameras among others."""
+    origins = {origin_of(one.source) for one in cameras}
+    simulated = any(is_simulated(camera.source) for camera in cameras)
+    if simulated and (len(origins) > 1 or origins == {""}):
+        raise ConfigError(
+            "simulated cameras must all be of one scenario",
+            "camera",
+            "write source = sim:SCENARIO#CAMERA for each",
+        )
+    return origins.pop() if len(origins) == 1 else ""
 
 
 def bundler_params(config: Config) -> BundlerParams:

@@ -4,6 +4,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,13 @@ from numpy.typing import NDArray
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
-from mocapd.errors import CannotCreateError
-from mocapd.trackers.base import Tracker
+from mocapd.errors import CannotCreateError, ConfigError
+from mocapd.trackers.base import RoomLearner, Tracker
 from mocapd.types import Floats, FrameSet
 from mocapd.whole_file import whole_file
+
+SCHEMA = "mocapd.Track.v1"
+_ROOM_LOOKS = 60  # pictures of each camera from which a room is learned: they are kept meanwhile
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +41,16 @@ class RecordedTrack:
     def __post_init__(self) -> None:
         if self.uncertainty_m.size == 0:
             object.__setattr__(self, "uncertainty_m", np.full(self.confidence.shape, np.inf))
+
+
+def learn_room(tracker: Tracker, frames: Iterable[FrameSet], count: int) -> None:
+    """Let a tracker learn the empty room from some of the frame sets of a recording, of which there are about `count`. Raises
+    ConfigError when it learns none."""
+    if not isinstance(tracker, RoomLearner):
+        raise ConfigError(
+            f"the tracker {tracker.name!r} learns no room", "--room", "leave it out, or add --tracker flex"
+        )  # fmt: skip
+    tracker.learn_room(islice(frames, None, None, max(1, -(-count // _ROOM_LOOKS))))
 
 
 def track_all(
@@ -91,6 +105,7 @@ def write_track(path: Path, track: RecordedTrack) -> None:
         with whole_file(path) as partial, partial.open("wb") as file:
             np.savez_compressed(
                 file,
+                schema=np.array(SCHEMA),
                 times=track.times_s,
                 joint_names=np.array(track.joint_names),
                 joints=track.joints_m,

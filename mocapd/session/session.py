@@ -6,6 +6,7 @@ folder, or all of one simulated scenario. What the configuration gives itself wi
 
 import logging
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 from functools import partial
 
 from mocapd.body.shape import BodyShape
@@ -13,16 +14,20 @@ from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.record import Calibration
 from mocapd.capture.kinds.source_kinds import (
     cameras_of_origin,
-    is_simulated,
     open_origin,
-    origin_of,
 )
 from mocapd.capture.origin import camera_address
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.camera_inputs import CameraInput, camera_inputs, picture_size
+from mocapd.session.camera_inputs import (
+    CameraInput,
+    camera_inputs,
+    common_origin,
+    in_rig_order,
+    picture_size,
+)
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.saved_session import (
     LoadedCalibration,
@@ -31,7 +36,7 @@ from mocapd.session.saved_session import (
 )
 from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
 from mocapd.trackers.base import Tracker
-from mocapd.trackers.registry import entry
+from mocapd.trackers.registry import entry, require_known
 from mocapd.types import Rig
 
 _log = logging.getLogger(__name__)
@@ -40,7 +45,7 @@ _log = logging.getLogger(__name__)
 @dataclass(frozen=True, slots=True, eq=False)
 class Session:
     """rig_source: the file or scenario that the rig is from, for people; shape: the wearer's, for the tracker's
-    first step; known: what the tracker was built with."""
+    first step; known: what the tracker was built with; calibrated: when, where a saved calibration says so (UTC)."""
 
     cameras: tuple[CameraInput, ...]
     rig: Rig | None
@@ -48,6 +53,7 @@ class Session:
     tracker: Tracker
     shape: BodyShape
     known: Calibration = field(default_factory=Calibration)
+    calibrated: datetime | None = None
 
 
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
@@ -57,9 +63,32 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     )
 
 
-def open_session(config: Config, progress: Progress) -> Session:
-    """Check and prepare everything; `progress` is told while something long is made for the first
-    time. Raises ConfigError, InputError or CannotCreateError."""
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionPlan:
+    """What a configuration comes to before anything is opened or made. config: with the cameras that are meant;
+    origin: of all of them, empty when there is none; rig, rig_source: where given; saved: the calibration, if any;
+    known: from both."""
+
+    config: Config
+    origin: str
+    rig: Rig | None
+    rig_source: str
+    saved: LoadedCalibration | None
+    known: Calibration
+
+    @property
+    def assumes_rig(self) -> bool:
+        """Whether there is one camera, and nobody says where."""
+        return (
+            self.rig is None
+            and not self.origin
+            and len(self.config.camera) == 1
+            and entry(self.config.tracker.name).sees
+        )
+
+
+def plan_session(config: Config) -> SessionPlan:
+    """Check what can be checked at once. Raises ConfigError or InputError."""
     saved = configured_calibration(config)
     cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
     if not cameras:
@@ -70,18 +99,36 @@ def open_session(config: Config, progress: Progress) -> Session:
             "--camera ID=SOURCE",
         )
     config = replace(config, camera=cameras)
-    origin = _common_origin(cameras)
+    origin = common_origin(cameras)
     rig, rig_source = _given_rig(config, saved)
-    if rig is None and not origin and len(cameras) == 1 and entry(config.tracker.name).sees:
+    in_rig_order(cameras, rig)
+    plan = SessionPlan(config, origin, rig, rig_source, saved, _known(config, rig, saved))
+    if not origin and not plan.assumes_rig:
+        require_known(config.tracker.name, plan.known)
+    return plan
+
+
+def open_session(config: Config, progress: Progress) -> Session:
+    """Check and prepare everything; `progress` is told while something long is made for the first
+    time. Raises ConfigError, InputError or CannotCreateError."""
+    return open_planned(plan_session(config), progress)
+
+
+def open_planned(plan: SessionPlan, progress: Progress) -> Session:
+    """The rest of `open_session`."""
+    config, cameras, origin, saved = plan.config, plan.config.camera, plan.origin, plan.saved
+    rig, rig_source, known = plan.rig, plan.rig_source, plan.known
+    if plan.assumes_rig:
         rig, rig_source = _assumed_rig(cameras[0]), "assumed"
-    known = _known(config, rig, saved)
+        known = replace(known, rig=rig)
     opened = open_origin(origin, config.cache_dir, progress) if origin else None
     if opened is not None and saved is None:
         known = from_origin(opened).overlaid(known)
         rig, rig_source = (rig, rig_source) if rig else (opened.rig, opened.rig_source)
     inputs = camera_inputs(cameras, rig, opened)
     ready = _ready_tracker(config, known, progress)
-    return Session(inputs, rig, rig_source, ready.tracker, ready.shape, known)
+    made = saved.tables.made.when if saved is not None else None
+    return Session(inputs, rig, rig_source, ready.tracker, ready.shape, known, made)
 
 
 def _given_rig(config: Config, saved: LoadedCalibration | None) -> tuple[Rig | None, str]:
@@ -117,16 +164,3 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Re
         cached(config.cache_dir, progress, own, own.sections),
         partial(progress, "preparing the tracker"),
     )
-
-
-def _common_origin(cameras: tuple[CameraSection, ...]) -> str:
-    """The one capture folder or scenario that all cameras are of; empty when there is none."""
-    origins = {origin_of(one.source) for one in cameras}
-    simulated = any(is_simulated(camera.source) for camera in cameras)
-    if simulated and (len(origins) > 1 or origins == {""}):
-        raise ConfigError(
-            "simulated cameras must all be of one scenario",
-            "camera",
-            "write source = sim:SCENARIO#CAMERA for each",
-        )
-    return origins.pop() if len(origins) == 1 else ""

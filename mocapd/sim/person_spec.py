@@ -125,9 +125,21 @@ class Clothes(Table, frozen=True, kw_only=True):
     events: tuple[ClothesEvent, ...] = ()
 
 
+class Screen(Table, frozen=True, kw_only=True):
+    """A television: the middle of its lower edge, its height, how much height of a scene it shows [m], and which way it
+    faces, 0 +Z."""
+
+    base_m: Vec3
+    height_m: Positive
+    shows_m: Positive = 2.0
+    yaw_deg: Number = 0.0
+
+
 class Bystander(Table, frozen=True, kw_only=True):
-    """Somebody else who is in the picture and not tracked; throws no shadow."""
+    """Somebody else who is in the picture and not tracked; throws no shadow. screen: on which they are shown, instead of
+    being in the room."""
 
     body: BodySpec = BodySpec()
     motion: MotionSpec
     clothes: Clothes = Clothes(shirt="plain")
+    screen: Screen | None = None

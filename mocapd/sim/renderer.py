@@ -113,7 +113,7 @@ class CameraRenderer:
 
     def _bodies(self, there: tuple[int, ...], t_s: float) -> list[Body]:
         worlds = (self._world, *self._world.others)
-        return [Body(worlds[i].pose(t_s), worlds[i].jacket(t_s)) for i in there]
+        return [Body(worlds[i].pose(t_s), worlds[i].jacket(t_s), worlds[i].screen) for i in there]
 
     def _group(self, there: tuple[int, ...]) -> Group:
         if there not in self._groups:

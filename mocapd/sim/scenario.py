@@ -23,6 +23,7 @@ from mocapd.sim.person_spec import (
     MotionSpec,
     Oscillation,
     PoseKeyframe,
+    Screen,
     Weave,
 )
 from mocapd.sim.scenario_values import (
@@ -205,6 +206,7 @@ def _all_keys() -> list[str]:
         ClothesEvent,
         Clothes,
         Bystander,
+        Screen,
         Span,
         LightEvent,
         Light,

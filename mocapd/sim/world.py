@@ -10,6 +10,7 @@ from mocapd.body.shape import FACTORS, WHOLE_FACTORS, BodyShape, skeleton_of
 from mocapd.body.skeleton import joint_positions
 from mocapd.geometry import rotations
 from mocapd.sim.person.motion import Motion, compile_motion, pose_at
+from mocapd.sim.person_spec import Screen
 from mocapd.sim.scenario import CameraSpec, Light, Scenario
 from mocapd.sim.scenario_values import within
 from mocapd.types import Camera, Floats, Pose, Rig, Skeleton
@@ -34,13 +35,22 @@ class WorldState:
 class World:
     """Everything that moves in a scenario. Holds no state: `at` of one time is always the same."""
 
-    def __init__(self, scenario: Scenario, performed: Performed | None = None) -> None:
-        """performed: what the person does in place of the scenario's motion."""
+    def __init__(
+        self,
+        scenario: Scenario,
+        performed: Performed | None = None,
+        screen: Screen | None = None,
+    ) -> None:
+        """performed: what the person does in place of the scenario's motion; screen: on which they are shown, if any."""
         self.scenario = scenario
         self.shape = body_shape(scenario)
         self.skeleton: Skeleton = skeleton_of(self.shape)
         self._pose_at = performed(self.skeleton) if performed else _looped(scenario, self.skeleton)
-        self.others = tuple(World(_of_bystander(scenario, i)) for i in range(len(scenario.others)))
+        self.screen = screen
+        self.others = tuple(
+            World(_of_bystander(scenario, i), screen=other.screen)
+            for i, other in enumerate(scenario.others)
+        )
 
     def at(self, t_s: float) -> WorldState:
         """The truth at t_s [s]; motion and lights repeat every `loop_s`."""

@@ -1,6 +1,6 @@
 """The interface of every tracker."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -65,6 +65,16 @@ class GuidedTracker(Tracker, Protocol):
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
         """One frame set, whose upper body another tracker knows (upper has a pose): it is held there; legs and
         head are this tracker's. What is known then is gone on from by a plain `step`."""
+        ...
+
+
+@runtime_checkable
+class RoomLearner(Tracker, Protocol):
+    """A tracker that has to know the empty room, and can learn it from a recording that never shows it empty."""
+
+    def learn_room(self, frames: Iterable[FrameSet]) -> None:
+        """Before the first step: what stays as it is in these frame sets of one recording is the room. `reset` forgets
+        it."""
         ...
 
 

@@ -225,7 +225,17 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             _pair_lacks,
             sees=True,
             reads_outline=True,
-            compared_with={"paper": ("flex_paper", FlexPaperSection())},
+            compared_with={
+                "paper": ("flex_paper", FlexPaperSection()),
+                "no texture": ("flex", FlexSection(texture=False)),
+                "no floor": ("flex", FlexSection(floor=False)),
+                "no arm search": ("flex", FlexSection(arm_search=False)),
+                "no shadows": ("flex", FlexSection(shadows=False)),
+                "no leg search": ("flex", FlexSection(leg_search=False)),
+                "no faces": ("flex", FlexSection(faces=False)),
+                "no look-alikes": ("flex", FlexSection(look_alikes=False)),
+                "no limits": ("flex", FlexSection(limits=False)),
+            },
         ),
         "flex_paper": TrackerEntry(
             _flex_paper,
@@ -276,17 +286,22 @@ def shirt_tracker(preferred: str) -> str:
     return next(name for name, one in TRACKERS.items() if one.reads_shirt)
 
 
-def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
-    """The tracker of this name, as set by its own section. Raises ConfigError when there is none, or it is not
-    told what it needs."""
-    found = entry(name)
-    reason = found.lacks(calibration, calibration.rig.names if calibration.rig else ())
+def require_known(name: str, calibration: Calibration) -> None:
+    """That this tracker is told what it needs. Raises ConfigError."""
+    reason = entry(name).lacks(calibration, calibration.rig.names if calibration.rig else ())
     if reason:
         raise ConfigError(
             f"the tracker {name!r} {reason}",
             "rig",
             "give a rig file (rig = ..., or --rig); one camera alone may go without",
         )
+
+
+def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
+    """The tracker of this name, as set by its own section. Raises ConfigError when there is none, or it is not
+    told what it needs."""
+    require_known(name, calibration)
+    found = entry(name)
     section = resources.sections[name] if name in resources.sections else found.section()
     return found.build(calibration, section, resources)
 

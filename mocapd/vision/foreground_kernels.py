@@ -51,3 +51,9 @@ def stands_before(
                 out[y, x] = SHADOW
             elif off < likely[1]:
                 out[y, x] = CLOTH_OR_SHADOW
+
+
+def stands(before: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """(h,w): where something is, or throws a shadow, before a background that is known."""
+    there: NDArray[np.bool_] = (before != BACKGROUND) & (before != UNKNOWN)
+    return there

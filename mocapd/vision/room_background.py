@@ -5,11 +5,19 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background
-from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, SHADOW, UNKNOWN, stands_before
+from mocapd.vision.foreground_kernels import (
+    BACKGROUND,
+    BEFORE,
+    SHADOW,
+    UNKNOWN,
+    stands,
+    stands_before,
+)
 
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
@@ -63,11 +71,23 @@ class RoomBackground:
         self._age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
+    def know(self, room: Bytes, known: NDArray[np.bool_]) -> None:
+        """Take the empty room (h,w,3) for the background where it is known (h,w)."""
+        self._mean[:] = room
+        self._age[:] = np.where(known, self._params.known_looks, 0)
+        self._looks = self._params.first_looks
+
+    def doubt(self, picture: Bytes, body: Bytes) -> None:
+        """Forget the background where `body` (h,w) is not 0 and the picture (h,w,3) looks like it: that is the body itself,
+        of somebody who never left."""
+        off = np.abs(picture - self._mean).max(axis=-1)
+        self._age[(body > 0) & (off <= self._params.tolerance)] = 0
+
     def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes) -> None:
         """Take for background what somebody uncovered who was learned with it: pieces of `before` (h,w) along whose outline
         the background has the stronger edges, and not the picture (h,w,3) (Cucchiara et al. 2003 call them ghosts). They
         become BACKGROUND in `before`. What lies within `body` (h,w) is not looked at."""
-        asked = ((before > 0) & (before != UNKNOWN) & (body == 0)).astype(np.uint8)
+        asked = (stands(before) & (body == 0)).astype(np.uint8)
         n, numbered, stats, _ = cv2.connectedComponentsWithStats(asked)
         if n < 2:
             return
@@ -137,7 +157,7 @@ class RoomBackground:
             out,
         )
         kept = out.copy()
-        one = ((out == BEFORE) | (out >= SHADOW)).astype(np.uint8)
+        one = stands(out).astype(np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK), np.uint8)
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
         one[kept == UNKNOWN] = UNKNOWN

@@ -7,9 +7,11 @@ A browser sends a cookie to every port of this machine, also to those of other u
 a place of its own, a path that nobody can guess: its cookie is for that path alone, and holds a secret
 of the browser's session, not the token. Programs give the token, with or without that path.
 
-Sites that the user has allowed may have the frames' WebSocket and nothing else: see games.frames_access.
+Sites that the user has allowed may have the frames' WebSocket and nothing else: see games.frames_access. So may a Prometheus
+have its figures: see metrics_access.
 """
 
+import logging
 import secrets
 
 from starlette.datastructures import MutableHeaders
@@ -19,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from mocapd.web.games.frames_access import PATH as FRAMES_PATH
 from mocapd.web.games.frames_access import FramesAccess
+from mocapd.web.metrics_access import MetricsAccess
 from mocapd.web.refusal import Refusal, refusal_page
 
 TOKEN = "token"  # its name in the URL's query
@@ -37,6 +40,9 @@ HEADERS = {
 }
 LONGEST_ADDRESS = 8 << 10  # path and query of a request [bytes]
 _WS_POLICY_VIOLATION = 1008
+_LONGEST_LOGGED = 100  # of a header that a stranger wrote [characters]
+
+_log = logging.getLogger(__name__)
 
 
 class Access:
@@ -47,16 +53,23 @@ class Access:
     """
 
     def __init__(
-        self, app: ASGIApp, port: int, token: str, frames: FramesAccess | None = None
+        self,
+        app: ASGIApp,
+        port: int,
+        token: str,
+        frames: FramesAccess | None = None,
+        metrics: MetricsAccess | None = None,
     ) -> None:
         self._app, self._token = app, token
         self._frames = frames or FramesAccess()
+        self._metrics = metrics or MetricsAccess()
         self._session = secrets.token_urlsafe(24)
         self._place = f"/{secrets.token_urlsafe(9)}"
         self._hosts = frozenset({f"127.0.0.1:{port}", f"localhost:{port}"})
         self._origins = frozenset(f"http://{host}" for host in self._hosts)
         # cookies are shared by all ports of a machine: several daemons must not overwrite each other's
         self._cookie = f"mocapd-{port}"
+        self._logged: set[str] = set()  # refusals that were told of
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer, or hand on to the app."""
@@ -84,7 +97,8 @@ class Access:
                     headers.append("set-cookie", cookie)
             await send(message)
 
-        refusal = self._refusal(connection, has_token or has_cookie)
+        has_key = self._metrics.lets_in(connection)
+        refusal = self._refusal(connection, has_token or has_cookie or has_key)
         if refusal is None:
             scope["state"][LET_IN] = True
             app: ASGIApp = self._app
@@ -93,11 +107,29 @@ class Access:
                 # that is SameSite=Strict. What follows # in the address it keeps by itself.
                 app = RedirectResponse(f"{self._place}/?{TOKEN}={self._token}", 303)
             await app(scope, receive, protected)
-        elif scope["type"] == "http" or "websocket.http.response" in scope.get("extensions", {}):
+            return
+        self._log_once(refusal, connection)
+        if scope["type"] == "http" or "websocket.http.response" in scope.get("extensions", {}):
             answer = HTMLResponse(refusal_page(refusal), refusal.status)
             await answer(scope, receive, protected)
         else:
             await send({"type": "websocket.close", "code": _WS_POLICY_VIOLATION})
+
+    def _log_once(self, refusal: Refusal, connection: HTTPConnection) -> None:
+        """Another site, or another name for this machine: each kind once, as a page may ask without end. A token that does
+        not do is none of these: a window that was left open since another start has one."""
+        if refusal.status != 403 or refusal.what in self._logged:
+            return
+        self._logged.add(refusal.what)
+        host, origin = (
+            connection.headers.get(name, "")[:_LONGEST_LOGGED] for name in ("host", "origin")
+        )
+        _log.warning(
+            "the page refused a request with Host %r and Origin %r: %s More like it are not logged.",
+            host,
+            origin,
+            refusal.what,
+        )
 
     def _refusal(self, connection: HTTPConnection, known: bool) -> Refusal | None:
         if (

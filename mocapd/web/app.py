@@ -23,9 +23,10 @@ from mocapd.web.links.live_link import LiveLink
 from mocapd.web.links.picture_link import picture_link
 from mocapd.web.links.recording_link import RecordingLink
 from mocapd.web.links.wizard_link import WizardLink
+from mocapd.web.metrics_access import PATH as METRICS_PATH
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
-from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
+from mocapd.web.status import SetupAnswer, SetupRequest, Status
 
 PAGE_DIR = Path(__file__).with_name("page")
 # given here, as what the system believes of a suffix differs, and nosniff is strict about scripts
@@ -41,9 +42,18 @@ MOST_SOCKETS = 24  # WebSockets at once; a window has three
 _PNG = b"\x89PNG"
 
 
-def make_app(host: Host, encoder: PictureEncoder, frames: FramesAccess | None = None) -> Starlette:
+def make_app(
+    host: Host,
+    encoder: PictureEncoder,
+    frames: FramesAccess | None = None,
+    with_metrics: bool = False,
+) -> Starlette:
     """The routes; who may use them is decided before (see access)."""
-    return Starlette(routes=_Routes(host, encoder, frames or FramesAccess()).routes())
+    made = _Routes(host, encoder, frames or FramesAccess())
+    routes = made.routes()
+    if with_metrics:
+        routes.append(Route(METRICS_PATH, made.metrics))
+    return Starlette(routes=routes)
 
 
 class _Routes:
@@ -66,7 +76,6 @@ class _Routes:
             Route("/picture/{key:path}", self._picture),
             Route("/status", self._status),
             Route("/setup", self._setup, methods=["POST"]),
-            Route("/recenter", self._recenter, methods=["POST"]),
             WebSocketRoute("/ws", self._wizard_link),
             WebSocketRoute("/pictures", self._pictures),
             WebSocketRoute("/live", self._live),
@@ -126,16 +135,15 @@ class _Routes:
             wizard.send("go", {"step": asked.step})
         return _json(SetupAnswer())
 
-    async def _recenter(self, _request: Request) -> Response:
-        """The way the person faces becomes forward for the outputs."""
-        try:
-            return _json(await run_in_threadpool(self._recentered))
-        except MocapdError as error:
-            return _refused(error)
+    async def metrics(self, _request: Request) -> Response:
+        """For Prometheus."""
+        # here, as few ask for it, and the library takes a tenth of a second
+        from mocapd.web.metrics_text import MEDIA_TYPE, metrics_text
 
-    def _recentered(self) -> RecenterAnswer:
-        facing, snapshot = self._host.recenter(), self._host.snapshot()
-        return RecenterAnswer(facing.yaw_deg, tuple(snapshot.outputs) if snapshot else ())
+        return Response(
+            await run_in_threadpool(lambda: metrics_text(self._host.snapshot())),
+            media_type=MEDIA_TYPE,
+        )
 
     async def _wizard_link(self, socket: WebSocket) -> None:
         await self._if_room(socket, WizardLink(socket, self._host, self._seat).run)

@@ -3,7 +3,6 @@
 from typing import Protocol
 
 from mocapd.capture.recording.recorded_known import RecordedKnown
-from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Snapshot
@@ -43,9 +42,4 @@ class Host(Protocol):
 
     def snapshot(self) -> Snapshot | None:
         """How cameras, tracker and outputs fare; None when nothing tracks."""
-        ...
-
-    def recenter(self) -> Facing:
-        """The way the person faces is forward from now on. Raises UnavailableError when nobody is seen, or nothing
-        is sent to outputs here."""
         ...

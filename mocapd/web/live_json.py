@@ -74,6 +74,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
                 "name": name,
                 "state": status.state.value,
                 "bumped": snapshot.mountings.get(name) is Mounting.BUMPED,
+                "swapped": snapshot.mountings.get(name) is Mounting.SWAPPED,
                 "reason": status.reason,
                 "fps_hz": status.fps_hz,
                 "frames": status.frames,

@@ -24,10 +24,11 @@ from mocapd.boundary.messages import decode_json
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
-from mocapd.web.status import RecenterAnswer, SetupAnswer, SetupRequest, Status
+from mocapd.web.status import SetupAnswer, SetupRequest, Status
 from mocapd.whole_file import whole_file
 
 ADDRESS = "127.0.0.1"
+SCHEMA = 1  # of page-PID.json
 SETUP = "#setup"  # the part of the page
 ANSWER_S = 2.0  # how long a living daemon may take to answer [s]
 BEGIN_S = 30.0  # and to begin a setup: cameras may have to be let go first [s]
@@ -37,7 +38,7 @@ _LONGEST_ANSWER = 1 << 20  # [bytes]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a page is announced. folder: see `runtime_folder`; state_dir, instance: by which it is
+    """Where a page is announced. folder: see `config.runtime_folder`; state_dir, instance: by which it is
     told from other pages of this user; findable: whether others may attach to it."""
 
     folder: Path
@@ -47,11 +48,14 @@ class Place:
 
 
 class _Said(msgspec.Struct, frozen=True):
+    """What page-PID.json says; one of a newer mocapd may mean something else by it."""
+
     port: Annotated[int, Meta(ge=1, le=65535)]
     token: Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,200}$")]
     pid: Annotated[int, Meta(ge=1, le=2**31)]
     state_dir: str
     instance: str
+    schema: Annotated[int, Meta(ge=1)] = SCHEMA
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +74,6 @@ class Running:
 def url_of(port: int, token: str) -> str:
     """Of the page, with its token."""
     return f"http://{ADDRESS}:{port}/?{TOKEN}={token}"
-
-
-def runtime_folder(state_dir: Path) -> Path:
-    """$RUNTIME_DIRECTORY under systemd, else the session's runtime directory, else `state_dir`."""
-    given = os.environ.get("RUNTIME_DIRECTORY", "").partition(":")[0]
-    session = os.environ.get("XDG_RUNTIME_DIR", "")
-    if given:
-        return Path(given)
-    return Path(session) / "mocapd" if session else state_dir
 
 
 def redirect_file(folder: Path, pid: int) -> Path:
@@ -120,6 +115,8 @@ def running(folder: Path) -> tuple[Running, ...]:
         if said is None:
             _remove(path)
             continue
+        if said.schema > SCHEMA:
+            continue
         url = url_of(said.port, said.token)
         try:
             status = decode_json(_answer(url, "/status", ANSWER_S), Status)
@@ -133,18 +130,6 @@ def running(folder: Path) -> tuple[Running, ...]:
 def begin_setup(url: str, step: str | None) -> None:
     """Have that page begin a setup, or show `step` of the one it has. Raises UnavailableError."""
     _asked(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
-
-
-def recenter(url: str) -> RecenterAnswer:
-    """Have that page's daemon make forward what the person faces. Raises UnavailableError."""
-    try:
-        return decode_json(_asked(url, "/recenter", ANSWER_S, b""), RecenterAnswer)
-    except MalformedError as error:
-        raise UnavailableError(
-            f"its answer is not understood: {error}",
-            "the running daemon",
-            "bring it and this command to the same version of mocapd",
-        ) from None
 
 
 def _asked(url: str, path: str, timeout_s: float, body: bytes) -> bytes:

@@ -1,6 +1,7 @@
 """The web server: uvicorn in a thread of its own, on 127.0.0.1 only."""
 
 import asyncio
+import logging
 import os
 import secrets
 import socket
@@ -31,7 +32,12 @@ from mocapd.web.games.frames_access import frames_access
 from mocapd.web.host import Host
 from mocapd.web.links.socket_link import LONGEST_MESSAGE
 from mocapd.web.log_limit import limit_logs
+from mocapd.web.metrics_access import FILE_NAME as METRICS_KEY
+from mocapd.web.metrics_access import PATH as METRICS_PATH
+from mocapd.web.metrics_access import metrics_access
 from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url_of, withdraw
+
+_log = logging.getLogger(__name__)
 
 STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
 
@@ -51,7 +57,7 @@ class WebServer:
         place: Place | None = None,
     ) -> None:
         self._host, self._port, self._died = host, params.port, died
-        self._origins = params.allow_origins
+        self._origins, self._with_metrics = params.allow_origins, params.metrics
         self._place = place
         self._token = secrets.token_urlsafe(24)
         self._executor = ThreadPoolExecutor(1, thread_name_prefix="web-encode")
@@ -85,16 +91,16 @@ class WebServer:
         """Returns as soon as the page can be asked for.
 
         Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced, and as
-        `frames_access`.
+        `frames_access` and `metrics_access`.
         """
-        frames = frames_access(
-            self._origins, None if self._place is None else self._place.state_dir
-        )
+        state_dir = None if self._place is None else self._place.state_dir
+        frames = frames_access(self._origins, state_dir)
+        metrics = metrics_access(self._with_metrics, state_dir)
         listening = _listen(self._port)
         self._port = listening.getsockname()[1]
         limit_logs()
-        routes = make_app(self._host, self.encoder, frames)
-        app = Access(routes, self._port, self._token, frames)
+        routes = make_app(self._host, self.encoder, frames, metrics.enabled)
+        app = Access(routes, self._port, self._token, frames, metrics)
         config = uvicorn.Config(
             _Deadly(app, self._died),
             loop="asyncio",
@@ -121,6 +127,11 @@ class WebServer:
             listening.close()
             raise
         # a daemon thread: a browser that does not read must not keep the process from ending
+        if metrics.enabled and state_dir is not None:
+            _log.info(
+                "figures for Prometheus at http://%s:%d%s, with the key in %s",
+                *(ADDRESS, self._port, METRICS_PATH, state_dir / METRICS_KEY),
+            )
         self._thread = threading.Thread(
             target=self._run, args=(self._server, listening), name="web", daemon=True
         )

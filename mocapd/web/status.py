@@ -1,4 +1,4 @@
-"""What other processes ask of a running page: is it alive, begin a setup, make forward what somebody faces."""
+"""What other processes ask of a running page: is it alive, begin a setup."""
 
 from typing import Annotated
 
@@ -32,11 +32,3 @@ class SetupAnswer(msgspec.Struct, frozen=True):
     what: str = ""
     where: str = ""
     fix: str = ""
-
-
-class RecenterAnswer(msgspec.Struct, frozen=True):
-    """The answer to POST /recenter. yaw_deg: see messages.Facing; outputs: those that were told. When it
-    cannot be (503), SetupAnswer's words say why."""
-
-    yaw_deg: Annotated[float, Meta(ge=-180, le=180)]
-    outputs: tuple[str, ...]

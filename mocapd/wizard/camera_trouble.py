@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from mocapd.capture.thread import CaptureState
+from mocapd.capture.capture_status import CaptureState
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Problem

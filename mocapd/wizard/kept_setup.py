@@ -14,20 +14,28 @@ import msgspec
 
 from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_msgpack
-from mocapd.errors import CannotCreateError, MalformedError
+from mocapd.boundary.numbers import brief
+from mocapd.errors import CannotCreateError, MalformedError, NewerFileError
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.kept_draft import KeptDraft, Table, check_kept, draft_of, kept_draft
 from mocapd.wizard.step_names import StepName
 
 FILE_NAME = "setup-draft.msgpack"
+SCHEMA = 1
 MOST_BYTES = 256 << 20
 
 _DIGEST = hashlib.sha256
 
 
+class _Schema(msgspec.Struct, frozen=True):
+    """What every version has."""
+
+    schema: int
+
+
 class _Kept(Table, frozen=True):
-    schema: Literal[1]  # another one is not understood, and not gone on with
+    schema: Literal[1]
     when: Annotated[datetime, msgspec.Meta(tz=True)]
     done: frozenset[StepName]
     draft: KeptDraft
@@ -63,11 +71,18 @@ def write_kept(path: Path, kept: KeptSetup) -> None:
 
 
 def read_kept(path: Path) -> KeptSetup:
-    """Raises MissingError without a file, InputError, MalformedError or ConfigError for a damaged one."""
+    """Raises MissingError without a file, InputError, MalformedError or ConfigError for a damaged one, NewerFileError."""
     data = read_file(path, MOST_BYTES)
     length = _DIGEST().digest_size
     if _DIGEST(data[length:]).digest() != data[:length]:
         raise MalformedError("its checksum does not fit")
+    schema = decode_msgpack(data[length:], _Schema).schema
+    if schema > SCHEMA:
+        raise NewerFileError(
+            f"has schema {brief(schema)}, this mocapd reads {SCHEMA}",
+            str(path),
+            "go on with the mocapd that wrote it",
+        )
     kept = decode_msgpack(data[length:], _Kept)
     check_kept(kept.draft)
     return KeptSetup(kept.when, kept.done, draft_of(kept.draft, str(path)))

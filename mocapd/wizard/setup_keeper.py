@@ -11,7 +11,8 @@ from pathlib import Path
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
 from mocapd.capture.webcam.v4l2 import WebcamSettings
-from mocapd.errors import CannotCreateError, InputError, MocapdError
+from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
+from mocapd.set_aside import Why, set_aside
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -144,12 +145,23 @@ class SetupKeeper:
         except MissingError:
             return None
         except MocapdError as error:
-            why_not = str(error)
+            self._put_aside(error)
+            return None
         if why_not:
             _log.info("%s: the setup that was kept there is removed: %s", self._path, why_not)
             self._remove()
             return None
         return kept
+
+    def _put_aside(self, error: MocapdError) -> None:
+        """It cannot be read: whoever made it may still want it."""
+        with suppress(OSError):  # it is met again then
+            why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
+            aside = set_aside(self._path, why)
+            _log.warning(
+                "%s: the setup that was kept there cannot be used (%s), and is kept as %s",
+                *(self._path, error.what, aside.name),
+            )
 
     def _why_not(self, kept: KeptSetup) -> str:
         """Why it is not offered; empty when it is."""

@@ -1,9 +1,13 @@
 """What is made once is made in a process that ends, and remembered."""
 
 import os
+import subprocess
+import sys
+import threading
 import time
 from pathlib import Path
 
+import psutil
 import pytest
 
 from mocapd.app import progress
@@ -14,7 +18,7 @@ from mocapd.session import tracker_setup
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
-from tests.outputs.frames import free_port
+from tests.outputs.frames import eventually, free_port
 
 
 def run(env: dict[str, str], capture: Path, *words: str) -> Outcome:
@@ -111,14 +115,52 @@ def test_what_takes_long_says_so_without_a_terminal(
     assert "the tracker: done after" in capfd.readouterr().err
 
 
-def test_in_the_journal_the_lines_have_their_priority(
+def test_in_the_journal_nothing_is_told_of_the_way(
     soon: None, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     there = os.fstat(2)
     monkeypatch.setenv("JOURNAL_STREAM", f"{there.st_dev}:{there.st_ino}")
+    before = threading.active_count()
     with ProgressBars() as bars:
+        bars.begin("preparing")
         bars("the tracker", 2, 8)
-        assert "<6>" in err_with(capfd, "<6>the tracker: 25 %")
+        assert threading.active_count() == before  # nobody who could tell anything later
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) -> None:
+    """Also where that is killed, and cannot end its children."""
+    program = (
+        "import os, sys, time\n"
+        "from mocapd.app import first_start\n"
+        "from mocapd.config.sections import Config\n"
+        "def work(config):\n"
+        "    print(os.getpid(), flush=True)\n"
+        "    first_start._all_end_well(config, (deep,))\n"
+        "def deep(config):\n"
+        "    print(os.getpid(), flush=True)\n"
+        "    time.sleep(600)\n"
+        "first_start.prepare_apart = work\n"
+        f"with first_start.preparing_apart(Config(cache_dir={str(tmp_path)!r})) as one:\n"
+        "    sys.stdin.readline()\n"
+    )
+    program = program.replace("cache_dir='", "cache_dir=first_start.Path('").replace("'))", "')))")
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        children = [int(process.stdout.readline()) for _ in range(2)]
+        if killed:
+            process.kill()
+        else:
+            process.stdin.write("\n")
+            process.stdin.flush()
+        assert eventually(lambda: not any(psutil.pid_exists(pid) for pid in children), 60.0)
 
 
 def test_what_is_done_at_once_is_not_told(capfd: pytest.CaptureFixture[str]) -> None:

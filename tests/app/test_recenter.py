@@ -2,20 +2,23 @@
 
 import socket
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from mocapd.cli.recenter import recenter
+from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.sections import Config
-from mocapd.config.web_params import Params
+from mocapd.control.daemon_control import DaemonControl
+from mocapd.control.last_trouble import LastTrouble
+from mocapd.control.reloads import Reloads
+from mocapd.control.socket_place import socket_path
 from mocapd.errors import UnavailableError
 from mocapd.outputs.registry import VRChatSection
+from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service
-from mocapd.web.runtime_file import Place, runtime_folder
-from mocapd.web.server import WebServer
-from mocapd.wizard.hosts.daemon_host import DaemonHost
 from tests.outputs.frames import eventually
 from tests.outputs.receivers.vrchat import VRChatReceiver
 from tests.service.test_service import session_of
@@ -43,6 +46,17 @@ class Listening:
         return "/tracking/trackers/head/rotation" in self.addresses
 
 
+@contextmanager
+def controlled(service: Service, pid: int) -> Iterator[None]:
+    """The service as a daemon of that number."""
+    path = socket_path(runtime_folder(service.config.state_dir), pid)
+    outputs = OpenOutputs(service.config)
+    with DaemonControl(path, service.config, outputs, LastTrouble()) as control:
+        control.open()
+        control.attach(service, Reloads())
+        yield
+
+
 @pytest.fixture
 def listening(empty_home: Path) -> Iterator[Listening]:
     one = Listening()
@@ -55,30 +69,25 @@ def test_it_turns_vrchat_once(
 ) -> None:
     section = VRChatSection(listening.destination, enabled=True)
     config = Config(outputs={"vrchat": section}, state_dir=tmp_path, instance="game")
-    with Service(config, session_of("a")) as service:
-        host = DaemonHost(service)
-        place = Place(runtime_folder(tmp_path), tmp_path, "game")
-        with WebServer(host, Params(), service.died, place):
-            for _ in range(5):
-                assert not listening.hear()
-            recenter()
-            assert eventually(listening.hear)
-            out = capsys.readouterr()
-            assert "told to: vrchat" in out.out
-            assert out.err == ""
-            for _ in range(10):
-                listening.hear()
-            assert listening.addresses.count("/tracking/trackers/head/rotation") == 1
-            assert (listening.vrchat.snaps, listening.vrchat.slerps) == (1, 0)
-            assert listening.vrchat.yaw_deg == pytest.approx(40.0)
+    with Service(config, session_of("a")) as service, controlled(service, 1):
+        for _ in range(5):
+            assert not listening.hear()
+        recenter()
+        assert eventually(listening.hear)
+        out = capsys.readouterr()
+        assert "told to: vrchat" in out.out
+        assert out.err == ""
+        for _ in range(10):
+            listening.hear()
+        assert listening.addresses.count("/tracking/trackers/head/rotation") == 1
+        assert (listening.vrchat.snaps, listening.vrchat.slerps) == (1, 0)
+        assert listening.vrchat.yaw_deg == pytest.approx(40.0)
 
-            # a second daemon beside it, which sends to nobody
-            with (
-                Service(replace(config, outputs={}, instance="cave"), session_of("b")) as other,
-                WebServer(DaemonHost(other), Params(), other.died, replace(place, instance="cave")),
-            ):
-                assert eventually(lambda: other.snapshot().metrics.published > 0)
-                recenter(settings=["instance=cave"])
+        # a second daemon beside it, which sends to nobody
+        other_config = replace(config, outputs={}, instance="cave")
+        with Service(other_config, session_of("b")) as other, controlled(other, 2):
+            assert eventually(lambda: other.snapshot().metrics.published > 0)
+            recenter(settings=["instance=cave"])
     assert "vrchat.enabled = true" in capsys.readouterr().err
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from mocapd.app.status_line import status_text
-from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
@@ -52,3 +52,8 @@ def test_a_lost_camera_and_dropped_frame_sets_are_told() -> None:
     text = status_text(Snapshot(replace(METRICS, sets_dropped=7), {"left": lost}, {}))
     assert "left lost" in text
     assert text.endswith("7 dropped")
+
+
+def test_a_camera_whose_pictures_are_wrong_is_marked() -> None:
+    black = replace(CAMERA, notice="its picture is black -- uncover the lens")
+    assert "| left 30.0 (see the log)" in status_text(Snapshot(METRICS, {"left": black}, {}))

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 
 import zenoh
 
-from mocapd.outputs.zenoh.zenoh_client_config import client_config
+from mocapd.bus.zenoh_client_config import client_config
 from tests.conftest import ROOT
 
 LEASE_MS = 10_000  # Zenoh's own

@@ -12,7 +12,7 @@ import time
 
 import zenoh
 
-from mocapd.outputs.zenoh.zenoh_client_config import client_config
+from mocapd.bus.zenoh_client_config import client_config
 from tests.attacks.attacked import attacked
 from tests.attacks.newcomers import times_s
 from tests.attacks.scenario import Found, Scenario

@@ -16,9 +16,9 @@ import time
 
 import zenoh
 
+from mocapd.bus.zenoh_client_config import client_config
 from mocapd.client import Client, Link
 from mocapd.errors import UnavailableError
-from mocapd.outputs.zenoh.zenoh_client_config import client_config
 from tests.attacks.scenario import Found
 from tests.conftest import ROOT
 

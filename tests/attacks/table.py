@@ -1,6 +1,7 @@
 """Every attack by its name. Whoever writes another adds the table of its module here."""
 
 from tests.attacks import (
+    control_requests,
     frozen_at_the_end,
     frozen_beside_newcomers,
     large_messages,
@@ -17,4 +18,5 @@ SCENARIOS: dict[str, Scenario] = (
     | large_messages.SCENARIOS
     | page_connections.SCENARIOS
     | page_requests.SCENARIOS
+    | control_requests.SCENARIOS
 )

@@ -5,7 +5,7 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import Label, Region, as_silhouette, by_region, labels, regions
+from mocapd.body.regions import Band, Label, Region, as_silhouette, by_region, labels, regions
 from mocapd.body.skeleton import INDEX
 
 BODY = build_model(1.75, full_body())
@@ -14,7 +14,7 @@ BODY = build_model(1.75, full_body())
 def test_every_region_is_where_it_should_be() -> None:
     of, centres = regions(BODY), BODY.centres_m
     rest = BODY.rest_m
-    assert set(of.tolist()) == {int(region) for region in Region}
+    assert set(of.tolist()) == {int(part) for part in (*Region, *Band)}
     head = (of == Region.FACE) | (of == Region.HAIR)
     assert centres[head, 1].min() > rest[INDEX["leftUpperArm"], 1] - 0.05
     assert centres[of == Region.FACE, 2].min() > centres[head, 2].mean()
@@ -26,15 +26,31 @@ def test_every_region_is_where_it_should_be() -> None:
     assert np.abs(centres[of == Region.TRUNK, 0]).max() < elbow + 0.06
 
 
+def test_bands_follow_each_other_from_the_limbs_on() -> None:
+    of, centres = regions(BODY), BODY.centres_m
+    height = {
+        band: centres[of == band, 1].mean() for band in (Band.LOW_HIPS, Band.HIGH_HIPS, Band.WAIST)
+    }
+    assert height[Band.LOW_HIPS] < BODY.rest_m[INDEX["leftUpperLeg"], 1] < height[Band.WAIST]
+    assert height[Band.LOW_HIPS] < height[Band.HIGH_HIPS] < height[Band.WAIST]
+    outwards = [
+        np.abs(centres[of == part, 0]).mean()
+        for part in (Band.HIGH_SLEEVE, Band.LOW_SLEEVE, Region.FOREARM)
+    ]
+    assert outwards == sorted(outwards)
+
+
 def test_left_and_right_are_alike() -> None:
     of = regions(BODY)
-    for region in Region:
+    for region in (*Region, *Band):
         x = BODY.centres_m[of == region, 0]
         assert abs(np.count_nonzero(x > 0.0) - np.count_nonzero(x < 0.0)) <= 0.02 * len(x)
 
 
 def test_colours_are_the_regions_or_one_for_all() -> None:
-    assert np.array_equal(by_region(BODY).colour, regions(BODY))
+    of, worn = regions(BODY), by_region(BODY).colour
+    assert np.array_equal(worn[of <= max(Region)], of[of <= max(Region)])
+    assert set(worn.tolist()) == {int(region) for region in Region}
     assert set(as_silhouette(BODY).colour.tolist()) == {1}
 
 

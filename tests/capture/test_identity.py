@@ -86,6 +86,18 @@ def test_two_moved_twins_are_refused_rather_than_guessed() -> None:
         match_identity(TWIN_A, present, others=[TWIN_B])
 
 
+def test_where_two_twins_are_away_one_that_comes_back_elsewhere_is_not_guessed() -> None:
+    present = [at(TWIN_A, "1-7")]
+    for wanted, other in ((TWIN_A, TWIN_B), (TWIN_B, TWIN_A)):
+        with pytest.raises(UnavailableError, match=r"may be this one or its twin.*1-1|1-2"):
+            match_identity(wanted, present, others=[other])
+
+
+def test_a_moved_webcam_of_its_own_serial_is_known_while_others_of_its_kind_are_away() -> None:
+    match = match_identity(LEFT, [at(LEFT, "2-1")], others=[RIGHT])
+    assert match.identity.port_path == "2-1"
+
+
 def test_another_model_in_the_socket_is_not_taken() -> None:
     with pytest.raises(UnavailableError):
         match_identity(LEFT, [at(RIGHT, LEFT.port_path)])

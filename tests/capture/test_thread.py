@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.capture.capture_status import CaptureState
 from mocapd.capture.file import FileSource, size_error
 from mocapd.capture.pace import Pace
-from mocapd.capture.thread import BackOff, CaptureState, CaptureThread
+from mocapd.capture.reopening import BackOff, RestartBudget
+from mocapd.capture.thread import CaptureThread
 from mocapd.clock import monotonic_ns
-from mocapd.errors import CameraLost, ConfigError
+from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.types import Frame
 from tests.capture.films import picture, write_film
 
@@ -253,3 +255,61 @@ def test_the_pause_doubles_up_to_its_limit() -> None:
     assert pauses[:4] == pytest.approx([0.1, 0.2, 0.4, 0.8])
     assert pauses[-1] == 5.0
     assert BackOff().pause_s(100_000) == 5.0
+
+
+class LateCamera(ChangingCamera):
+    """Not there at first; then there in another size."""
+
+    def open(self) -> None:
+        self.openings += 1
+        if self.openings < 3:
+            raise UnavailableError("is not plugged in", self.name)
+        if not self.mended.is_set():
+            raise size_error("usb", self.name, (160, 120), (320, 240))
+
+
+def test_a_camera_that_comes_later_and_does_not_fit_does_not_end_the_others() -> None:
+    shelf, source = Shelf(), LateCamera()
+    capture = CaptureThread(source, shelf, nobody_dies, back_off=QUICK)
+    capture.start()
+    assert wait_until(lambda: "160x120" in capture.status().reason)
+    source.mended.set()
+    assert shelf.wait_for(2)
+    assert capture.stop()
+
+
+class ShortCamera:
+    """A network camera that sends one frame after each opening."""
+
+    name = "net"
+    recorded = False
+
+    def __init__(self) -> None:
+        self.openings = 0
+        self._sent = False
+
+    def open(self) -> None:
+        self.openings += 1
+        self._sent = False
+
+    def read(self) -> Frame:
+        if self._sent:
+            raise CameraLost("stopped sending", fix="check its network")
+        self._sent = True
+        return Frame(self.name, 0, monotonic_ns(), picture(self.openings % 256))
+
+    def close(self) -> None: ...
+
+
+def test_a_camera_that_fails_over_and_over_is_left_out_and_rests() -> None:
+    source = ShortCamera()
+    budget = RestartBudget(most=3, within_s=60.0, rest_s=0.3)
+    capture = CaptureThread(source, Shelf(), nobody_dies, back_off=QUICK, budget=budget)
+    capture.start()
+    assert wait_until(lambda: "left out" in capture.status().reason)
+    reason = capture.status().reason
+    assert reason.startswith("left out for 0 s, as it failed 4 times within 60 s: stopped sending")
+    assert reason.endswith("check its network")
+    assert source.openings == 4
+    assert wait_until(lambda: source.openings > 4)  # it has rested
+    assert capture.stop()

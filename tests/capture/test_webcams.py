@@ -117,3 +117,19 @@ def test_who_holds_a_node_is_found_in_proc(tmp_path: Path) -> None:
         (tmp_path / str(pid) / "fd" / "3").symlink_to(target)
         (tmp_path / str(pid) / "comm").write_text("cheese\n")
     assert holders(node, tmp_path) == ((4711, "cheese"),)
+
+
+def test_each_plugging_in_is_another_word_and_another_port_is_told(tmp_path: Path) -> None:
+    machine = FakeMachine(tmp_path)
+    source = V4l2Source("left", LEFT, sysfs=machine.sysfs, dev=machine.dev)
+    assert source.plugging() == ""
+    machine.plug(LEFT, "Webcam C270", 4)
+    first = source.plugging()
+    assert "video4" in first
+    assert source.plugging() == first
+    node = machine.dev / "video4"
+    node.rename(tmp_path / "kept")  # else the next file may get its inode
+    node.touch()
+    assert source.plugging() not in ("", first)
+    assert source.identity == LEFT
+    assert source.place == ""

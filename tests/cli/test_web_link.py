@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from mocapd.cli.web_link import web_link
+from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.web_params import Params
 from mocapd.errors import ConfigError, UnavailableError
-from mocapd.web.runtime_file import Place, runtime_folder
+from mocapd.web.runtime_file import Place
 from mocapd.web.server import WebServer
 from tests.web.tiny_host import TinyHost
 

@@ -154,13 +154,13 @@ class Daemon:
         self.folder, self.port = folder, free_port()
         runtime = folder / "runtime"
         runtime.mkdir(mode=0o700)
-        own = {"XDG_RUNTIME_DIR": str(runtime)}
         self.configure()
         self._log = (folder / "log").open("wb")
+        self.env = {**env, "XDG_RUNTIME_DIR": str(runtime)}
         words = ("run", "--config", str(folder / "config.toml"))
         self.process = subprocess.Popen(
             [*COMMAND, *words],
-            env={**env, **own},
+            env=self.env,
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=self._log,

@@ -1,5 +1,6 @@
 """Save in the wizard, and SIGHUP: the session is another, and who subscribes to the service stays connected."""
 
+import json
 import signal
 from collections.abc import Iterator
 from itertools import pairwise
@@ -7,9 +8,17 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.mocapd_process import mocapd
 from tests.cli.own_time import end_within
 from tests.conftest import environment
-from tests.e2e.replaced import Daemon, Game, save_in_the_wizard, wait_until, write_calibration
+from tests.e2e.replaced import (
+    INSTANCE,
+    Daemon,
+    Game,
+    save_in_the_wizard,
+    wait_until,
+    write_calibration,
+)
 
 pytestmark = pytest.mark.kernels
 
@@ -98,6 +107,28 @@ def test_a_configuration_that_cannot_be_is_refused_with_a_line(daemon: Daemon, g
     wait_until(lambda: len(game.heard) > taken + 30, "more frames")
     connected_throughout(game, since, "refused")
     assert daemon.log.count(TAKEN_UP) == changes
+
+
+def test_the_command_reload_says_what_became_of_it(daemon: Daemon, game: Game) -> None:
+    wait_until(game.is_live, "a person")
+    since = len(game.heard)
+    daemon.configure("smoothing.preset = 'nonsense'")
+    refused = mocapd(daemon.env, "reload")
+    assert refused.code == 78
+    assert "config.toml" in refused.err
+    assert "smoothing.preset" in refused.err
+    daemon.configure("smoothing.preset = 'smooth'", "web.port = 1")
+    done = mocapd(daemon.env, "reload")
+    assert done.code == 0
+    assert f"{INSTANCE}: taken up" in done.out
+    assert "only for the next start: web" in done.out
+    daemon.configure()
+    taken = len(game.heard)
+    wait_until(lambda: len(game.heard) > taken + 30 and game.is_live(), "the person again")
+    connected_throughout(game, since, "mocapd reload")
+    told = mocapd(daemon.env, "status", "--json")
+    assert told.code == 0
+    assert json.loads(told.out)["calibration"]["made_unix_s"] > 0
 
 
 def test_sigterm_ends_it_in_two_seconds_while_another_session_is_prepared(daemon: Daemon) -> None:

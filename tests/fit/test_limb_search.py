@@ -17,7 +17,7 @@ from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limb_search import (
     ArmSearch,
     arm_library,
-    best_arm_poses,
+    best_poses,
     candidates,
     is_uncertain,
     score_arm_poses,
@@ -209,7 +209,7 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     arm, views = arm_of(MODEL, "left"), views_of(by, truth)
     tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
     seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0, EMPTY)
-    best = best_arm_poses(tries, seen_px, 3)
+    best = best_poses(tries[:, 1:], seen_px, 3)
     assert 1 <= len(best) <= 3
     assert (seen_px[best] > seen_px[0]).all()
     hand = arm_joints(by, truth, "left")[2]
@@ -219,7 +219,7 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     assert off.min() < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
     at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)[:1]
     assert (
-        best_arm_poses(at_truth, score_arm_poses(by, truth, arm, views, at_truth, 0.0, EMPTY), 3)
+        best_poses(at_truth[:, 1:], score_arm_poses(by, truth, arm, views, at_truth, 0.0, EMPTY), 3)
         == []
     )
 

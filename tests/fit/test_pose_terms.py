@@ -17,7 +17,7 @@ from mocapd.fit.motion_state import MotionState, initial_information, stepped
 from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm, MeasuredDistances
-from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
@@ -95,11 +95,12 @@ def terms() -> list[tuple[PoseTerm, float]]:
     rng = np.random.default_rng(5)
     local = bent()
     off_m = rng.normal(0.0, 0.003, len(SOME))
-    low = min(posed(ROOT, local).joints[[INDEX["leftFoot"], INDEX["rightFoot"]], 1])
-    height = SHAPED.rest[INDEX["leftFoot"], 1]
+    on_floor = [INDEX[side + bone] for side in ("left", "right") for bone in ("Foot", "Toes")]
+    low = min(posed(ROOT, local).joints[on_floor, 1] - SHAPED.rest[on_floor, 1])
+    lowest_alone = FloorTerm(BODY, FloorParams(together_m=0.0))
     return [
-        (FloorTerm(BODY), height - low + 0.01),
-        (FloorTerm(BODY), height - low - 0.01),
+        (lowest_alone, 0.01 - low),
+        (lowest_alone, -0.01 - low),
         (DistanceTerm(BODY, distances(ROOT, local, off_m)), 0.0),
     ]
 
@@ -137,6 +138,17 @@ def test_who_hovers_or_sinks_comes_to_stand(up_m: float) -> None:
     root, local = settled(term, ROOT + np.array([0.0, up_m, 0.0]), local)
     feet = posed(root, local).joints[[INDEX["leftFoot"], INDEX["rightFoot"]], 1]
     np.testing.assert_allclose(feet, SHAPED.rest[INDEX["leftFoot"], 1], atol=0.003)
+
+
+def test_who_stands_on_tiptoe_by_mistake_comes_down_to_the_soles() -> None:
+    """The shoe's picture is as high either way."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    for side in ("left", "right"):
+        local[INDEX[side + "Foot"]] = rotations.exp(np.array([0.4, 0.0, 0.0]))
+    root, local = settled(FloorTerm(BODY), ROOT + np.array([0.0, 0.04, 0.0]), local)
+    for bone in ("Foot", "Toes"):
+        height = posed(root, local).joints[INDEX["left" + bone], 1]
+        assert height == pytest.approx(SHAPED.rest[INDEX["left" + bone], 1], abs=0.005)
 
 
 def test_a_raised_foot_is_left_in_the_air_and_a_jump_hardly_held() -> None:

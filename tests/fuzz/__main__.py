@@ -1,5 +1,5 @@
 """`python -m tests.fuzz`: every parser gets its inputs; ends with 1 when one ends in something unnamed, takes
-longer than a second, or needs more than 300 MB."""
+longer than a second, or needs more than 200 MB."""
 
 import argparse
 import math
@@ -30,9 +30,12 @@ def main() -> int:
         for row in ROWS:
             print(f"{row.name:24}{row.inputs:7}")
         return 0
+    scale = options.scale
+    if options.inputs is not None:
+        scale = options.inputs / sum(row.inputs for row in ROWS)
     rows = [row for row in ROWS if not options.only or row.name in options.only]
     if options.input is None:
-        chosen = [(row, range(_scaled(row.inputs, options.scale))) for row in rows]
+        chosen = [(row, range(_scaled(row.inputs, scale))) for row in rows]
     else:
         chosen = [(row, range(options.input, options.input + 1)) for row in rows]
     with tempfile.TemporaryDirectory(prefix="mocapd-fuzz-") as folder:
@@ -50,7 +53,11 @@ def main() -> int:
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser("python -m tests.fuzz", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of all that is random")
-    parser.add_argument("--scale", type=float, default=1.0, help="share of the inputs")
+    many = parser.add_mutually_exclusive_group()
+    many.add_argument("--scale", type=float, default=1.0, help="share of the inputs")
+    many.add_argument(
+        "--inputs", type=int, help="so many, if all rows are run: 1000000 takes hours"
+    )
     parser.add_argument(
         "--only", nargs="+", metavar="NAME", choices=[row.name for row in ROWS], help="these rows"
     )

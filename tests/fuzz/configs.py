@@ -84,6 +84,8 @@ _CAMERAS = (
     "rtsp://admin:pass@10.0.0.2:554/stream?a=b#c", "http://[fe80::1%25eth0]:80/mjpg", "https://user@cam.lan/",
     "rtsps://u:p@[::1]:322/x", "rtsp://[bad", "http://a:b@c:d", "sim:living_room#left", "sim:./x.toml#a",
     "FOLDER#cam0", "FOLDER", "FILM", "~/film.mp4", "~nosuchuser/film.mp4", "film.mp4#cam0", "#", "usb:", "sim:",
+    "zenoh://pi.lan/attic/left", "zenohs://pc:secret@[::1]:7447/attic/left?ca=/etc/ca.pem", "zenoh://a/b/c?ca=x&ca=/y",
+    "zenohs://u@h/n/c", "zenoh://h:0/n/%2f", "zenoh:///n/c", "ZENOH://h/n/c?certificate=/a&private_key=/b", "zenoh://h/n/*",
 )  # fmt: skip
 _DESTINATIONS = (
     "127.0.0.1:39541", "[::1]:9000", "192.168.1.255:1", "localhost:9000", "::1:9000", "fe80::1%eth0:9000",

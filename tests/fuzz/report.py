@@ -8,7 +8,7 @@ from rich.table import Table
 from tests.fuzz.child import SLOW_S
 from tests.fuzz.runner import Found, Outcome
 
-MOST_MB = 300.0  # that a parser may need beyond what it has at the start
+MOST_MB = 200.0  # that a parser may need beyond what it has at the start
 _SHOWN = 12  # kinds of unnamed errors of a row
 
 

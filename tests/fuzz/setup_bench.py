@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.boundary.messages import decode_json
-from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.identity import parse_identity
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat

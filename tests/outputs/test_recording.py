@@ -254,3 +254,13 @@ def test_a_kill_costs_less_than_a_second(tmp_path: Path, frames_before: int) -> 
     read = frames_of(list(RecordingReader(path).everything()))
     assert [frame.seq for frame in read] == list(range(len(read)))
     assert (handed_over + 1 - len(read)) / HZ < 1.0
+
+
+def test_a_recording_that_was_killed_at_once_is_one_without_frames(tmp_path: Path) -> None:
+    path = tmp_path / "killed.mcap"
+    writer = RecordingWriter(path, RecordingParams(), 0)
+    left = tmp_path / "left.mcap"
+    left.write_bytes(path.read_bytes())  # as it is on the disk before anything more is written
+    writer.close()
+    with pytest.raises(InputError, match="holds no frame of mocapd: it was not closed"):
+        list(RecordingReader(left).everything())

@@ -4,8 +4,8 @@ import subprocess
 import sys
 import time
 
+from mocapd.bus.zenoh_limits import MAX_MESSAGE_BYTES
 from mocapd.client import Client, Link
-from mocapd.outputs.zenoh.zenoh_limits import MAX_MESSAGE_BYTES
 from tests.attacks.herd import herd
 from tests.attacks.newcomers import times_s
 from tests.attacks.silent import silent_connections

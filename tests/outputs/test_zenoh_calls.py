@@ -5,7 +5,7 @@ from typing import cast
 
 import zenoh
 
-from mocapd.outputs.zenoh.zenoh_calls import hold_session, zenoh_call
+from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 
 
 class Session:
@@ -13,8 +13,11 @@ class Session:
 
     def __init__(self) -> None:
         self.is_open = True
+        self.is_closing = False
 
     def is_closed(self) -> bool:
+        if self.is_closing:
+            raise RuntimeError("Already mutably borrowed")
         return not self.is_open
 
     def __enter__(self) -> "Session":
@@ -55,5 +58,17 @@ def test_it_is_held_while_the_session_is_open_or_its_owner_lives() -> None:
         held(later)
         assert subscriber() is not None
         del owner
+        held(later)
+        assert subscriber() is None
+
+
+def test_it_is_held_while_another_thread_closes_its_session() -> None:
+    session = Session()
+    subscriber = held(session)
+    session.is_closing = True  # as Zenoh answers who asks meanwhile
+    with Session() as later:
+        held(later)
+        assert subscriber() is not None
+        session.is_closing, session.is_open = False, False
         held(later)
         assert subscriber() is None

@@ -1,7 +1,6 @@
 """Exposed with TLS and passwords: who has both gets in, nobody else."""
 
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -11,28 +10,17 @@ from mocapd.client import Client, Link
 from mocapd.errors import UnavailableError
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
+from tests.outputs.certificates import make_certificates
 from tests.outputs.frames import eventually, free_port, small_frame
 
 pytestmark = pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl")
-
-
-def openssl(folder: Path, *arguments: str) -> None:
-    subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
 
 
 @pytest.fixture(scope="module")
 def certificates(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An authority (ca.pem) and a certificate of 127.0.0.1 signed by it (server.pem, server.key)."""
     folder = tmp_path_factory.mktemp("certificates")
-    key = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
-    (folder / "ext").write_text("subjectAltName=IP:127.0.0.1\nbasicConstraints=CA:FALSE\n")
-    openssl(folder, "req", "-x509", *key, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=ca")
-    openssl(folder, "req", *key, "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=pc")
-    openssl(
-        folder,
-        *("x509", "-req", "-in", "server.csr", "-CA", "ca.pem", "-CAkey", "ca.key"),
-        *("-CAcreateserial", "-extfile", "ext", "-out", "server.pem"),
-    )
+    make_certificates(folder)
     (folder / "users").write_text("game:secret\n")
     return folder
 

@@ -42,6 +42,19 @@ class FailingTracker:
         return self._inner.step(frames, shape)
 
 
+class WaitingTracker(CannedTracker):
+    """Its steps take until they are let go."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.entered, self.let_go = threading.Semaphore(0), threading.Semaphore(0)
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        self.entered.release()
+        self.let_go.acquire()
+        return super().step(frames, shape)
+
+
 class Run:
     """A loop on two cameras, fed by hand, with what came out of it."""
 
@@ -107,6 +120,25 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
     assert metrics.cameras["a"].counts.received == 12
     assert metrics.cameras["b"].delay_ms >= 5.0
     assert not run.deaths
+
+
+def test_while_a_step_takes_long_the_newest_waits_and_what_is_older_is_dropped() -> None:
+    tracker = WaitingTracker()
+    run = Run(tracker)
+    run.loop.start()
+    assert run.loop.step_s == 0.0
+    run.feed()
+    assert tracker.entered.acquire(timeout=60.0)
+    for _ in range(200):
+        run.feed()
+    assert run.loop.step_s > 0.0
+    tracker.let_go.release(2)
+    assert tracker.entered.acquire(timeout=60.0)
+    run.wait_for(lambda: len(run.out) == 2)
+    seqs = [{frame.seq for frame in one.frames.frames.values()} for one in run.out]
+    assert seqs == [{0}, {200}]
+    assert run.loop.metrics().sets_dropped == 199
+    assert run.loop.stop(20.0)
 
 
 def test_metrics_before_the_first_frame_are_there_and_empty() -> None:

@@ -10,6 +10,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.mountings import Mountings
 from mocapd.types import Bytes, Frame, Rig
 from tests.calibrate.distant_scene import Room, camera, turn
+from tests.calibrate.test_changed_places import room
 
 
 class Showing:
@@ -50,6 +51,22 @@ def test_the_same_picture_says_nothing_new_and_one_of_another_size_nothing_at_al
         one.mountings.look()
     assert one.mountings.of("left") is Mounting.UNKNOWN
     assert one.show(one.room.picture()[:120], 5) is Mounting.UNKNOWN
+
+
+def test_two_cameras_that_have_changed_places_are_said_with_what_to_do(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    cameras, (a, b) = room("close")
+    hub = FrameHub([one.name for one in cameras])
+    mountings = Mountings(Rig(cameras), hub)
+    for k in range(4):
+        for one, pixels in zip(cameras, (b, a), strict=True):
+            hub.put(Frame(one.name, k, nanoseconds(k), pixels))
+        mountings.look()
+    [warning] = caplog.records
+    assert "'left' and 'right' have changed places" in warning.message
+    assert "mocapd calibrate --step room" in warning.message
+    assert {mountings.of(one.name) for one in cameras} == {Mounting.SWAPPED}
 
 
 def test_without_a_rig_nothing_is_known() -> None:

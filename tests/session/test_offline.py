@@ -1,12 +1,15 @@
 """A track's file: what the tracker said of each frame with a person."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
-from mocapd.session.offline import RecordedTrack, track_all, write_track
+from mocapd.errors import ConfigError
+from mocapd.session.offline import RecordedTrack, learn_room, track_all, write_track
 from mocapd.trackers.canned.tracker import UNCERTAINTY_M, CannedTracker
 from mocapd.types import Frame, FrameSet
 from tests.pipeline.free_running import PIXELS
@@ -27,6 +30,34 @@ def test_confidence_and_uncertainty_of_every_joint_are_kept(tmp_path: Path) -> N
         assert kept["joints"].shape == (FRAMES - 1, len(INDEX), 3)  # in one nobody was there
         assert kept["confidence"].shape == kept["uncertainty"].shape == (FRAMES - 1, len(INDEX))
         assert (kept["uncertainty"] == UNCERTAINTY_M).all()
+
+
+class _LearningTracker(CannedTracker):
+    """Keeps the numbers of the frames that it learned the room from."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.learned: list[int] = []
+
+    def learn_room(self, frames: Iterable[FrameSet]) -> None:
+        self.learned += [one.frames["a"].seq for one in frames]
+
+
+def test_a_room_is_learned_from_pictures_all_over_a_long_recording() -> None:
+    sets = [FrameSet(k, {"a": Frame("a", k, k, PIXELS)}) for k in range(1000)]
+    tracker = _LearningTracker()
+    learn_room(tracker, iter(sets), len(sets))
+    assert 40 < len(tracker.learned) <= 60
+    assert len(set(np.diff(tracker.learned))) == 1
+    assert tracker.learned[-1] > 950
+    few = _LearningTracker()
+    learn_room(few, iter(sets[:5]), 5)
+    assert few.learned == [0, 1, 2, 3, 4]
+
+
+def test_a_tracker_that_learns_no_room_is_told_so() -> None:
+    with pytest.raises(ConfigError, match="'canned' learns no room"):
+        learn_room(CannedTracker(), [], 0)
 
 
 def test_a_track_without_uncertainties_knows_none() -> None:

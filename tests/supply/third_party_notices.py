@@ -58,6 +58,11 @@ _BESIDES = """
 - Linked into code of the wheels, not files of their own: OpenCV's third-party parts (`LICENSE-3RD-PARTY.txt` in
   `cv2/` lists them), some 120 Rust crates in eclipse-zenoh (its bill of materials, `sboms/`, lists them),
   FreeType and Qhull in matplotlib, Raqm in pillow, and what scipy, numpy and numba name in their licence files.
+
+## Files in mocapd itself
+
+`mocapd/vision/face/lbpcascade_frontalface.xml` is OpenCV's cascade of frontal faces, unchanged but for a note at its head
+(Copyright OpenCV Foundation and contributors, Apache License 2.0).
 """
 
 

@@ -16,7 +16,7 @@ from mocapd.vision.face.face_detection import (
     faces_near,
     grouped,
 )
-from mocapd.vision.face.lbp_cascade import packaged_cascade_file, read_cascade
+from mocapd.vision.face.lbp_cascade import frontal_faces, read_cascade
 from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, lbp_code, scan
 from tests.vision.toy_face import write_cascade
 
@@ -127,10 +127,7 @@ def test_a_file_without_lbp_features_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_packaged_cascade_sees_no_face_in_noise_and_has_the_window_it_is_slid_with() -> None:
-    path = packaged_cascade_file()
-    if path is None:
-        pytest.skip("scikit-image, which brings the cascade, is not installed")
-    cascade = read_cascade(path)
+    cascade = frontal_faces()
     assert len(cascade.threshold) == 20
     assert (cascade.rects[:, :2] + 3 * cascade.rects[:, 2:] <= WINDOW_PX).all()
     noise = np.random.default_rng(0).integers(0, 256, (240, 320), dtype=np.uint8)

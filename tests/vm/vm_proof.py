@@ -20,7 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.capture.thread import CaptureState, CaptureThread
+from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.controls import Controls
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.listing import list_cameras

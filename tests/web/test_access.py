@@ -145,3 +145,16 @@ def test_every_answer_has_the_protecting_headers(
 
 def test_only_this_machine_is_listened_to(server: WebServer) -> None:
     assert origin_of(server).startswith("http://127.0.0.1:")
+
+
+def test_other_sites_and_names_are_logged_once_each_a_stale_window_never(
+    server: WebServer, caplog: pytest.LogCaptureFixture
+) -> None:
+    for _ in range(3):
+        assert get(server, "/", token="of-another-start").status_code == 401
+        assert get(server, "/", {"origin": "http://evil.example"}).status_code == 403
+        assert get(server, "/", {"host": "rebound.example\t" + "x" * 5000}).status_code == 403
+    site, name = [one for one in caplog.messages if "refused" in one]
+    assert "Origin 'http://evil.example'" in site
+    assert "Host 'rebound.example\\t" in name
+    assert len(name) < 400

@@ -108,7 +108,7 @@ def test_a_websocket_that_its_library_would_not_take_is_refused(
     for headers in (upgrade | many, upgrade | {"x-long": "y" * 9000}):
         assert get(server, "/live", headers, token=token_of(server)).status_code == 400
     posts = httpx.post(server.url, headers=upgrade, trust_env=False, timeout=PATIENCE_S)
-    assert posts.status_code == 405
+    assert posts.status_code in (400, 405)  # an older websockets library refuses it as a whole
     with socket.create_connection(("127.0.0.1", server.port), PATIENCE_S) as one:
         one.sendall(b"GET / HTTP/1.1\r\nConnection: upgrade\r\nUpgrade: websocket\r\n")
         one.sendall(b"Host: x\r\nX-Y: \x01\r\n\r\n")

@@ -16,10 +16,11 @@ from pathlib import Path
 import httpx
 import pytest
 
+from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.web_params import Params
 from mocapd.errors import UnavailableError
 from mocapd.outputs.socket_owners import listens
-from mocapd.web.runtime_file import Place, begin_setup, running, runtime_folder
+from mocapd.web.runtime_file import Place, begin_setup, running
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S
 from tests.web.tiny_host import TinyHost
@@ -93,6 +94,19 @@ def test_a_page_that_is_gone_is_not_found_and_its_files_are_removed(folder: Path
     assert list(folder.iterdir()) == []
     with pytest.raises(UnavailableError):
         begin_setup("http://127.0.0.1:9/?token=x", None)
+
+
+def test_a_page_of_a_newer_mocapd_is_left_alone(
+    host: TinyHost, folder: Path, tmp_path: Path
+) -> None:
+    with served(host, Place(folder, tmp_path, "game")):
+        (path,) = folder.glob("page-*.json")
+        told = json.loads(path.read_text())
+        path.write_text(json.dumps({**told, "schema": told["schema"] + 1}))
+        assert running(folder) == ()
+        assert path.exists()
+        path.write_text(json.dumps({name: told[name] for name in told if name != "schema"}))
+        assert len(running(folder)) == 1  # of an older one
 
 
 def test_another_process_at_the_port_is_told_nothing(folder: Path) -> None:

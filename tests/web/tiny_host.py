@@ -7,14 +7,14 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.recording.recorded_known import RecordedKnown
-from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, UnavailableError
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.latency_histogram import LatencyHistogram
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
@@ -158,8 +158,12 @@ class TinyHost:
         t_s = monotonic_ns() / 1e9
         ms = Percentiles(31.0 + 4 * np.sin(t_s / 5), 48.0 + 9 * np.sin(t_s / 3))
         never = Percentiles(float("nan"), float("nan"))
+        latencies = LatencyHistogram()
+        for latency_ms in (20.0, 30.0, 2000.0):
+            latencies.add(latency_ms)
         metrics = Metrics(
-            29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}
+            *(29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}),
+            latency_counts=latencies.counts(),
         )
         lost = "/dev/video2: gone -- plug it in again"
         status = {
@@ -173,11 +177,6 @@ class TinyHost:
         return Snapshot(
             metrics, status, {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")}
         )
-
-    def recenter(self) -> Facing:
-        if not self.tracks:
-            raise UnavailableError("nobody is seen", "cam0", "stand there")
-        return Facing("pc", 0, 12.5, 0)
 
     def stop(self) -> None:
         """End the setup, if one was begun."""

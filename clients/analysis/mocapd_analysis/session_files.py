@@ -20,6 +20,7 @@ from mocapd_analysis.session import Session
 
 MOST_BYTES = 2 << 30  # of a track when unpacked: two days of frames
 MOST_FRAMES = 2_000_000
+_TRACK = "mocapd.Track.v1"  # what says none is of it too
 _FIELDS = ("times", "joint_names", "joints", "confidence")
 _FIX = "give a file of `mocapd record` (.mcap) or `mocapd track` (.npz)"
 # What numpy, zipfile and zlib raise for a file that is cut short, damaged, encrypted or foreign.
@@ -172,6 +173,11 @@ def _read_track(path: Path) -> Session:
             missing = [field for field in _FIELDS if field not in data.files]
             if missing:
                 raise InputError(f"is no track: it lacks {', '.join(missing)}", str(path), _FIX)
+            schema = str(data["schema"]) if "schema" in data.files else _TRACK
+            if schema != _TRACK:
+                raise InputError(
+                    f"is a track of the schema {schema[:80]!r}, not {_TRACK}", str(path), _FIX
+                )
             names = tuple(str(name) for name in np.atleast_1d(data["joint_names"]))
             times_s, joints_m, confidence = (
                 np.asarray(data[field], dtype=float) for field in ("times", "joints", "confidence")

@@ -8,6 +8,7 @@ from typing import Self
 
 import zenoh
 
+from mocapd.bus.zenoh_calls import zenoh_call
 from mocapd.client import Link, connect
 from mocapd.errors import ConfigError, InputError
 from mocapd.outputs import wire
@@ -20,7 +21,6 @@ from mocapd.outputs.messages import (
 )
 from mocapd.outputs.wire import SkeletonFrame, decode_message
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_calls import zenoh_call
 
 MOST_WAITING = 6000  # frames: 100 s at 60 Hz, should the disk stand still
 ASK_S = 2.0  # for what the daemon told before [s]

@@ -18,11 +18,13 @@ from mocapd.types import Bytes, Camera, Floats
 
 
 class Mounting(StrEnum):
-    """`unknown`: too little of the room is seen; `steady`; `bumped`: calibrate the room again."""
+    """`unknown`: too little of the room is seen; `steady`; `bumped`: calibrate the room again; `swapped`: with another
+    camera, which `places_watch` tells."""
 
     UNKNOWN = "unknown"
     STEADY = "steady"
     BUMPED = "bumped"
+    SWAPPED = "swapped"
 
 
 @dataclass(frozen=True, slots=True)

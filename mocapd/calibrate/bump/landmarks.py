@@ -56,6 +56,11 @@ def find_landmarks(pixels: Bytes, camera: Camera) -> Landmarks:
     return Landmarks(picture, places, _rays(places, camera))
 
 
+def landmarks_at(picture: Bytes, places: Singles, camera: Camera) -> Landmarks:
+    """Marks as they were found before, kept without their rays."""
+    return Landmarks(picture, places, _rays(places, camera))
+
+
 def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
     """How far the camera is turned in a later picture. None is a turn as likely as another one that
     twice as many marks say."""

@@ -4,14 +4,15 @@ import json
 from pathlib import Path
 
 from mocapd.errors import CannotCreateError
-from mocapd.geometry.rig_file import camera_to_dict
+from mocapd.geometry.rig_file import SCHEMA, camera_to_dict
 from mocapd.types import Rig
 from mocapd.whole_file import whole_file
 
 
 def write_rig(path: Path, rig: Rig) -> None:
     """Write the file whole or not at all. Raises CannotCreateError."""
-    text = json.dumps({"cameras": [camera_to_dict(camera) for camera in rig.cameras]}, indent=1)
+    cameras = [camera_to_dict(camera) for camera in rig.cameras]
+    text = json.dumps({"schema": SCHEMA, "cameras": cameras}, indent=1)
     try:
         with whole_file(path) as partial:
             partial.write_text(text + "\n", encoding="utf-8")

@@ -9,6 +9,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.kinds.file_kind import FILE
 from mocapd.capture.kinds.folder_kind import FOLDER
 from mocapd.capture.kinds.mcap_kind import RECORDING
+from mocapd.capture.kinds.remote_kind import REMOTE
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.kinds.url_kind import URL
 from mocapd.capture.origin import Origin, OriginKind, Progress, split_address
@@ -18,7 +19,7 @@ from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM
 from mocapd.errors import InputError
 
-SOURCE_KINDS: tuple[SourceKind, ...] = (WEBCAM, NODE, URL, SIM, RECORDING, FILE, FOLDER)
+SOURCE_KINDS: tuple[SourceKind, ...] = (WEBCAM, NODE, URL, REMOTE, SIM, RECORDING, FILE, FOLDER)
 """The first that matches counts; paths come last, as any text can be one."""
 
 SOURCE_FORMS = ", ".join(kind.form for kind in SOURCE_KINDS[:-1]) + f" or {SOURCE_KINDS[-1].form}"

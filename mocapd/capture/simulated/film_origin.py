@@ -13,6 +13,8 @@ from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sim import SimSource
+from mocapd.capture.simulated.socket_camera import SocketCamera
+from mocapd.capture.simulated.sockets import Sockets
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.sim.film import Film, film_key, load_film
@@ -24,10 +26,12 @@ _LOG = logging.getLogger(__name__)
 
 
 class FilmOrigin:
-    """See Origin. Its cameras share the film's beginning, which is when the first of them is opened."""
+    """See Origin. Its cameras share the film's beginning, which is when the first of them is opened. With `sockets`
+    they are plugged in and out."""
 
-    def __init__(self, address: str, film: Film) -> None:
+    def __init__(self, address: str, film: Film, sockets: Sockets | None = None) -> None:
         self.rig_source = address
+        self._sockets = sockets
         self._film = film
         self._start = _FilmStart(film.scenario, film.first)
 
@@ -76,10 +80,16 @@ class FilmOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
         name = request.name or split_address(address)[1]
-        camera = _FilmCamera(self._start, self._film, name)
+        camera = self._camera(name)
         (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
         check_size(self.rig_source, name, size_px, request.size_px)
         return camera
+
+    def _camera(self, name: str) -> Source:
+        def shown(webcam: str) -> Source:
+            return _FilmCamera(self._start, self._film, webcam)
+
+        return shown(name) if self._sockets is None else SocketCamera(name, self._sockets, shown)
 
     def _frame(self, camera: str, i: int, clock_offset_s: float) -> Frame:
         jpeg = self._film.frames[camera][i]
@@ -118,10 +128,16 @@ class _FilmCamera(SimSource):
         super().open()
 
 
-def open_film(address: str, scenario: Scenario, cache_dir: Path, progress: Progress) -> FilmOrigin:
+def open_film(
+    address: str,
+    scenario: Scenario,
+    cache_dir: Path,
+    progress: Progress,
+    sockets: Sockets | None = None,
+) -> FilmOrigin:
     """The scenario's film, rendered when it is not in the cache. Raises MocapdError."""
     what = "rendering the simulated webcams"
     if not any(cache_dir.glob(f"*{film_key(scenario)[:16]}*")):
         progress(what, 0, 1)  # something to see while the renderer is compiled
     film = load_film(scenario, cache_dir, lambda done, total: progress(what, done, total))
-    return FilmOrigin(address, film)
+    return FilmOrigin(address, film, sockets)

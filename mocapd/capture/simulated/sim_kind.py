@@ -1,4 +1,7 @@
-"""A simulated webcam as a kind of source, `sim:SCENARIO#CAMERA`, and its scenario as the origin."""
+"""A simulated webcam as a kind of source, `sim:SCENARIO#CAMERA`, and its scenario as the origin.
+
+`sim:SCENARIO@FILE.json#CAMERA` sits in a simulated USB socket, from which it is plugged out by changing that file.
+"""
 
 from pathlib import Path
 
@@ -11,6 +14,7 @@ from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, InputError
 
 _PREFIX = "sim:"
+_SOCKETS_SUFFIX = ".json"
 
 
 def _scenario_path(address: str) -> Path:
@@ -18,7 +22,7 @@ def _scenario_path(address: str) -> Path:
 
     Raises InputError for a name that does not exist.
     """
-    name = address.removeprefix(_PREFIX).partition("#")[0]
+    name, _ = _split(address)
     if name.endswith(".toml"):
         return user_path(name)
     known = {one.stem: one for one in asset_path("scenarios").glob("*.toml")}
@@ -29,6 +33,13 @@ def _scenario_path(address: str) -> Path:
             f"one of {', '.join(sorted(known))}, or a .toml file",
         )
     return known[name]
+
+
+def _split(address: str) -> tuple[str, str]:
+    """Scenario and file of the sockets, which may be empty."""
+    name = address.removeprefix(_PREFIX).partition("#")[0]
+    scenario, _, sockets = name.rpartition("@")
+    return (scenario, sockets) if scenario and sockets.endswith(_SOCKETS_SUFFIX) else (name, "")
 
 
 def scenario_address(name: str) -> str:
@@ -56,9 +67,12 @@ def _cameras(origin: str) -> tuple[str, ...]:
 def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
     # what draws is imported for such cameras only: it takes a second
     from mocapd.capture.simulated.film_origin import open_film
+    from mocapd.capture.simulated.sockets import Sockets
     from mocapd.sim.scenario import load_scenario
 
-    return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress)
+    _, file = _split(origin)
+    sockets = Sockets(user_path(file)) if file else None
+    return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress, sockets)
 
 
 SIM = SourceKind(

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mocapd.errors import ConfigError, UnavailableError
+from mocapd.errors import AmbiguousCameraError, ConfigError, UnavailableError
 
 PREFIX = "usb:"
 _PORT_PATH = re.compile(r"\d+-\d+(\.\d+)*")
@@ -69,23 +69,33 @@ def match_identity(
     """Find `wanted` among the webcams that are `present`.
 
     The same model in the same socket is it. Else a single one of the same vid:pid:serial that no
-    other configured camera (`others`) owns is taken for the same camera, moved. Twins of which
-    more than one could be meant are refused: guessing would swap two calibrations.
-    Raises UnavailableError when it is absent or ambiguous.
+    other configured camera (`others`) owns is taken for the same camera, moved, unless a twin of it
+    that is configured too is away: it may be that one. Twins of which more than one could be meant
+    are refused: guessing would swap two calibrations. That twins were swapped in their own sockets
+    cannot be seen here: see service.twins.
+    Raises UnavailableError when it is absent, AmbiguousCameraError when it cannot be told.
     """
     if wanted in present:
         return Match(wanted, moved=False)
     owned = set(others)
     moved = [one for one in present if one.model == wanted.model and one not in owned]
-    if len(moved) == 1:
-        return Match(moved[0], moved=True)
-    if moved:
+    away = [one for one in others if one.model == wanted.model and one not in present]
+    if len(moved) > 1:
         ports = ", ".join(one.port_path for one in moved)
-        raise UnavailableError(
+        raise AmbiguousCameraError(
             f"{len(moved)} webcams with the same vid:pid:serial are in other sockets ({ports})",
             str(wanted),
             f"plug it into port {wanted.port_path} again, or name the one meant in the config",
         )
+    if moved and away:
+        own = " and ".join(one.port_path for one in (wanted, *away))
+        raise AmbiguousCameraError(
+            f"the webcam in port {moved[0].port_path} may be this one or its twin: they have the same vid:pid:serial",
+            str(wanted),
+            f"plug each into its own port again ({own}), or name the new ports in the config",
+        )
+    if moved:
+        return Match(moved[0], moved=True)
     raise UnavailableError(
         "this webcam is not plugged in", str(wanted), f"plug it in (port {wanted.port_path})"
     )

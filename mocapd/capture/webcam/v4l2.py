@@ -13,7 +13,7 @@ from cv2.typing import MatLike
 
 from mocapd.boundary.pictures import decode_picture
 from mocapd.capture.file import size_error
-from mocapd.capture.guard import GuardedCapture
+from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
 from mocapd.capture.webcam.camera_controls import NodeControls
 from mocapd.capture.webcam.controls import (
@@ -85,7 +85,7 @@ class V4l2Source:
         self._others = others
         self._sysfs, self._dev = sysfs, dev
         self._seq = 0
-        self._capture: GuardedCapture | None = None
+        self._openings = Openings()
         self._delivered = False  # since it was opened
 
     @property
@@ -95,8 +95,8 @@ class V4l2Source:
 
     def device(self) -> NodeControls | None:
         """See Lockable."""
-        negotiated, capture = self.negotiated, self._capture
-        if negotiated is None or capture is None or capture.closing:
+        negotiated = self.negotiated
+        if negotiated is None or self._openings.current is None:
             return None
         return NodeControls(negotiated.node)
 
@@ -112,7 +112,7 @@ class V4l2Source:
         Raises UnavailableError (absent, busy, metadata node), PermissionDeniedError, or ConfigError
         when it does not deliver the size of its calibration.
         """
-        self.close()
+        number = self._openings.begin()
         node, moved = self._resolve()
         with opened_node(node) as fd:  # OpenCV only says "no": ask for the reason first
             check_usable(node, fd)
@@ -124,13 +124,16 @@ class V4l2Source:
             settings = self._settings
             got = negotiate(capture, settings, self.name, node, moved)
             further = apply_unknown_to_opencv(NodeControls(node), settings.controls)
-            self.negotiated = replace(got, controls=got.controls + further)
             undo.pop_all()
-        self._warn(self.negotiated)
-        self._capture = GuardedCapture(capture)
+        if not self._openings.take(
+            number, capture
+        ):  # another mode may have been asked for meanwhile
+            raise CameraLost(
+                "was closed while it was opened", self.name, "it is opened again by itself"
+            )
+        self.negotiated = replace(got, controls=got.controls + further)
         self._delivered = False
-        if _other_mode(settings, self._settings):  # asked for from another thread meanwhile
-            self.close()
+        self._warn(self.negotiated)
 
     def read(self) -> Frame:
         """The next whole frame; damaged ones are counted and skipped.
@@ -138,9 +141,9 @@ class V4l2Source:
         Raises CameraLost when the webcam was unplugged, stalls, or sends only damage; it is let go
         of by then, so that the same node can come back.
         """
-        guarded = self._capture
-        if guarded is None or self.negotiated is None:
-            raise CameraLost("not open", self.name, "call open first")
+        guarded, negotiated = self._openings.current, self.negotiated
+        if guarded is None or negotiated is None:
+            raise CameraLost("is closed", self.name, "it is opened again by itself")
         began_ns = monotonic_ns()
         while True:
             with guarded as capture:
@@ -150,27 +153,27 @@ class V4l2Source:
                 t_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
                 good, raw = capture.retrieve()
             seq, self._seq = self._seq, self._seq + 1
-            fourcc = self.negotiated.fourcc
-            pixels = decode(raw, fourcc, self.negotiated.size_px) if good else None
+            fourcc = negotiated.fourcc
+            pixels = decode(raw, fourcc, negotiated.size_px) if good else None
             if pixels is not None:
                 self._delivered = True
                 encoded = delivered_jpeg(raw, pixels) if fourcc == _MJPG else None
                 return Frame(self.name, seq, t_ns, pixels, encoded)
             self.torn += 1
             if grabbed_ns - began_ns > _TORN_LIMIT_NS:
-                self.close()
+                guarded.close()
                 raise CameraLost(
-                    "only damaged frames arrive", str(self.negotiated.node), "check cable and hub"
+                    "only damaged frames arrive", str(negotiated.node), "check cable and hub"
                 )
         closed = guarded.closing
-        self.close()
+        guarded.close()  # and no later one
         waited_s = (monotonic_ns() - began_ns) / NS_PER_S
         where = f"{self.name} ({self._where})"
         if closed:
             raise CameraLost("was closed", where, "it is opened again by itself")
         if waited_s > 0.5:
             raise CameraLost(f"sent nothing for {waited_s:.1f} s", where, "unplug and replug it")
-        if not self._delivered and self.negotiated.node.exists():  # ENOSPC, which OpenCV swallows
+        if not self._delivered and negotiated.node.exists():  # ENOSPC, which OpenCV swallows
             raise CameraLost(
                 "cannot start: its USB bus has no room left, or another program was faster",
                 where,
@@ -180,8 +183,31 @@ class V4l2Source:
 
     def close(self) -> None:
         """Let go; a blocked `read` ends after the stall timeout of `environment` at the latest."""
-        if self._capture is not None:
-            self._capture.close()
+        self._openings.close()
+
+    def plugging(self) -> str:
+        """See Pluggable: the node and its inode, which is another one after each plugging in."""
+        try:
+            node, _ = self._resolve()
+            return f"{node} {node.stat().st_ino}"
+        except (UnavailableError, OSError):
+            return ""
+
+    @property
+    def identity(self) -> WebcamIdentity | None:
+        """See Pluggable."""
+        return self._where if isinstance(self._where, WebcamIdentity) else None
+
+    @property
+    def place(self) -> str:
+        """See Pluggable."""
+        negotiated = self.negotiated
+        moved = negotiated is not None and negotiated.moved
+        return (
+            f"in another USB port than configured ({negotiated.node})"
+            if negotiated and moved
+            else ""
+        )
 
     def _resolve(self) -> tuple[Path, bool]:
         if isinstance(self._where, Path):

@@ -65,9 +65,9 @@ def record(
     from mocapd.client import Link
     from mocapd.clock import monotonic_ns
     from mocapd.clock import seconds as in_seconds
+    from mocapd.config.runtime_folder import runtime_folder
     from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
     from mocapd.outputs.registry import zenoh_section
-    from mocapd.web.runtime_file import runtime_folder
 
     effective = effective_config(config, settings).config
     set_up_logs(effective.log_level)

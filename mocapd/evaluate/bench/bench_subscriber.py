@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import msgspec
 import zenoh
 
+from mocapd.bus.zenoh_client_config import client_config
 from mocapd.clock import monotonic_ns
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import Health
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_client_config import client_config
 
 CONNECT_S = 1.0
 ANSWER_S = 2.0

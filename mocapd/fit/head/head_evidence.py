@@ -33,7 +33,7 @@ from mocapd.vision.face.stereo_distance import (
 
 _REACH = 0.5  # of the face's side: how far from where it is expected it is looked for
 _SAME = 0.7  # of the face's side: farther off it is another's
-_WINDOWS = 2  # that agree on a face where one is expected
+_WINDOWS = 1  # that find a face where one is expected
 _PATCH = 0.8  # of the head's half height: the patch whose distance is taken
 # where hands leave part of the head free: crown, left, right; middle in half widths and half heights, and size
 _PARTS = ((0.0, 0.45, 0.45), (-0.45, 0.0, 0.45), (0.45, 0.0, 0.45))

@@ -21,9 +21,9 @@ from mocapd.types import Floats
 class FloorParams:
     """How firm the floor is."""
 
-    under_sd_m: float = 0.01  # of an ankle that is too low
+    under_sd_m: float = 0.01  # of an ankle or a toe that is too low
     standing_sd_m: float = 0.01  # of one that stands: pixels by the hundred pull at it
-    together_m: float = 0.08  # ankles that differ by less stand both
+    together_m: float = 0.08  # what is higher than the lowest by less stands, too
     jump_m: float = 0.25  # at this height standing has lost half of its weight
 
 
@@ -32,7 +32,8 @@ class FloorTerm:
 
     def __init__(self, model: BodyModel, params: FloorParams | None = None) -> None:
         self._model, self._params = model, params if params is not None else FloorParams()
-        self._feet = np.array([INDEX[side + "Foot"] for side in SIDES])
+        # a picture shows how high a shoe is, and hardly whether its heel is up
+        self._feet = np.array([INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")])
         self._row = np.zeros(model.n_pose)
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:

@@ -41,10 +41,10 @@ def stand_on_floor(
     H: Array,
     b: Array,
 ) -> float:
-    """Add a row for each ankle, feet (F,), that is too low or stands; the cost.
+    """Add a row for each ankle or toe joint, feet (F,), that is too low or stands; the cost.
 
-    heights_m (F,): of the ankles of one who stands; information: of what is under the floor and of what is on it;
-    together_m: by how much more than the lowest an ankle may be up and still stand; jump_m: height at which
+    heights_m (F,): of those of one who stands; information: of what is under the floor and of what is on it;
+    together_m: by how much more than the lowest one may be up and still stand; jump_m: height at which
     standing has lost half of its weight. row (n_pose,) is scratch.
     """
     up = np.array([0.0, 1.0, 0.0])

@@ -70,7 +70,11 @@ class RecordingWriter:
             compression=CompressionType.ZSTD,
             index_types=IndexType.ALL,
         )
-        self._mcap.start("", f"mocapd {mocapd.__version__}")
+        with (
+            self._writing()
+        ):  # at once, so that a kill within the first moment leaves a recording, if an empty one
+            self._mcap.start("", f"mocapd {mocapd.__version__}")
+            self._file.flush()
         self._channels: dict[tuple[str, str], int] = {}
         self._schemas: dict[str, int] = {}
         self._rests: dict[int, RestSkeleton] = {}

@@ -12,9 +12,9 @@ from typing import Annotated, Any
 
 from msgspec import Meta
 
+from mocapd.bus.zenoh_limits import receive_limits, unicast_limits
 from mocapd.errors import ConfigError
 from mocapd.outputs.prediction.prediction_params import PredictionParams
-from mocapd.outputs.zenoh.zenoh_limits import receive_limits, unicast_limits
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
 
 LOOPBACK = "127.0.0.1"
@@ -36,7 +36,7 @@ class Params(PredictionParams):
     connect: endpoints of a router to join, such as `tcp/127.0.0.1:7447`; then nothing listens here
     connect_timeout_s: how long to try to reach that router [s]
     allow_unencrypted: permit `tcp/` beyond this machine
-    tls_certificate, tls_private_key: PEM files of this daemon, for `tls/` in `listen`
+    tls_certificate, tls_private_key: PEM files of this daemon, for `tls/` in `listen`, or for a router that asks for them
     tls_root_ca: PEM file of the authority that signed the other side
     tls_require_client: let in only clients with a certificate of `tls_root_ca`
     password_file: let in only users of this file, lines `user:password` (use it with `tls/`)
@@ -169,11 +169,14 @@ def session_config(params: Params) -> dict[str, Any]:
 
 
 def _tls(params: Params) -> dict[str, Any]:
+    shows_own = bool(params.connect and params.tls_certificate)
     return {
         "listen_certificate": params.tls_certificate or None,
         "listen_private_key": params.tls_private_key or None,
         "root_ca_certificate": params.tls_root_ca or None,
-        "enable_mtls": params.tls_require_client,
+        "enable_mtls": params.tls_require_client or shows_own,
+        "connect_certificate": params.tls_certificate if shows_own else None,
+        "connect_private_key": params.tls_private_key if shows_own else None,
     }
 
 

@@ -1,34 +1,31 @@
 """Opening the daemon's Zenoh session, with every refusal said in one line."""
 
 import json
-import os
 from pathlib import Path
+from typing import Any
 
 import zenoh
 
+import mocapd.bus.zenoh_limits  # noqa: F401  the threads of the first session of the process
 from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
 from mocapd.outputs.socket_owners import holder_of
 from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints, session_config
-from mocapd.outputs.zenoh.zenoh_limits import RUNTIME, RUNTIME_VARIABLE
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
-
-# Zenoh reads it when the first session of the process opens. What the user has set is left alone.
-os.environ.setdefault(RUNTIME_VARIABLE, RUNTIME)
 
 TAKEN = "os error 98"  # EADDRINUSE in the text of Zenoh's errors, which have no code
 FORBIDDEN = "os error 13"  # EACCES
 
 
-def open_session(params: Params) -> zenoh.Session:
+def open_session(params: Params, config: dict[str, Any] | None = None) -> zenoh.Session:
     """The session. Raises UnavailableError or PermissionDeniedError with the mend.
 
-    A taken port names the process that holds it. Raises ConfigError when the password file changed
-    into one that does not do since the parameters were made.
+    config: Zenoh's own, in place of the daemon's. A taken port names the process that holds it. Raises ConfigError when
+    the password file changed into one that does not do since the parameters were made.
     """
     if params.password_file:
         check_password_file(Path(params.password_file))
     try:
-        return zenoh.open(zenoh.Config.from_json5(json.dumps(session_config(params))))
+        return zenoh.open(zenoh.Config.from_json5(json.dumps(config or session_config(params))))
     except zenoh.ZError as error:
         raise _explained(params, str(error)) from error
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import zenoh
 
+from mocapd.bus.zenoh_close import close_soon
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.outputs import wire
 from mocapd.outputs.base import SinkStatus
@@ -13,7 +14,6 @@ from mocapd.outputs.instance import instance_name
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
-from mocapd.outputs.zenoh.zenoh_close import close_soon
 from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints
 from mocapd.outputs.zenoh.zenoh_listeners import ListenerNames
 from mocapd.outputs.zenoh.zenoh_open import open_session

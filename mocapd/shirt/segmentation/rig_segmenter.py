@@ -6,7 +6,6 @@ import numpy as np
 
 from mocapd.body.shirt_patches import SLEEVE_PATCHES, standard_shirt
 from mocapd.clock import seconds
-from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
@@ -15,7 +14,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.segmentation.bare_skin import face_disc
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
-from mocapd.types import Floats, Frame, FrameSet, Ints
+from mocapd.types import Floats, FrameSet, Ints
+from mocapd.vision.frame_size import check_frame_size
 
 
 class RigSegmenter:
@@ -49,7 +49,7 @@ class RigSegmenter:
         """Take the pictures; those `present`. Raises ConfigError when one is not of its calibration's size."""
         mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
         for i, frame in mine:
-            _check_size(frame, self.each[i].camera.size_px)
+            check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
             self.each[i].look(frame.pixels)
         return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
@@ -118,13 +118,3 @@ def _colours_of(sides: tuple[str, ...]) -> Ints:
         return np.empty(0, np.int64)
     colours = [standard_shirt().colour_of_patch[SLEEVE_PATCHES[side]] for side in sides]
     return np.unique(np.concatenate(colours)).astype(np.int64) - 1
-
-
-def _check_size(frame: Frame, size_px: tuple[int, int]) -> None:
-    h, w = frame.pixels.shape[:2]
-    if (w, h) != size_px:
-        raise ConfigError(
-            f"delivers {w}x{h}, its calibration is for {size_px[0]}x{size_px[1]}",
-            f"camera {frame.camera!r}",
-            "set that size, or calibrate again",
-        )

@@ -9,15 +9,18 @@ from numpy.typing import NDArray
 from mocapd.sim.person.dress_kernels import REACH, Dress, covered
 from mocapd.sim.person.dressing import joined_dresses
 from mocapd.sim.person.figure import Figure, posed_figure
+from mocapd.sim.person.on_screen import on_screen
+from mocapd.sim.person_spec import Screen
 from mocapd.types import Bytes, Floats, Pose
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """How somebody is at one instant. jacket: how far it is on, 0..1."""
+    """How somebody is at one instant. jacket: how far it is on, 0..1; screen: on which they are shown, if any."""
 
     pose: Pose
     jacket: float = 0.0
+    screen: Screen | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,10 +47,10 @@ def group_of(figures: Sequence[Figure]) -> Group:
 
 def posed_group(group: Group, bodies: Sequence[Body]) -> Floats:
     """Vertices (V,3) in the world [m]."""
-    posed = [
-        posed_figure(figure, body.pose, body.jacket)
-        for figure, body in zip(group.figures, bodies, strict=True)
-    ]
+    posed = []
+    for figure, body in zip(group.figures, bodies, strict=True):
+        vertices = posed_figure(figure, body.pose, body.jacket)
+        posed.append(vertices if body.screen is None else on_screen(vertices, body.screen))
     return posed[0] if len(posed) == 1 else np.concatenate(posed)
 
 

@@ -12,7 +12,6 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.limb_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
@@ -29,17 +28,17 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.trackers.blending import Residual, blended, later, residual_of
+from mocapd.trackers.blending import Residual, later, residual_of
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.confidence import joint_confidence
 from mocapd.trackers.colour.params import Params
 from mocapd.trackers.texture_distance import texture_distances
+from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import (
     BodyState,
     Floats,
     FrameSet,
-    Pose,
     Rig,
     Tracking,
 )
@@ -345,28 +344,18 @@ class ColourTracker:
         known = self._known
         if tracking is Tracking.LOST or known is None:
             return Track(lost_body(frames.t_ns, self.name), shape)
-        state = known.state
         away_s = seconds(frames.t_ns - known.t_ns)
-        if away_s > 0.0:  # coasting: it moves on for a moment, then stays
-            root, local = moved(
-                self._fitter.model, state, min(away_s, 0.1), self.params.prediction_damping
-            )
-            state = replace(state, root_m=root, local_xyzw=local)
-        if known.left is not None:
-            root, local = blended(state.root_m, state.local_xyzw, known.left)
-            state = replace(state, root_m=root, local_xyzw=local)
-        joints, globals_ = self._fitter.joints(state)
-        model = self._fitter.model
-        uncertainty_m = joint_uncertainty_m(
-            model, joints, globals_, pose_covariance(model, known.fit.H)
+        told = told_pose(
+            self._fitter, known.state, known.fit, known.left, away_s, self.params.prediction_damping
         )
+        uncertainty_m = told.uncertainty_m
         confidence = joint_confidence(known.fit, len(known.cameras), uncertainty_m, away_s)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
             tracker=self.name,
-            pose=Pose(joints[0], np.where(globals_[:, 3:] < 0, -globals_, globals_)),
-            joints_m=joints,
+            pose=told.pose,
+            joints_m=told.joints_m,
             confidence=confidence,
             cameras=known.cameras if away_s == 0.0 else (),
             uncertainty_m=grown(uncertainty_m, away_s),

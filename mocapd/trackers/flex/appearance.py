@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.body.regions import Region
+from mocapd.body.regions import Band, Region
 from mocapd.trackers.flex.appearance_kernels import (
     BITS,
     N_BINS,
@@ -55,7 +55,7 @@ class Appearance:
 
     def __init__(self, params: AppearanceParams) -> None:
         self._params = params
-        self._counts = np.zeros((N_CLASSES, N_BINS), np.float32)
+        self._counts = np.zeros((1 + len(Region) + len(Band), N_BINS), np.float32)
         self._table = np.zeros_like(self._counts)
         n = 1 << BITS
         self._scratch = np.empty((n, n, n), np.float32)
@@ -135,7 +135,9 @@ class Appearance:
         return ids
 
     def _refresh(self) -> None:
-        log_table(self._counts, self._params.least_share, self._scratch, self._table)
+        # bands are counted only until they are joined
+        n = len(self._counts) if self._counts[N_CLASSES:].any() else N_CLASSES
+        log_table(self._counts[:n], self._params.least_share, self._scratch, self._table[:n])
 
 
 def region_distances(drawn: Bytes) -> Singles:

@@ -1,13 +1,12 @@
 """What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.clock import seconds
-from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
@@ -15,7 +14,9 @@ from mocapd.trackers.flex.appearance import Appearance, region_distances
 from mocapd.trackers.flex.floor_view import FloorView
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
-from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN
+from mocapd.vision.clip_background import clip_background
+from mocapd.vision.foreground_kernels import BEFORE, stands
+from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.room_background import RoomBackground, brightness_edges
 
 _ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
@@ -35,36 +36,32 @@ class CameraView:
         self.before = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
         self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
-        self.near: Roi = (0, 0, 0, 0)  # the region about it
+        self.near: Roi | None = None  # the region about it
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
+        self.may_hold_body = False  # the background, learned from a recording with somebody in it
         self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
 
     def reset(self) -> None:
         """Forget background and appearance."""
         self.background.reset()
         self.appearance.reset()
-        self.mark_body(None, (0, 0, 0, 0))
+        self.may_hold_body = False
+        self.mark_body(None, None)
 
     def look(self, pixels: Bytes) -> None:
         """Take a frame's pixels (h,w,3). Raises ConfigError when it is not of its calibration's size."""
-        h, w = pixels.shape[:2]
-        if (w, h) != self.size_px:
-            raise ConfigError(
-                f"delivers {w}x{h}, its calibration is for {self.size_px[0]}x{self.size_px[1]}",
-                f"camera {self.name!r}",
-                "set that size, or calibrate again",
-            )
+        check_frame_size(self.name, pixels, self.size_px)
         w, h = self.work_size
         k = self.image_scale
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
 
-    def mark_body(self, drawn: Bytes | None, roi: Roi) -> None:
+    def mark_body(self, drawn: Bytes | None, roi: Roi | None) -> None:
         """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is."""
         self.body[:] = 0
         self.drawn[:] = 0
         self.near = roi
-        if drawn is not None:
+        if drawn is not None and roi is not None:
             x0, y0, x1, y1 = roi
             self.drawn[y0:y1, x0:x1] = drawn > 0
             cv2.dilate(self.drawn, self.beside, dst=self.body)
@@ -74,7 +71,9 @@ class CameraView:
         gain = self.background.follow_light(self.picture, self.body)
         if gain is not None:
             self.appearance.relight(gain)
-        self.before = self.background.before(self.picture, None if everywhere else self.near)
+        nowhere = (0, 0, 0, 0)
+        within = None if everywhere else self.near or nowhere
+        self.before = self.background.before(self.picture, within)
 
 
 class CameraViews:
@@ -103,6 +102,29 @@ class CameraViews:
             self.each[i].look(frame.pixels)
         self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
+    def learn_room(self, frames: Iterable[FrameSet]) -> None:
+        """Learn each background from a recording in which somebody may be seen all the time. Raises ConfigError when
+        a frame is not of its calibration's size."""
+        shown: list[list[Bytes]] = [[] for _ in self.each]
+        times_s: list[list[float]] = [[] for _ in self.each]
+        for one in frames:
+            self.look(one)
+            for i, late_s in self.present.items():
+                shown[i].append(self.each[i].picture.copy())
+                times_s[i].append(seconds(one.t_ns) + late_s)
+        for camera, pictures, when_s in zip(self.each, shown, times_s, strict=True):
+            if pictures:
+                camera.background.know(*clip_background(pictures, np.array(when_s)))
+                camera.may_hold_body = True
+
+    def doubt_background(self) -> None:
+        """What the body that was found covers may have been learned with the room: what looks like it is not known there."""
+        for i in self.present:
+            camera = self.each[i]
+            if camera.may_hold_body:
+                camera.background.doubt(camera.picture, camera.drawn)
+                camera.may_hold_body = False
+
     @property
     def are_new(self) -> bool:
         """Whether some background is not known yet."""
@@ -119,7 +141,7 @@ class CameraViews:
             drawing = self.fitter.drawings[i]
             roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
             if state is None or roi is None:
-                self.each[i].mark_body(None, (0, 0, 0, 0))
+                self.each[i].mark_body(None, None)
             else:
                 self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
 
@@ -134,18 +156,19 @@ class CameraViews:
             camera = self.each[i]
             camera.background.take_uncovered(camera.picture, camera.before, camera.drawn)
 
-    def classified(self, state: MotionState) -> list[View]:
-        """Every present picture by the regions of the body as predicted, which is drawn last into each."""
+    def classified(self, state: MotionState, marked: bool = False) -> list[View]:
+        """Every present picture by the regions of the body as predicted, which is drawn last into each; marked:
+        `mark_body` did that, with this state and this fitter, and nothing was drawn since."""
         p = self._params
         views = []
         for i, dt_s in self.present.items():
             drawing, camera = self.fitter.drawings[i], self.each[i]
-            roi = drawing.region(state, dt_s, p.margin_px)
+            roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)
             if roi is None:
                 continue
             x0, y0, x1, y1 = roi
             before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
-            drawn = drawing.render(state, dt_s, roi)
+            drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
             ids = camera.appearance.classify(
                 np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
                 before,
@@ -199,16 +222,17 @@ class CameraViews:
             camera = self.each[i]
             if not camera.background.is_new:
                 cv2.dilate(
-                    ((camera.before > 0) & (camera.before != UNKNOWN)).astype(np.uint8),
+                    stands(camera.before).astype(np.uint8),
                     camera.beside,
                     dst=camera.body,
                 )
 
     def learn_background(self) -> None:
-        """Follow each background where nobody is marked."""
+        """Follow each background where nobody is marked; not while somebody who may be a part of it is not found yet."""
         for i in self.present:
             camera = self.each[i]
-            camera.background.learn(camera.picture, camera.body)
+            if not camera.may_hold_body:
+                camera.background.learn(camera.picture, camera.body)
 
     def outline_contrast(self) -> float:
         """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""

@@ -5,12 +5,14 @@ a limb where it was thought to be.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.body.regions import Region, recoloured, regions
-from mocapd.fit.fit_params import FitParams, LimbSearchParams
+from mocapd.body.regions import Band, Region, recoloured, regions
+from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
+from mocapd.fit.leg_search import LegSearch
 from mocapd.fit.limb_search import ArmSearch
 from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.appearance import Appearance
@@ -20,18 +22,28 @@ Look = tuple[
     int, ...
 ]  # by region 0..: the region whose colours it shares, itself where it has its own
 
-ALL_DIFFER: Look = (0, *(int(region) for region in Region))
+ALL_DIFFER: Look = (0, *(int(part) for part in (*Region, *Band)))
 _MAY_BE_ONE = (
     (Region.HAND, Region.FOREARM),
     (Region.FOREARM, Region.TRUNK),
     (Region.HAIR, Region.FACE),
     (Region.FOOT, Region.LEG),
 )
+# Bands from the end of a limb on, between its region and the one at the chain's other end
+_CHAINS = (
+    (Region.LEG, (Band.LOW_HIPS, Band.HIGH_HIPS, Band.WAIST), Region.TRUNK),
+    (Region.FOREARM, (Band.LOW_SLEEVE, Band.HIGH_SLEEVE), Region.TRUNK),
+)
 
 
 def look_of(seen: Sequence[Appearance], alike: float) -> Look:
-    """What the cameras learned: regions whose colours overlap by more than `alike`, 0..1, are one."""
+    """What the cameras learned: where shirt and sleeves end, and that regions whose colours overlap by more than `alike`,
+    0..1, are one."""
     look = list(ALL_DIFFER)
+    for limb, bands, trunk in _CHAINS:
+        limbs = _bands_of_limb(seen, limb, bands, trunk)
+        for k, band in enumerate(bands):
+            look[band] = limb if k < limbs else trunk
     for one, other in _MAY_BE_ONE:
         if np.mean([appearance.overlap(one, other) for appearance in seen]) > alike:
             look[one] = other
@@ -41,8 +53,27 @@ def look_of(seen: Sequence[Appearance], alike: float) -> Look:
     return tuple(look)
 
 
+def _bands_of_limb(
+    seen: Sequence[Appearance], limb: Region, bands: Sequence[Band], trunk: Region
+) -> int:
+    """How many of the bands look like the limb that they begin at, rather than like the trunk."""
+    likelier = [
+        float(np.mean([one.overlap(band, limb) - one.overlap(band, trunk) for one in seen]))
+        for band in bands
+    ]
+    return int(np.argmax([sum(likelier[:n]) - sum(likelier[n:]) for n in range(len(bands) + 1)]))
+
+
+class Dressed(NamedTuple):
+    """What works with one look."""
+
+    fitter: Fitter
+    arms: ArmSearch
+    legs: LegSearch
+
+
 class DressedFitters:
-    """Fitter and search for arms of each look, made when it is first asked for."""
+    """Fitter and searches for arms and legs of each look, made when it is first asked for."""
 
     def __init__(
         self,
@@ -51,16 +82,18 @@ class DressedFitters:
         image_scales: Sequence[int],
         fit: FitParams,
         limbs: LimbSearchParams,
+        legs: LegSearchParams,
     ) -> None:
         """body: a whole one, in any colours; image_scales: as `Fitter`."""
         self._body, self._cameras, self._scales = body, cameras, image_scales
-        self._fit, self._limbs = fit, limbs
-        self._made: dict[Look, tuple[Fitter, ArmSearch]] = {}
+        self._fit, self._limbs, self._legs = fit, limbs, legs
+        self._made: dict[Look, Dressed] = {}
 
-    def of(self, look: Look) -> tuple[Fitter, ArmSearch]:
+    def of(self, look: Look) -> Dressed:
         """The same ones to whoever asks for the same look."""
         if look not in self._made:
             colour = np.array(look, np.uint8)[regions(self._body)]
             fitter = Fitter(recoloured(self._body, colour), self._cameras, self._scales, self._fit)
-            self._made[look] = fitter, ArmSearch(fitter, self._limbs)
+            arms, legs = ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs)
+            self._made[look] = Dressed(fitter, arms, legs)
         return self._made[look]

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.trackers.flex.appearance import AppearanceParams
+from mocapd.trackers.flex.face_watch import FaceWatchParams
 from mocapd.vision.room_background import BackgroundParams
 
 
@@ -42,12 +43,14 @@ class Params:
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(uncertain_arm=0.55, hand_px=0.0, hand_cost=0.0)
+        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0)
     )
+    legs: LegSearchParams = field(default_factory=LegSearchParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
     floor: FloorParams = field(default_factory=FloorParams)
+    facing: FaceWatchParams = field(default_factory=FaceWatchParams)
     distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
@@ -67,6 +70,9 @@ class Params:
         0.7  # share of its velocity that such an arm keeps from frame to frame
     )
 
+    jump_m: float = (
+        0.08  # of a joint from where it was predicted, beyond which the pose is told bit by bit
+    )
     blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
     crossed_turns: int = 3  # from one look at crossed legs to the next
@@ -75,6 +81,8 @@ class Params:
     crossed_gain: float = (
         10.0  # by how much the cost must fall to exchange them [disagreeing pixels]
     )
+
+    turned_loss: float = 0.12  # of what is explained, that a body turned round may cost at first
 
     # decisions
     live_explained: float = (

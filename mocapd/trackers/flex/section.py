@@ -8,11 +8,27 @@ from msgspec import Meta
 
 @dataclass(frozen=True, slots=True)
 class FlexSection:
-    """What is believed.
+    """What is believed, and which steps are taken.
 
     live_explained: share of the drawn body and of what stands there that agree, for the pose to be believed
     accept_explained: the same of a silhouette that is taken for a person
+    texture: before cameras side by side, distances are measured by the cloth's texture
+    floor: feet stand on the floor and are not under it
+    arm_search: other poses are tried for an arm that does not agree with the pictures
+    leg_search: the same for a leg, and legs that stay crossed are exchanged
+    faces: a face that shows where somebody is thought to look away turns them round
+    shadows: shadows are told from people
+    look_alikes: regions of the body that look alike are one
+    limits: joints have limits, and arms do not enter the trunk
     """
 
     live_explained: Annotated[float, Meta(gt=0.0, lt=1.0)] = 0.45
     accept_explained: Annotated[float, Meta(gt=0.0, lt=1.0)] = 0.75
+    texture: bool = True
+    floor: bool = True
+    arm_search: bool = True
+    leg_search: bool = True
+    faces: bool = True
+    shadows: bool = True
+    look_alikes: bool = True
+    limits: bool = True

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
+from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
@@ -15,18 +17,22 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, rays
 from mocapd.trackers.flex.params import StartParams
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.foreground_kernels import BEFORE, SHADOW
+from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands
 
 _ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
+_UPRIGHT = 0.85  # of the hips' height: two shadows, or pieces of one body, are explained by one that squats
+_ON_FLOOR_M = 0.25  # of both ankles on average: one foot may be raised, or both be on a step
+_ANKLES = [INDEX[side + "Foot"] for side in SIDES]
 _ABOUT_PX = 20  # of a blob, within which its body is drawn
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blob:
-    """A connected piece before the background of one camera: mask (h,w) uint8 of the region roi about it, its box's upper and
-    lower edge and its middle column [work px]."""
+    """A connected piece before the background of one camera: mask (h,w) uint8 of the region roi about it and where the
+    background is known there, its box's upper and lower edge and its middle column [work px]."""
 
     mask: Bytes
+    known: NDArray[np.bool_]
     roi: Roi
     top: float
     bottom: float
@@ -43,9 +49,10 @@ class Standing:
 
 
 def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
-    """The largest pieces (h,w) that may be people, largest first; shadows: with what may be one, or dark cloth."""
-    mask = (before == BEFORE) | (before >= SHADOW) if shadows else before == BEFORE
-    n, numbered, stats, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
+    """The largest pieces (h,w) that may be people, largest first, joined across what is not known; shadows: with what may be
+    one, or dark cloth."""
+    mask, known = stands(before) if shadows else before == BEFORE, before != UNKNOWN
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats((mask | ~known).astype(np.uint8))
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
     for k in order:
@@ -55,8 +62,12 @@ def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
             x0, y0 = max(left - _ABOUT_PX, 0) & ~1, max(top - _ABOUT_PX, 0) & ~1
             x1 = min(left + width + _ABOUT_PX, before.shape[1]) & ~1
             y1 = min(top + height + _ABOUT_PX, before.shape[0]) & ~1
-            piece = (numbered[y0:y1, x0:x1] == k).astype(np.uint8)
-            out.append(Blob(piece, (x0, y0, x1, y1), top, top + height, float(middles[k, 0])))
+            here = np.s_[y0:y1, x0:x1]
+            piece = (numbered[here] == k).astype(np.uint8)
+            if np.count_nonzero(piece) < params.least_px:
+                continue
+            edges = top, top + height, float(middles[k, 0])
+            out.append(Blob(piece, known[here], (x0, y0, x1, y1), *edges))
     return out
 
 
@@ -120,6 +131,16 @@ def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
     return float((blob.top - top[1]) ** 2 + across**2 + 0.5 * below**2)
 
 
+def is_standing(fitter: Fitter, fit: Fit) -> bool:
+    """Whether a first pose has its hips about as high as somebody who stands, and its feet on the floor: a smaller person on
+    a television has not."""
+    joints_m = fitter.joints(fit.state)[0]
+    return bool(
+        joints_m[0, 1] > _UPRIGHT * fitter.model.rest_m[0, 1]
+        and joints_m[_ANKLES, 1].mean() < _ON_FLOOR_M
+    )
+
+
 def first_fit(
     fitter: Fitter,
     who: Standing,
@@ -134,7 +155,7 @@ def first_fit(
     offsets_s: each camera's own time after the frame set's, by index.
     """
     views = [
-        View(i, blob.roi, blob.mask, np.full(blob.mask.shape, 255, np.uint8), offsets_s[i])
+        View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
         for i, blob in who.blobs.items()
     ]  # fmt: skip
     rest = fitter.shaper(factors).rest

@@ -1,6 +1,6 @@
 """The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,26 +13,26 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved, step_between
-from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
-from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.trackers.blending import Residual, blended, later, residual_of
+from mocapd.trackers.blending import Residual, later, residual_of
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
-from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
 from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
+from mocapd.trackers.flex.other_poses import WHOLE, OtherPoses
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex.stance import blobs_of, first_fit, standing
+from mocapd.trackers.flex.person_search import PersonSearch
 from mocapd.trackers.texture_distance import texture_distances
+from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig, Tracking
+from mocapd.vision.face.lbp_cascade import blind_cascade
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
 _UPPER = np.flatnonzero(upper_body().group_of_joint >= 0)  # joints that a guide knows
@@ -70,19 +70,26 @@ class FlexTracker:
         stature_m: float,
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
+        cascade: CascadeArrays | None = None,
     ) -> None:
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing."""
         self.params = p = params if params is not None else Params()
         self.rig = rig
         body = build_model(stature_m, full_body())
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs)
-        self._fitter, self._arms = self._fitters.of(ALL_DIFFER)
+        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs, p.legs)
+        self._dressed = self._fitters.of(ALL_DIFFER)
+        self._fitter = self._dressed.fitter
         self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit)
         self._model = self._fitter.model
         self._skeleton = standard_skeleton(stature_m)
         self._floor = FloorTerm(self._model, p.floor)
         self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
         self._cameras = CameraViews(self._fitter, p)
+        self._find = PersonSearch(
+            self._silhouettes, self._floor, self._cameras, rig.cameras, p.start
+        )
+        self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
         self._tracking = TrackingState(tracking)
         self.probe: Probe = unprobed
         self._rehearse()
@@ -113,7 +120,7 @@ class FlexTracker:
         still, usual_sd = somebody.velocity, self._fitter.prediction_sd
         predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
         cameras.learn_appearance(somebody, views)
-        self._arms.rehearse(somebody, views)
+        self._others.rehearse(self._dressed, somebody, views)
 
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""
@@ -122,10 +129,13 @@ class FlexTracker:
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
         self._near = near
-        self._next_start_ns = 0
-        self._crossed_looks = 0
-        self._likely_m: list[Floats] = []
+        self._find.reset()
+        self._others.reset()
         self._turn = 0
+
+    def learn_room(self, frames: Iterable[FrameSet]) -> None:
+        """Learn the background from a recording, before its first step. Raises ConfigError as `step` does."""
+        self._cameras.learn_room(frames)
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
@@ -196,7 +206,7 @@ class FlexTracker:
         if looks_round:
             self._cameras.take_uncovered()
         self.probe("background")
-        views = self._cameras.classified(predicted)
+        views = self._cameras.classified(predicted, marked=True)
         self.probe("classify")
         if not views:
             return known, views
@@ -211,14 +221,17 @@ class FlexTracker:
             predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms,
         )  # fmt: skip
         self.probe("fit")
-        fit, switched = self._arms.improve(fit, views, dt_s, self._turn, False, terms)
-        self.probe("arms")
+        fit, changed = self._others.improve(
+            self._dressed, fit, views, dt_s, frames, self._turn, terms,
+            lambda state: self._terms(state, views, frames), self.probe,
+        )  # fmt: skip
         if not self._believed(fit):
             return known, views
         state = fit.state
-        velocity = self._velocity(fit, last, dt_s, switched)
+        velocity = self._velocity(fit, last, dt_s, changed)
         left = later(known.left) if known.left is not None else None
-        if switched:
+        off_m = np.linalg.norm(fitter.joints(predicted)[0] - fitter.joints(state)[0], axis=1).max()
+        if changed or off_m > p.jump_m:
             left = residual_of(fitter, predicted, state, known.left, p.blend_m)
         return _Memory(
             frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), left
@@ -246,7 +259,10 @@ class FlexTracker:
         self.probe("background")
         is_first = not cameras.know_appearance
         fitter = self._silhouettes if is_first else self._fitter
-        views = cameras.silhouettes(predicted) if is_first else cameras.classified(predicted)
+        if is_first:
+            views = cameras.silhouettes(predicted)
+        else:
+            views = cameras.classified(predicted, marked=True)
         self.probe("classify")
         if not views:
             return known, views
@@ -268,7 +284,7 @@ class FlexTracker:
         left = later(known.left) if known is not None and known.left is not None else None
         if not is_first:
             before = fit
-            fit = self._legs_apart(fit, views, dt_s, terms)
+            fit = self._others.legs_apart(fitter, fit, views, dt_s, self._turn, terms)
             if fit is not before:
                 was = None if known is None else known.left
                 left = residual_of(fitter, predicted, fit.state, was, p.blend_m)
@@ -304,88 +320,34 @@ class FlexTracker:
         )
         return (self._floor, *measured)
 
-    def _legs_apart(
-        self, fit: Fit, views: Sequence[View], dt_s: float, terms: Sequence[PoseTerm]
-    ) -> Fit:
-        """The fit, or that with the legs exchanged: both look alike, and below known hips crossed ones are unusual."""
-        p = self.params
-        if self._turn % p.crossed_turns:
-            return fit
-        crossed = are_crossed(self._fitter.joints(fit.state)[0])
-        self._crossed_looks = self._crossed_looks + 1 if crossed else 0
-        if self._crossed_looks < p.crossed_looks:
-            return fit
-        self._crossed_looks = 0
-        start = with_legs_exchanged(self._fitter, fit.state)
-        other = self._fitter.fit(
-            start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
-        )
-        costs = [one.cost + unusual_legs(one.state.local_xyzw) for one in (fit, other)]
-        return other if costs[1] < costs[0] - p.crossed_gain else fit
-
-    def _velocity(
-        self, fit: Fit, last: MotionState, dt_s: float, switched: Sequence[str]
-    ) -> Floats:
-        """Of the pose (n_pose,) per second, from the step since the last one."""
+    def _velocity(self, fit: Fit, last: MotionState, dt_s: float, changed: Sequence[str]) -> Floats:
+        """Of the pose (n_pose,) per second, from the step since the last one; not of parts that changed over."""
         p, state = self.params, fit.state
         before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
         velocity = step_between(self._model, now, before) / dt_s
         velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
         velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
         for side in SIDES:
-            # what is hardly seen is hardly known to move; what was changed over jumped
+            # what is hardly seen is hardly known to move
             trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
             columns = self._arm_columns[side]
             glide = p.hidden_arm_glide * last.velocity[columns]
             velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
-            if side in switched:
-                velocity[columns] = 0.0
+        for part in changed:
+            velocity[slice(None) if part == WHOLE else self._model.space.columns(part)] = 0.0
         return velocity
 
     def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
         """Look for somebody who stands before the background."""
-        p, cameras = self.params, self._cameras
-        if cameras.are_new or frames.t_ns < self._next_start_ns:
-            return None, []
-        self._next_start_ns = frames.t_ns + nanoseconds(p.start.pause_s)
-        cameras.mark_body(None)
-        cameras.stand_before()
-        cameras.take_uncovered()
-        fits = [one for shadows in (False, True) for one in self._standing(wearer, shadows)]
+        found = self._find.look(wearer.factors, wearer.information, frames.t_ns)
         self.probe("start")
-        likely = [one for one in fits if one[0].explained >= p.start.likely_explained]
-        last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
-        if not likely:
+        if found is None:
             return None, []
-        # who is nearer wants to be tracked: a passer-by is seldom in front
-        fit, names = max(
-            likely, key=lambda one: one[0].explained - p.start.farther_per_m * self._away_m(one[0])
-        )
-        again = any(np.linalg.norm(fit.state.root_m - one) < p.start.same_place_m for one in last)
-        if fit.explained < p.start.accept_explained and not again:
-            return None, []
+        fit, names = found
+        self._cameras.mark_body(fit.state)
+        self._cameras.doubt_background()
         self._learn_first(fit.state)
         return _Memory(frames.t_ns, fit.state, fit, names), []
-
-    def _standing(self, wearer: _Wearer, shadows: bool) -> list[tuple[Fit, tuple[str, ...]]]:
-        """People before the background, and the cameras that show them; shadows: with what may be one."""
-        p, cameras = self.params.start, self._cameras
-        blobs = {i: blobs_of(cameras.each[i].before, shadows, p) for i in cameras.present}
-        smaller = [one.image_scale for one in cameras.each]
-        return [
-            (
-                first_fit(
-                    self._silhouettes, who, cameras.present, wearer.factors, wearer.information, (self._floor,), p,
-                ),
-                tuple(cameras.each[i].name for i in who.blobs),
-            )
-            for who in standing(blobs, self.rig.cameras, smaller, self._model.stature_m, p)[: p.people]
-        ]  # fmt: skip
-
-    def _away_m(self, fit: Fit) -> float:
-        """From the cameras, on average."""
-        eyes = [centre(camera) for camera in self.rig.cameras]
-        return float(np.linalg.norm(np.array(eyes) - fit.state.root_m, axis=1).mean())
 
     def _take_over(
         self, near: BodyState, wearer: _Wearer, frames: FrameSet
@@ -443,7 +405,8 @@ class FlexTracker:
         self._dress(look)
 
     def _dress(self, look: Look) -> None:
-        self._fitter, self._arms = self._fitters.of(look)
+        self._dressed = self._fitters.of(look)
+        self._fitter = self._dressed.fitter
         self._cameras.fitter = self._fitter
 
     def _names(self, views: Sequence[View]) -> tuple[str, ...]:
@@ -457,24 +420,18 @@ class FlexTracker:
         known = self._known
         if tracking is Tracking.LOST or known is None:
             return Track(lost_body(frames.t_ns, self.name), shape)
-        state, model = known.state, self._model
         away_s = seconds(frames.t_ns - known.t_ns)
-        if away_s > 0.0:  # coasting: it moves on for a moment, then stays
-            root, local = moved(model, state, min(away_s, 0.1), self.params.prediction_damping)
-            state = replace(state, root_m=root, local_xyzw=local)
-        if known.left is not None:
-            root, local = blended(state.root_m, state.local_xyzw, known.left)
-            state = replace(state, root_m=root, local_xyzw=local)
-        joints, globals_ = self._fitter.joints(state)
-        covariance = pose_covariance(model, known.fit.H)
-        uncertainty_m = joint_uncertainty_m(model, joints, globals_, covariance)
+        told = told_pose(
+            self._fitter, known.state, known.fit, known.left, away_s, self.params.prediction_damping
+        )
+        uncertainty_m = told.uncertainty_m
         evidence, roi_px = self._cameras.evidence(views)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
             tracker=self.name,
-            pose=Pose(joints[0], np.where(globals_[:, 3:] < 0, -globals_, globals_)),
-            joints_m=joints,
+            pose=told.pose,
+            joints_m=told.joints_m,
             confidence=joint_confidence(known.fit, len(known.cameras), uncertainty_m, away_s),
             cameras=known.cameras if away_s == 0.0 else (),
             uncertainty_m=grown(uncertainty_m, away_s),

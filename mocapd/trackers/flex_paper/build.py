@@ -8,7 +8,7 @@ from mocapd.trackers.flex_paper.section import FlexPaperSection
 from mocapd.trackers.flex_paper.tracker import FlexPaperTracker
 from mocapd.trackers.known import known_rig, stature_m
 from mocapd.trackers.tracking_state import TrackingStateParams
-from mocapd.vision.face.lbp_cascade import blind_cascade, packaged_cascade_file, read_cascade
+from mocapd.vision.face.lbp_cascade import frontal_faces
 
 
 def build_flex_paper_tracker(
@@ -16,12 +16,9 @@ def build_flex_paper_tracker(
     section: FlexPaperSection | None = None,
     tracking: TrackingStateParams | None = None,
 ) -> FlexPaperTracker:
-    """The tracker as a user set it; without a cascade of faces it finds heads by outlines. Raises ConfigError naming
-    what is missing."""
-    file = packaged_cascade_file()
-    cascade = blind_cascade() if file is None else read_cascade(file)
+    """The tracker as a user set it. Raises ConfigError naming what is missing."""
     rig, stature = known_rig(calibration), stature_m(calibration)
-    return FlexPaperTracker(rig, stature, cascade, params_of(section), tracking)
+    return FlexPaperTracker(rig, stature, frontal_faces(), params_of(section), tracking)
 
 
 def params_of(section: FlexPaperSection | None) -> Params:

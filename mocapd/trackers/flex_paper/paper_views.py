@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 
 from mocapd.clock import seconds
-from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.cylinders.limb_score import LimbView
 from mocapd.fit.cylinders.occlusion import allocate_occlusion, fill_occlusion
@@ -18,6 +17,7 @@ from mocapd.geometry.camera_model import project
 from mocapd.trackers.flex_paper.params import Params
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
 from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
+from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.motion_edges import MotionEdges, WorkPicture
 from mocapd.vision.room_background import RoomBackground
 
@@ -62,13 +62,7 @@ class PaperView:
         self._pixels, self.offset_s = pixels, offset_s
         if pixels is None:
             return
-        h, w = pixels.shape[:2]
-        if (w, h) != self.camera.size_px:
-            raise ConfigError(
-                f"delivers {w}x{h}, its calibration is for {self.camera.size_px[0]}x{self.camera.size_px[1]}",
-                f"camera {self.camera.name!r}",
-                "set that size, or calibrate again",
-            )
+        check_frame_size(self.camera.name, pixels, self.camera.size_px)
         self._now, self._last = self._last, self._now
         self._now.fill(pixels)
         self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)

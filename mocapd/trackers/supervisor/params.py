@@ -13,6 +13,9 @@ class Params:
     # poor or coasting for so long before another may: a frame that fails is no reason
     doubt_s: float = 0.1
 
+    # live for so long before it begins to speak where nobody was: the first looks at who walks in are the worst
+    arrive_s: float = 0.15
+
     # one place
     # trunks nearer than this are of one body: cloth, shape and lag together stay below it
     near_m: float = 0.3
@@ -28,7 +31,7 @@ class Params:
 
     # what remains at a switch is mended within glide_s, of any joint at glide_m_s at least, at any frame rate, and never
     # by more than glide_m in a frame: a tenth of a metre is promised
-    glide_s: float = 0.3
+    glide_s: float = 0.25
     glide_m_s: float = 1.5
     glide_m: float = 0.09
     jump_m_s: float = 3.0  # who settles after a switch goes faster than that; hands do in a throw

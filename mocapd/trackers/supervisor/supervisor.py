@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.clock import nanoseconds
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.supervisor.choice import Claim, chosen
 from mocapd.trackers.supervisor.gliding import Glider, Sourced
@@ -40,12 +41,14 @@ class Candidate:
 @dataclass(slots=True, eq=False)
 class _Known:
     """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
-    body led to it; has_offer: it was offered a body that it has not looked for yet."""
+    body led to it; has_offer: it was offered a body that it has not looked for yet; live_since_ns: when it began to have
+    one, None while it has none."""
 
     track: Track | None = None
     now: bool = False
     guided: bool = False
     has_offer: bool = False
+    live_since_ns: int | None = None
     standing: Standing = field(default_factory=Standing)
     standby: Standby = field(default_factory=Standby)
 
@@ -145,6 +148,10 @@ class Supervisor:
         else:
             track = tracker.step(frames, shape)
         known.track, known.now, known.has_offer = track, True, False
+        if not known.live:
+            known.live_since_ns = None
+        elif known.live_since_ns is None:
+            known.live_since_ns = frames.t_ns
         known.standing = judged(known.standing, track, len(frames.frames), one.kind, self.params)
         known.standby = stepped(known.standby, frames.t_ns, self.params)
         return track.shape
@@ -166,17 +173,25 @@ class Supervisor:
         for one in self.candidates:
             known = self._known[one.name]
             near = told is None or self._is_near(known.body, told)
+            may_begin = self._speaker is not None or self._has_arrived(one, frames.t_ns)
             claims.append(
                 Claim(
                     one.name,
                     believed=known.standing.believed,
                     known=known.body is not None,
-                    live=known.live,
-                    well=known.is_well(len(frames.frames), one.kind),
+                    live=known.live and may_begin,
+                    well=known.is_well(len(frames.frames), one.kind) and may_begin,
                     agrees=near or overrules(known.standby, frames.t_ns, self.params),
                 )
             )
         return chosen(self._speaker, claims)
+
+    def _has_arrived(self, one: Candidate, t_ns: int) -> bool:
+        """Whether the body that this one knows is no first look at somebody who is still walking in, whom a tracker that is
+        preferred to it may know better a moment later."""
+        since = self._known[one.name].live_since_ns
+        is_first = self._rank(one.name) == 0
+        return since is not None and (is_first or t_ns - since >= nanoseconds(self.params.arrive_s))
 
     def _bodies(self) -> dict[str, Sourced]:
         """Those of this frame set, and whose: a tracker that is guided is another one."""

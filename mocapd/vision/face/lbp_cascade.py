@@ -1,11 +1,9 @@
 """The frontal-face cascade: boosted multi-block LBP features in the file format of OpenCV.
 
-Liao et al., Learning Multi-scale Block Local Binary Patterns for Face Recognition, ICB 2007. The trained file comes in
-scikit-image (BSD-3-Clause; it is OpenCV's for frontal faces); only the file is used, its library takes 370 ms for a
-picture of 640x480.
+Liao et al., Learning Multi-scale Block Local Binary Patterns for Face Recognition, ICB 2007. The trained file is OpenCV's for
+frontal faces (Apache-2.0); OpenCV 5 has lost the class that reads it.
 """
 
-import importlib.util
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,21 +11,16 @@ import numpy as np
 
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-_PACKAGE = "skimage"
-_FILE = "data/lbpcascade_frontalface_opencv.xml"
+_FILE = Path(__file__).with_name("lbpcascade_frontalface.xml")
 
 
-def packaged_cascade_file() -> Path | None:
-    """Where the installed scikit-image keeps the cascade; None without it. Nothing of the package is imported."""
-    spec = importlib.util.find_spec(_PACKAGE)
-    if spec is None or spec.origin is None:
-        return None
-    path = Path(spec.origin).parent / _FILE
-    return path if path.is_file() else None
+def frontal_faces() -> CascadeArrays:
+    """The cascade that comes with mocapd."""
+    return read_cascade(_FILE)
 
 
 def blind_cascade() -> CascadeArrays:
-    """One that finds no face, for where none is installed: heads are then found by their outline alone."""
+    """One that finds no face: heads are then found by their outline alone."""
     return CascadeArrays(
         first=np.zeros(2, np.int64),
         threshold=np.full(1, np.inf, np.float32),

@@ -9,24 +9,19 @@ token does not open it.
 The key is kept, so that a page that has it goes on when mocapd starts anew.
 """
 
-import re
 import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from mocapd.boundary.files import MissingError, read_text
-from mocapd.errors import CannotCreateError, InputError
+from mocapd.web.kept_key import kept_key, new_key
 from mocapd.web.refusal import Refusal
-from mocapd.whole_file import whole_file
 
 PATH = "/frames"
 KEY = "key"  # its name in the URL's query
 FILE_NAME = "frames.key"  # in the state directory
 FRAGMENT = "mocapd"  # its name after the # in a page's address, which no browser sends to the site
-_KEY = re.compile(r"[A-Za-z0-9_-]{32}")
-_LONGEST_FILE = 1 << 10  # [bytes]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,32 +56,5 @@ def frames_access(origins: tuple[str, ...], state_dir: Path | None) -> FramesAcc
     """
     if not origins:
         return FramesAccess()
-    return FramesAccess(origins, _new_key() if state_dir is None else _kept_key(state_dir))
-
-
-def _kept_key(state_dir: Path) -> str:
-    path = state_dir / FILE_NAME
-    try:
-        key = read_text(path, _LONGEST_FILE).strip()
-    except MissingError:
-        return _made(path)
-    if not _KEY.fullmatch(key):
-        raise InputError("holds no key", str(path), "remove it: the next start makes another")
-    return key
-
-
-def _made(path: Path) -> str:
-    key = _new_key()
-    try:
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with whole_file(path, private=True) as partial:
-            partial.write_text(f"{key}\n", encoding="ascii")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written: {error.strerror}", str(path), "let this user write there"
-        ) from error
-    return key
-
-
-def _new_key() -> str:
-    return secrets.token_urlsafe(24)
+    key = new_key() if state_dir is None else kept_key(state_dir / FILE_NAME)
+    return FramesAccess(origins, key)

@@ -96,14 +96,18 @@ export class Live {
       this.cameras,
       figures.cameras.map((one) => [
         one.name,
-        one.bumped
-          ? { text: "bumped", look: "state failed" }
+        one.bumped || one.swapped
+          ? { text: one.swapped ? "swapped" : "bumped", look: "state failed" }
           : { text: one.state, look: `state ${CAMERA_STATES[one.state] ?? ""}` },
         `${number(one.fps_hz)} Hz`,
         String(one.frames),
         String(one.torn),
         String(one.reopens),
-        one.bumped ? "It was turned: put it back, or do the setup's step Room again." : one.reason,
+        one.swapped
+          ? "It shows what another camera should: exchange them, or do the setup's step Room again."
+          : one.bumped
+            ? "It was turned: put it back, or do the setup's step Room again."
+            : one.reason,
       ]),
     );
     rows(

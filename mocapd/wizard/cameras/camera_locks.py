@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Protocol, runtime_checkable
 
 from mocapd.capture.base import Source
 from mocapd.capture.webcam import control_lock
@@ -12,6 +13,14 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.capture.webcam.v4l2_ioctl import ControlRange
 from mocapd.errors import UnavailableError
+
+
+@runtime_checkable
+class MayRefuse(Protocol):
+    """A Lockable source that knows only once it is open whether its camera can be set: one of another machine."""
+
+    @property
+    def takes_orders(self) -> bool: ...
 
 
 class CameraLocks:
@@ -31,8 +40,12 @@ class CameraLocks:
         self._ended = False
 
     def can_lock(self, camera: str) -> bool:
-        """Whether it is a webcam; simulated cameras, files and network cameras are not."""
-        return camera in self._sources
+        """Whether it is a webcam, here or at a node that takes orders of this daemon; simulated cameras, files and
+        network cameras are not."""
+        source = self._sources.get(camera)
+        return source is not None and not (
+            isinstance(source, MayRefuse) and not source.takes_orders
+        )
 
     def settings(self, camera: str) -> WebcamSettings | None:
         """What a webcam is asked for at each opening; None for what is none."""

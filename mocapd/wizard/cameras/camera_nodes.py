@@ -6,8 +6,8 @@ A node that is in use by the setup is "busy" to whoever asks; that is left out h
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.kinds.source_kinds import identity_of
-from mocapd.capture.thread import CaptureState, CaptureStatus
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
 from mocapd.capture.webcam.webcams import SYSFS

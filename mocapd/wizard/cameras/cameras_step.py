@@ -12,7 +12,7 @@ from dataclasses import asdict, replace
 
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
-from mocapd.capture.thread import CaptureState, CaptureStatus
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.clock import NS_PER_S

@@ -14,7 +14,6 @@ from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError
-from mocapd.outputs.messages import Facing
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Service, Snapshot
@@ -118,10 +117,6 @@ class DaemonHost:
     def snapshot(self) -> Snapshot:
         """See Host."""
         return self._service.snapshot()
-
-    def recenter(self) -> Facing:
-        """See Host."""
-        return self._service.recenter()
 
     # -- the setup -------------------------------------------------------------------------------
 

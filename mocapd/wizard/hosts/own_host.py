@@ -8,8 +8,7 @@ from pathlib import Path
 from mocapd.capture.base import Source
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.webcam.listing import CameraInfo
-from mocapd.errors import MocapdError, UnavailableError
-from mocapd.outputs.messages import Facing
+from mocapd.errors import MocapdError
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Snapshot, ThreadDiedError
@@ -135,9 +134,3 @@ class OwnHost:
         if loop is None:
             return None
         return Snapshot(loop.metrics(), dict(self._cameras.statuses()), {})
-
-    def recenter(self) -> Facing:
-        """See Host."""
-        raise UnavailableError(
-            "a setup sends nothing to games", "this setup", "say it to a running `mocapd run`"
-        )

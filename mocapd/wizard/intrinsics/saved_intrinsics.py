@@ -1,5 +1,6 @@
 """Intrinsics of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
 
+import logging
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
@@ -13,7 +14,8 @@ from mocapd.boundary.messages import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
 from mocapd.capture.kinds.source_kinds import identity_of
-from mocapd.errors import CannotCreateError, ConfigError, MocapdError
+from mocapd.errors import CannotCreateError, ConfigError, MocapdError, NewerFileError
+from mocapd.set_aside import set_aside
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
 
@@ -24,6 +26,7 @@ _HEADER = """\
 # same mode again. K and dist (k1 k2 p1 p2 k3) are in pixels. A part taken out is measured anew.
 
 """
+_log = logging.getLogger(__name__)
 _FIX = "take the file away: lenses are measured anew"
 
 _MOST_BYTES = 8 << 20
@@ -91,7 +94,10 @@ def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
     except MocapdError as error:
         raise ConfigError(f"cannot be read ({error.what})", str(path), _FIX) from None
     if file.schema != SCHEMA:
-        raise ConfigError(f"has schema {file.schema}, not {SCHEMA}", str(path), _FIX)
+        newer = file.schema > SCHEMA
+        raise (NewerFileError if newer else ConfigError)(
+            f"has schema {file.schema}, not {SCHEMA}", str(path), _FIX
+        )
     return file.lens
 
 
@@ -110,9 +116,10 @@ def find_saved_intrinsics(
 
 
 def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
-    """Add the draft's new intrinsics; those of the same camera and mode are replaced, others stay.
+    """Add the draft's new intrinsics; those of the same camera and mode are replaced, others stay. A file that cannot
+    be read is set aside.
 
-    For when the calibration is saved. Raises CannotCreateError, ConfigError.
+    For when the calibration is saved. Raises CannotCreateError.
     """
     new = [
         _saved(key, camera, draft.intrinsics[camera.id], when)
@@ -124,10 +131,11 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
     if not new:
         return
     made = {(one.camera, one.size_px) for one in new}
-    kept = [one for one in read_intrinsics(state_dir) if (one.camera, one.size_px) not in made]
-    data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
     path = state_dir / FILE_NAME
     try:
+        before = _readable(path)
+        kept = [one for one in before if (one.camera, one.size_px) not in made]
+        data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
         state_dir.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
@@ -135,6 +143,16 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
         raise CannotCreateError(
             f"cannot be written ({error.strerror})", str(path), "make room on the disk"
         ) from None
+
+
+def _readable(path: Path) -> tuple[SavedIntrinsics, ...]:
+    """Those of before; none when they cannot be read. Raises OSError."""
+    try:
+        return read_intrinsics(path.parent)
+    except ConfigError as error:
+        aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        _log.warning("%s %s; it is kept as %s", path, error.what, aside.name)
+        return ()
 
 
 def _saved(

@@ -95,6 +95,7 @@ def test_every_cut_of_a_track_is_refused(tmp_path: Path) -> None:
         ("joint_names", np.array(["nose"] * 22), "VRM"),
         ("times", np.full(len(T), np.nan), "no frame"),
         ("times", np.array("soon"), "damaged or no track"),
+        ("schema", np.array("mocapd.Track.v2"), "schema 'mocapd.Track.v2', not mocapd.Track.v1"),
         ("joints", np.array([{"a": 1}], dtype=object), "damaged or no track"),
     ],
 )

@@ -37,14 +37,14 @@ def _sets(pictures: list[dict[str, Bytes]], first: int) -> list[FrameSet]:
 
 
 @cache
-def plain_film() -> PlainFilm:
-    """Two cameras of 320x240 whose views cross, in steady light."""
+def plain_film(to_m: tuple[float, float] = (0.1, 0.1)) -> PlainFilm:
+    """Two cameras of 320x240 whose views cross, in steady light; the person goes as far as to_m (x, z), the arms raised."""
     table = small.table()
     for camera in table["cameras"]:
         camera |= {"size_px": [320, 240], "dropped": 0.0, "clock_offset_s": 0.0}
     for light in table["lights"]:
         light["events"] = []
-    raised = {"t_s": 1.4, "pose": "arms_up", "at_m": [0.1, 0.1], "yaw_deg": 15.0}
+    raised = {"t_s": 1.4, "pose": "arms_up", "at_m": list(to_m), "yaw_deg": 15.0}
     table["motion"] = {"keyframes": [{"t_s": 0.0, "pose": "relaxed"}, raised]}
     table["clothes"] = {"shirt": "plain"}
     table["body"] = {"whole": True}

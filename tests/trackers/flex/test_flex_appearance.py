@@ -5,8 +5,8 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import Region
-from mocapd.fit.fit_params import FitParams, LimbSearchParams
+from mocapd.body.regions import Band, Region
+from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.trackers.flex.appearance import Appearance, AppearanceParams, region_distances
 from mocapd.trackers.flex.appearance_kernels import (
     BITS,
@@ -19,7 +19,7 @@ from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, look_of
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, SHADOW
 from tests.geometry.rigs import ring
 
-COLOURS = {
+COLOURS: dict[Region | Band, tuple[int, int, int]] = {
     Region.TRUNK: (180, 40, 40), Region.FACE: (120, 150, 210), Region.FOREARM: (180, 44, 38),
     Region.LEG: (60, 60, 70), Region.FOOT: (20, 200, 200), Region.HAND: (118, 148, 214), Region.HAIR: (10, 20, 40),
 }  # fmt: skip
@@ -71,9 +71,11 @@ def test_a_long_sleeve_is_one_with_the_trunk_and_hands_stay_their_own() -> None:
     assert look[Region.FOREARM] == Region.TRUNK
     assert look[Region.HAND] == Region.HAND
     body = build_model(1.75, full_body())
-    fitters = DressedFitters(body, ring(2), [2, 2], FitParams(), LimbSearchParams())
+    fitters = DressedFitters(
+        body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams()
+    )
     apart, one = fitters.of(ALL_DIFFER)[0].model.colour, fitters.of(look)[0].model.colour
-    assert set(apart.tolist()) == {int(region) for region in Region}
+    assert set(apart.tolist()) == {int(part) for part in (*Region, *Band)}
     assert (one[apart == Region.FOREARM] == Region.TRUNK).all()
     assert (one[apart == Region.HAND] == Region.HAND).all()
 
@@ -88,6 +90,39 @@ def test_who_is_bare_armed_and_sleeved_ends_with_one_region_for_all() -> None:
         ]
     appearance.learn(picture, drawn, before_of(drawn))
     assert look_of([appearance], 0.55)[Region.HAND] == Region.TRUNK
+
+
+def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
+    """Trousers reach to the waist, and short sleeves leave the lower half of the upper arm bare; one band that is seen
+    badly, between others that are clear, does not tear a chain."""
+    of_bands = {
+        Band.LOW_HIPS: Region.LEG, Band.HIGH_HIPS: Region.LEG, Band.WAIST: Region.TRUNK,
+        Band.LOW_SLEEVE: Region.HAND, Band.HIGH_SLEEVE: Region.TRUNK,
+    }  # fmt: skip
+    colours: dict[Region | Band, tuple[int, int, int]] = {
+        **COLOURS,
+        Region.FOREARM: COLOURS[Region.HAND],
+    }
+    colours.update({band: colours[region] for band, region in of_bands.items()})
+    drawn = np.zeros((42, 30 * len(colours)), np.uint8)
+    picture = np.full((*drawn.shape, 3), 128, np.uint8)
+    for k, (part, colour) in enumerate(colours.items()):
+        drawn[6:36, 30 * k + 5 : 30 * k + 25] = part
+        picture[6:36, 30 * k + 5 : 30 * k + 25] = colour
+    appearance = Appearance(AppearanceParams())
+    appearance.learn(picture, drawn, before_of(drawn))
+    look = look_of([appearance], 0.55)
+    assert [look[band] for band in (Band.LOW_HIPS, Band.HIGH_HIPS)] == [Region.LEG] * 2
+    assert [look[band] for band in (Band.WAIST, Band.HIGH_SLEEVE)] == [Region.TRUNK] * 2
+    assert look[Band.LOW_SLEEVE] == look[Region.FOREARM]
+    appearance.join(look)
+    body = build_model(1.75, full_body())
+    worn = (
+        DressedFitters(body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams())
+        .of(look)[0]
+        .model
+    )
+    assert worn.colour.max() <= max(Region)
 
 
 def test_colours_are_expected_as_dim_as_the_background_became() -> None:

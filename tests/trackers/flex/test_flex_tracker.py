@@ -105,6 +105,24 @@ def test_after_it_was_led_it_goes_on_alone(film: PlainFilm, tracker: Stepping) -
     assert np.sqrt((off_m(track, film.joints_m[-1]) ** 2).mean()) < 0.12
 
 
+def test_a_recording_that_never_shows_the_room_empty_tells_it_all_the_same() -> None:
+    film = plain_film(to_m=(0.6, 0.2))
+    never_empty = film.frames[N_EMPTY:]
+    shape = known_shape(film.known)
+    flex = build_flex_tracker(film.known)
+    flex.learn_room(never_empty)
+    tracks = [flex.step(one, shape) for one in never_empty]
+    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    assert live[0] < 15
+    assert live == list(range(live[0], len(tracks)))
+    away = np.array([off_m(tracks[i], film.joints_m[i]) for i in live])
+    assert np.median(away) < 0.10
+    # without it the person is a part of the room, or their trace is
+    flex.reset()
+    alone = [flex.step(one, shape) for one in never_empty]
+    assert sum(t.body.tracking is Tracking.LIVE for t in alone) < len(live) // 2
+
+
 def test_a_guide_without_a_pose_is_a_defect(film: PlainFilm) -> None:
     tracker = build_flex_tracker(film.known)
     nobody = tracker.step(film.frames[0], known_shape(film.known)).body

@@ -71,7 +71,8 @@ def test_where_nobody_else_can_run_the_shirt_is_all() -> None:
 def test_without_a_shirt_the_other_speaks_alone_and_the_search_is_spared() -> None:
     one = scene((Word(0.0, LOST),), ALL_WELL)
     bodies = one.run(3.0)
-    assert speakers(bodies) == ["flex"]
+    assert speakers(bodies) == ["auto", "flex"]
+    assert at(bodies, PARAMS.arrive_s + FRAME_S).tracker == "flex"
     assert len(one.flex.stepped_ns) == 90
     assert not one.flex.guided_by
     # until the other is believed both are asked
@@ -99,7 +100,7 @@ def test_a_frame_that_fails_and_a_flash_of_the_shirt_change_nothing() -> None:
     failing = scene((Word(0.0), Word(1.0, Tracking.COASTING), Word(1.0 + step)), ALL_WELL)
     assert speakers(failing.run(2.0)) == [BOTH]
     flash = scene((Word(0.0, LOST), Word(1.0), Word(1.2, LOST)), ALL_WELL)
-    assert speakers(flash.run(3.0)) == ["flex"]
+    assert speakers(flash.run(3.0)) == ["auto", "flex"]
 
 
 def test_quality_between_the_limits_changes_nothing() -> None:
@@ -113,14 +114,21 @@ def test_quality_between_the_limits_changes_nothing() -> None:
 def test_who_is_preferred_speaks_at_once_while_the_other_is_not_believed_yet() -> None:
     soon_s = 0.5 * PARAMS.confirm_s
     bodies = scene((Word(0.0, LOST), Word(soon_s)), ALL_WELL).run(1.0)
-    assert speakers(bodies) == ["flex", BOTH]
+    assert speakers(bodies) == ["auto", "flex", BOTH]
     assert at(bodies, soon_s).tracker == BOTH
+
+
+def test_the_first_look_at_who_walks_in_is_not_told_where_the_shirt_is_seen_a_moment_later() -> (
+    None
+):
+    bodies = scene((Word(0.0, LOST), Word(0.8 * PARAMS.arrive_s)), ALL_WELL).run(1.0)
+    assert speakers(bodies) == ["auto", BOTH]
 
 
 def test_nobody_begins_with_a_body_of_a_moment_ago() -> None:
     coasting = (Word(0.0, LOST), Word(1.9, Tracking.COASTING))
     bodies = scene(coasting, (Word(0.0), Word(2.0, LOST))).run(2.5)
-    assert speakers(bodies) == ["flex", "auto"]
+    assert speakers(bodies) == ["auto", "flex", "auto"]
 
 
 def test_a_doubtful_upper_body_leads_nobody() -> None:
@@ -225,7 +233,11 @@ def test_a_shirt_somewhere_else_speaks_only_when_it_stays() -> None:
     """Offered the body that is told, it comes back to its own place: then the shirt is the surer sign."""
     one = scene((Word(0.0, LOST), Word(1.0, off_m=1.0)), (Word(0.0), Word(8.0)))
     bodies = one.run(5.0)
-    assert speakers(bodies)[:2] == ["flex", "colour"]  # its legs are elsewhere: they are not joined
+    assert speakers(bodies)[:3] == [
+        "auto",
+        "flex",
+        "colour",
+    ]  # its legs are elsewhere: they are not joined
     first = next(body for body in bodies if body.tracker == "colour")
     assert first.t_ns / 1e9 == pytest.approx(1.0 + PARAMS.overrule_s, abs=2 * PARAMS.search_every_s)
     assert any(near is not None and near.tracker == "flex" for near in one.colour.offers)
@@ -239,7 +251,7 @@ def test_a_shirt_somewhere_else_for_a_moment_does_not_speak() -> None:
         Word(3.0, off_m=1.0),
         Word(3.8, LOST),
     )
-    assert speakers(scene(elsewhere, ALL_WELL).run(5.0)) == ["flex"]
+    assert speakers(scene(elsewhere, ALL_WELL).run(5.0)) == ["auto", "flex"]
 
 
 def test_with_too_few_cameras_it_is_not_begun_with_but_gone_on_with() -> None:

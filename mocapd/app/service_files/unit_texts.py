@@ -1,0 +1,43 @@
+"""The files of `mocapd/systemd` as they are installed: with the command that starts this very mocapd."""
+
+from pathlib import Path
+
+import mocapd
+from mocapd.errors import ConfigError
+
+FOLDER = Path(mocapd.__file__).parent / "systemd"
+UNITS = ("mocapd.service", "mocapd@.service")
+USER_UNIT = "mocapd-user.service"
+EXAMPLE = "network.conf"
+SYSUSERS = "mocapd.sysusers"
+RULES = "mocapd.rules"
+CONFIG = "config.toml"
+
+_COMMAND, _SANDBOX = "@COMMAND@", "@SANDBOX@\n"
+_SPECIAL = "\"'\\$"  # to systemd, in a command line
+
+
+def text_of(name: str) -> str:
+    """A file as it stands in the package."""
+    return (FOLDER / name).read_text("utf-8")
+
+
+def unit_text(name: str, python: Path) -> str:
+    """A unit that starts mocapd with this interpreter. Raises ConfigError for a path that no unit can name."""
+    text = text_of(name).replace(_SANDBOX, text_of("sandbox.conf"))
+    return text.replace(_COMMAND, command(python))
+
+
+def command(python: Path) -> str:
+    """How a unit starts `mocapd`, as its ExecStart= wants it: up to the subcommand.
+
+    -P: of the folder that it is started in nothing is imported.
+    """
+    path = str(python)
+    if not path.startswith("/") or any(c in _SPECIAL or not c.isprintable() for c in path):
+        raise ConfigError(
+            "no unit can name this path", ascii(path), "install mocapd under a plainer path"
+        )
+    path = path.replace("%", "%%")
+    quoted = f'"{path}"' if " " in path else path
+    return f"{quoted} -P -m mocapd.cli.main"

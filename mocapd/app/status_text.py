@@ -1,0 +1,92 @@
+"""How a running daemon fares, in words."""
+
+import time
+from collections.abc import Iterable
+
+from mocapd.control.messages import CameraReport, OutputReport, StatusReport
+
+_STATES = {
+    "tracking": "tracking",
+    "nobody": "nobody in view",
+    "starting": "starting",
+    "blind": "no camera delivers",
+}
+_DAY_S = 86400.0
+
+
+def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[str]:
+    """A line for each thing; now_unix_s: for ages, the present when None."""
+    now_unix_s = time.time() if now_unix_s is None else now_unix_s
+    rows = [
+        (
+            "daemon",
+            f"{report.instance}, mocapd {report.version}, pid {report.pid}, up {duration(report.uptime_s)}",
+        ),
+        ("state", f"{_STATES[report.state]} ({report.tracker}, {report.tracking})"),
+        ("rate", _rate(report)),
+        ("calibration", _calibration(report, now_unix_s)),
+        *((f"camera {one.id}", _camera(one)) for one in report.cameras),
+        *((f"output {one.name}", _output(one)) for one in report.outputs),
+        ("last trouble", _trouble(report, now_unix_s)),
+    ]
+    width = max(len(name) for name, _ in rows)
+    return [f"{name:<{width}}  {text}" for name, text in rows]
+
+
+def duration(span_s: float) -> str:
+    """In the two largest units: `3 d 4 h`, `12 min 5 s`."""
+    rest = max(0, round(span_s))
+    parts = []
+    for unit, size_s in (("d", 86400), ("h", 3600), ("min", 60), ("s", 1)):
+        count, rest = divmod(rest, size_s)
+        parts.append((count, unit))
+    first = next((i for i, (count, _) in enumerate(parts) if count), len(parts) - 1)
+    return " ".join(f"{count} {unit}" for count, unit in parts[first : first + 2])
+
+
+def _rate(report: StatusReport) -> str:
+    text = f"{report.rate_hz:.1f} Hz"
+    if report.latency_median_ms is not None and report.latency_p95_ms is not None:
+        text += f", latency {report.latency_median_ms:.0f} ms (p95 {report.latency_p95_ms:.0f})"
+    return f"{text}, {report.published} frames, {report.dropped} dropped"
+
+
+def _calibration(report: StatusReport, now_unix_s: float) -> str:
+    found = report.calibration
+    if found is None:
+        return "none"
+    if found.made_unix_s is None:
+        return found.source
+    return f"{_ago(now_unix_s - found.made_unix_s)}, {found.source}"
+
+
+def _ago(span_s: float) -> str:
+    if span_s < _DAY_S:
+        return "of today"
+    days = int(span_s / _DAY_S)
+    return f"{days} day{'s' if days > 1 else ''} old"
+
+
+def _camera(one: CameraReport) -> str:
+    parts = [f"{one.state} {one.rate_hz:.1f} Hz" if one.state == "live" else one.state]
+    parts += [one.detail] if one.detail else []
+    parts += ["bumped: calibrate the room again"] if one.mounting == "bumped" else []
+    parts += ["shows what another camera should"] if one.mounting == "swapped" else []
+    parts += _counted(("lost frames", one.lost_frames), ("times reopened", one.reopened))
+    return ", ".join(parts)
+
+
+def _output(one: OutputReport) -> str:
+    listeners = "" if one.listeners < 0 else f"{one.listeners} listening, "
+    return f"{listeners}{one.sent} sent, {one.not_sent} not: {one.detail}"
+
+
+def _counted(*counts: tuple[str, int]) -> Iterable[str]:
+    return [f"{count} {what}" for what, count in counts if count]
+
+
+def _trouble(report: StatusReport, now_unix_s: float) -> str:
+    if report.last_trouble is None:
+        return "none"
+    ago = duration(now_unix_s - report.last_trouble.at_unix_s)
+    return f"{ago} ago: {report.last_trouble.text}"

@@ -1,0 +1,1 @@
+"""What the service manager that started the daemon is told."""

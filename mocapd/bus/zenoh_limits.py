@@ -1,0 +1,48 @@
+"""What others may take of a Zenoh session that they can reach: bytes, connections, time and threads.
+
+Zenoh's own limits are those of a network of machines that trust each other. Whoever reaches the
+port of this session may be a game that hangs, or no game at all.
+"""
+
+import os
+from typing import Any
+
+# Of others come queries and declarations of some hundred bytes. A larger message is put together
+# in memory before access control sees it; Zenoh's own limit is 1 GiB.
+MAX_MESSAGE_BYTES = 65_536
+
+# Games and tools that are connected at once; Zenoh's own limit is 1000.
+MAX_SESSIONS = 64
+
+# Connections that have said nothing yet hold a file descriptor and one of these places. Zenoh's own
+# 100 places for 10 s are soon taken by a hundred silent connections.
+ACCEPT_PENDING = 512
+ACCEPT_TIMEOUT_MS = (
+    2_000  # a handshake takes some milliseconds, and some tenths of a second by radio
+)
+
+# Zenoh closes the connection of a game that hangs with a call that waits up to 10 s for the bytes
+# that the game does not take (SO_LINGER), on one of the threads that also serve newcomers. So
+# there is one for each game and some more; one that waits costs 20 kB. Zenoh's own are 2.
+RX_THREADS = MAX_SESSIONS + 16
+RUNTIME_VARIABLE = "ZENOH_RUNTIME"
+RUNTIME = f"(rx: (worker_threads: {RX_THREADS}))"
+# Zenoh reads it when the first session of the process opens. What the user has set is left alone.
+os.environ.setdefault(RUNTIME_VARIABLE, RUNTIME)
+
+# Taking leave of everybody takes some milliseconds, but 10 s when a single one does not read.
+CLOSE_S = 0.7
+
+
+def unicast_limits() -> dict[str, Any]:
+    """What goes into Zenoh's configuration below `transport/unicast`."""
+    return {
+        "max_sessions": MAX_SESSIONS,
+        "accept_pending": ACCEPT_PENDING,
+        "accept_timeout": ACCEPT_TIMEOUT_MS,
+    }
+
+
+def receive_limits() -> dict[str, Any]:
+    """What goes into Zenoh's configuration below `transport/link/rx`."""
+    return {"max_message_size": MAX_MESSAGE_BYTES}

@@ -1,0 +1,128 @@
+"""How one camera fares, kept by its capture thread, read by any: its state, its counts, and what the log is told."""
+
+import logging
+import threading
+
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.rate import RateMeter
+from mocapd.capture.reopening import RestartBudget
+from mocapd.clock import monotonic_ns, seconds
+from mocapd.errors import AmbiguousCameraError, ConfigError, MocapdError
+from mocapd.types import Frame
+
+_LOG = logging.getLogger(__name__)
+
+
+class CaptureRecord:
+    """Of one camera from start to stop. Changes of state are logged, each once.
+
+    A plug that is loose must not fill the log for months: after ten losses within ten minutes further ones are
+    told as debug, until that is over.
+    """
+
+    def __init__(self, camera: str) -> None:
+        self._camera = camera
+        self._losses = RestartBudget(most=10, within_s=600.0)  # that are told
+        self._level = logging.WARNING
+        self._lock = threading.Lock()  # guards what follows; held for moments only
+        self._state = CaptureState.OPENING
+        self._reason = ""
+        self._notice = ""
+        self._frames = 0
+        self._openings = 0  # that delivered
+        self._last_frame_ns: int | None = None
+        self._came_ns = 0  # the newest frame, by the clock
+        self._rate = RateMeter()
+
+    def status(self, torn: int) -> CaptureStatus:
+        """A snapshot, at any time from any thread. torn: by the source's own count."""
+        with self._lock:
+            live = self._state is CaptureState.LIVE
+            silent_ns = monotonic_ns() - self._came_ns if live else 0
+            return CaptureStatus(
+                camera=self._camera,
+                state=self._state,
+                reason=self._reason,
+                frames=self._frames,
+                torn=torn,
+                reopens=max(0, self._openings - 1),
+                fps_hz=self._rate.rate_hz(silent_ns) if live else 0.0,
+                last_frame_ns=self._last_frame_ns,
+                silent_s=seconds(silent_ns),
+                notice=self._notice if live else "",
+            )
+
+    @property
+    def frames(self) -> int:
+        """How many came so far."""
+        return self._frames
+
+    @property
+    def rate(self) -> RateMeter:
+        """Of the frames since it was opened; for the capture thread alone."""
+        return self._rate
+
+    def opened(self, place: str) -> None:
+        """The first frame of an opening is here: one that opens and sends nothing is still lost."""
+        with self._lock:
+            self._openings += 1
+            self._rate.clear()
+            before, self._state = self._state, CaptureState.LIVE
+            self._reason, self._notice = "", place
+        if before is CaptureState.LOST:
+            level = logging.INFO if self._level == logging.WARNING else logging.DEBUG
+            _LOG.log(level, "%s: is back%s", self._camera, f", {place}" if place else "")
+
+    def came(self, frame: Frame) -> None:
+        """A frame."""
+        now_ns = monotonic_ns()
+        with self._lock:
+            self._frames += 1
+            self._last_frame_ns, self._came_ns = frame.t_ns, now_ns
+            self._rate.add(frame.t_ns)
+
+    def noticed(self, notice: str, place: str) -> None:
+        """What is wrong with its pictures; empty: nothing any more."""
+        with self._lock:
+            self._notice = notice or place
+        if notice:
+            _LOG.warning("%s: %s", self._camera, notice)
+        else:
+            _LOG.info("%s: its pictures are as they should be again", self._camera)
+
+    def lost(self, error: MocapdError) -> bool:
+        """It is lost, for this reason; whether it was not before.
+
+        Told once for each loss: the attempts that follow fail for reasons of their own. But that it is back, and
+        does not fit or may be another one, is news.
+        """
+        was, reason = self._set(CaptureState.LOST, str(error))
+        is_new = was is not CaptureState.LOST
+        if is_new:
+            self._count_loss()
+        asks = isinstance(error, ConfigError | AmbiguousCameraError)
+        news = is_new or (asks and str(error) != reason)
+        what = "not there yet" if was is CaptureState.OPENING else "lost"
+        _LOG.log(self._level if news else logging.DEBUG, "%s: %s: %s", self._camera, what, error)
+        return is_new
+
+    def ended(self, reason: str) -> None:
+        """Nothing more will come."""
+        self._set(CaptureState.ENDED, reason)
+
+    def _count_loss(self) -> None:
+        before, is_many = self._level, self._losses.spend(monotonic_ns())
+        self._level = logging.DEBUG if is_many else logging.WARNING
+        if is_many and before == logging.WARNING:
+            _LOG.warning(
+                "%s: was lost %d times within %.0f minutes, and further losses are not told until that is over --"
+                " check its plug and its cable",
+                *(self._camera, self._losses.most + 1, self._losses.within_s / 60.0),
+            )
+
+    def _set(self, state: CaptureState, reason: str) -> tuple[CaptureState, str]:
+        """Change state and reason; returns those before."""
+        with self._lock:
+            before = self._state, self._reason
+            self._state, self._reason = state, reason
+            return before

@@ -1,0 +1,16 @@
+"""A camera of a camera node as a kind of source."""
+
+from mocapd.capture.base import Source
+from mocapd.capture.kinds.source_kind import SourceKind
+from mocapd.capture.remote.remote_address import FORM, is_remote, parse_remote
+from mocapd.capture.source_request import SourceRequest
+
+
+def _open(address: str, request: SourceRequest) -> Source:
+    from mocapd.capture.remote.remote_source import RemoteSource  # imports Zenoh
+
+    remote = parse_remote(address)
+    return RemoteSource(request.name or remote.place, remote, request.size_px, request.settings)
+
+
+REMOTE = SourceKind(form=FORM, matches=is_remote, open=_open)

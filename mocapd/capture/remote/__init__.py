@@ -1,0 +1,1 @@
+"""Cameras of other machines: their address, what their node sends, and its clock related to ours."""

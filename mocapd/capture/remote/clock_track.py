@@ -1,0 +1,82 @@
+"""The clock of another machine as it is known now: the best answers of two minutes, and a new beginning after a jump."""
+
+import threading
+from collections import deque
+
+import numpy as np
+
+from mocapd.capture.remote.camera_wire import ClockAnswer
+from mocapd.capture.remote.clock_fit import ClockLine, ClockSample, clock_sample, fit_clock
+from mocapd.clock import NS_PER_S
+
+_KEPT_NS = 120 * NS_PER_S  # longer, and the drift itself has changed with the warmth
+_SPAN_NS = (
+    2 * NS_PER_S
+)  # of each such span the answers that waited least are kept; the others tell little
+_KEPT_OF_SPAN = 5
+_JUMP_SPARE_NS = 1_000_000  # beyond what the round trip allows: the line's own error
+_JUMPS = 3  # in a row that no round trip explains: it was set, or the machine slept
+
+
+class ClockTrack:
+    """Takes samples, tells the line. From any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()  # guards what follows
+        self._best: deque[ClockSample] = deque()  # of each span that is over
+        self._span: list[ClockSample] = []  # all of the one that goes on
+        self._strange: list[ClockSample] = []
+        self._line: ClockLine | None = None
+
+    def answered(self, asked_ns: int, answer: ClockAnswer, came_ns: int) -> None:
+        """Learn from an answer that can be one: asked and come by our clock [ns]."""
+        within_ns = answer.answered_ns - answer.taken_ns
+        if 0 <= within_ns <= came_ns - asked_ns + _JUMP_SPARE_NS:
+            self.add(clock_sample(asked_ns, answer.taken_ns, answer.answered_ns, came_ns))
+
+    @property
+    def line(self) -> ClockLine | None:
+        """None before the first sample."""
+        return self._line
+
+    def restart(self) -> None:
+        """Another clock from now on."""
+        with self._lock:
+            self._forget()
+            self._strange.clear()
+            self._line = None
+
+    def add(self, sample: ClockSample) -> None:
+        """Learn from it. One that cannot be of this clock is left out; after three in a row it is another."""
+        with self._lock:
+            if self._line is not None and _is_impossible(self._line, sample):
+                self._strange.append(sample)
+                if len(self._strange) < _JUMPS:
+                    return
+                self._forget()
+                self._span.extend(self._strange)
+            else:
+                self._keep(sample)
+            self._strange.clear()
+            every = (*self._best, *self._span)
+            rows = [(one.local_ns, one.offset_ns, one.round_trip_ns) for one in every]
+            self._line = fit_clock(*np.array(sorted(rows), dtype=np.int64).T)
+
+    def _keep(self, sample: ClockSample) -> None:
+        if self._span and sample.local_ns - self._span[0].local_ns > _SPAN_NS:
+            self._best.extend(sorted(self._span, key=lambda one: one.round_trip_ns)[:_KEPT_OF_SPAN])
+            self._span.clear()
+        self._span.append(sample)
+        while self._best and sample.local_ns - self._best[0].local_ns > _KEPT_NS:
+            self._best.popleft()
+
+    def _forget(self) -> None:
+        self._best.clear()
+        self._span.clear()
+
+
+def _is_impossible(line: ClockLine, sample: ClockSample) -> bool:
+    """Whether not even all of its way on one side explains how far it is from the line."""
+    expected_ns = line.remote_from_local(sample.local_ns) - sample.local_ns
+    allowed_ns = sample.round_trip_ns / 2 + 5 * line.uncertainty_ns + line.asymmetry_ns
+    return abs(sample.offset_ns - expected_ns) > allowed_ns + _JUMP_SPARE_NS

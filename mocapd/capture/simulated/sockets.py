@@ -1,0 +1,125 @@
+"""Simulated USB sockets: which webcam of a scenario sits in which, and what ails it, in a file that anybody may change.
+
+    {"webcams": {"cam0": "usb:1-1:046d:0825:A0", "cam1": "usb:1-2:046d:0825:B1"},
+     "sockets": {"1-1": {"webcam": "cam0"}, "1-4": {"webcam": "cam1", "plugging": 7, "fault": "black"}}}
+
+`webcams`: what each is and where it was set up, as a configuration names it. `sockets`: what is plugged in now; who
+plugs in gives another number `plugging`, as the kernel gives another node. docs/faults.md tells how it is used.
+"""
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import msgspec
+
+from mocapd.boundary.files import read_file
+from mocapd.boundary.messages import decode_json
+from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
+from mocapd.errors import InputError, MalformedError, UnavailableError
+
+_MOST_BYTES = 1 << 16
+
+
+class Fault(StrEnum):
+    """What a webcam does that is plugged in and not well."""
+
+    NONE = ""
+    FROZEN = "frozen"  # the same picture over and over
+    BLACK = "black"
+    TORN = "torn"  # every second picture comes cut
+    SMALL = "small"  # pictures of half the size
+    STALLED = "stalled"  # sends nothing; the driver says so after a second
+    STUCK = "stuck"  # the driver does not come back at all
+
+
+class Plugged(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is in a socket."""
+
+    webcam: str
+    plugging: int = 0
+    fault: Fault = Fault.NONE
+
+
+class SocketsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The whole file; see above."""
+
+    webcams: dict[str, str]
+    sockets: dict[str, Plugged]
+
+
+@dataclass(frozen=True, slots=True)
+class FoundSocket:
+    """Where a webcam was found: its port path, what is in it, and whether it is another one than configured."""
+
+    port: str
+    plugged: Plugged
+    moved: bool
+
+
+class Sockets:
+    """The file as it is now; from any threads."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lock = threading.Lock()  # guards what follows
+        self._known: tuple[tuple[int, int, int], SocketsFile] | None = None
+        self._taken: dict[Plugged, object] = {}
+
+    def now(self) -> SocketsFile:
+        """Raises InputError."""
+        try:
+            told = self.path.stat()
+        except OSError as error:
+            raise InputError(f"cannot be read ({error.strerror})", str(self.path), _FIX) from None
+        mark = (told.st_ino, told.st_mtime_ns, told.st_size)
+        with self._lock:
+            if self._known is None or self._known[0] != mark:
+                try:
+                    found = decode_json(read_file(self.path, _MOST_BYTES), SocketsFile)
+                except MalformedError as error:
+                    raise InputError(f"no sockets: {error.what}", str(self.path), _FIX) from None
+                self._known = mark, found
+            return self._known[1]
+
+    def identity(self, webcam: str) -> WebcamIdentity:
+        """What the webcam of this name is, and where it was set up. Raises InputError or ConfigError."""
+        webcams = self.now().webcams
+        if webcam not in webcams:
+            raise InputError(f"there is no webcam {webcam!r}", str(self.path), _FIX)
+        return parse_identity(webcams[webcam])
+
+    def find(self, webcam: str) -> FoundSocket:
+        """Where the webcam of this name is, by its identity alone, as with real ones. Raises UnavailableError where it
+        is absent or cannot be told from others, InputError or ConfigError for a wrong file."""
+        file, wanted = self.now(), self.identity(webcam)
+        known = {name: parse_identity(text) for name, text in file.webcams.items()}
+        present = {_present(known, one.webcam, port): port for port, one in file.sockets.items()}
+        others = tuple(one for name, one in known.items() if name != webcam)
+        match = match_identity(wanted, tuple(present), others)
+        port = present[match.identity]
+        return FoundSocket(port, file.sockets[port], match.moved)
+
+    def take(self, plugged: Plugged, user: object) -> None:
+        """Stream from it. Raises UnavailableError while somebody else does."""
+        with self._lock:
+            if self._taken.get(plugged, user) is not user:
+                raise UnavailableError("busy: used already by this process", plugged.webcam, _FIX)
+            self._taken[plugged] = user
+
+    def give_back(self, plugged: Plugged, user: object) -> None:
+        """Stream no more; nothing happens when somebody else does."""
+        with self._lock:
+            if self._taken.get(plugged) is user:
+                del self._taken[plugged]
+
+
+_FIX = "see docs/faults.md"
+
+
+def _present(known: Mapping[str, WebcamIdentity], webcam: str, port: str) -> WebcamIdentity:
+    if webcam not in known:
+        raise InputError(f"socket {port} holds {webcam!r}, which is none of its webcams", "", _FIX)
+    return WebcamIdentity(port, *known[webcam].model)

@@ -1,0 +1,1 @@
+"""Commands for whoever looks after a daemon that runs for months."""

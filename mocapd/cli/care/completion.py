@@ -1,0 +1,36 @@
+"""`mocapd completion`, and what a shell asks when somebody presses Tab."""
+
+import os
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+from typer._completion_classes import completion_init
+from typer._completion_shared import get_completion_script
+
+VARIABLE = "_MOCAPD_COMPLETE"  # that the shell's script sets; typer answers it and ends
+
+
+Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # whose completion can be loaded from a file
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("completion")(completion)
+
+
+def completion(shell: Annotated[Shell, typer.Argument(help="Which shell.")]) -> None:
+    """Print what has a shell complete at Tab.
+
+    For bash into ~/.local/share/bash-completion/completions/mocapd, for zsh into a file _mocapd of a folder in $fpath, for
+    fish into ~/.config/fish/completions/mocapd.fish.
+
+    Example: mocapd completion bash > ~/.local/share/bash-completion/completions/mocapd
+    """
+    print(get_completion_script(prog_name="mocapd", complete_var=VARIABLE, shell=shell.value))
+
+
+def ready_to_complete() -> None:
+    """Where a shell asks: typer's own formats for what it is answered."""
+    if VARIABLE in os.environ:
+        completion_init()

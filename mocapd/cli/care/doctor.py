@@ -1,0 +1,61 @@
+"""`mocapd doctor`"""
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mocapd.doctor.finding import Finding
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("doctor")(doctor)
+
+
+def doctor(
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line.")] = False,
+    config: ConfigOption = None,
+    settings: SetOption = None,
+) -> None:
+    """Say what keeps mocapd from tracking here.
+
+    And what would mend it. Rights, webcams, USB bandwidth, the calibration, ports, folders and their room,
+    processor, clock and libraries: a line each, `ok`, `warn` or `bad`. Changes nothing, and takes no picture.
+    Ends with 1 when something is bad.
+
+    Example: mocapd doctor | grep -v ^ok
+    """
+    effective, error = config_to_look_after(config, settings)
+
+    from mocapd.doctor.examination import examine
+    from mocapd.doctor.facts import Trouble
+    from mocapd.doctor.finding import Verdict
+    from mocapd.doctor.gathering.gathering import gathered
+
+    trouble = None
+    if error is not None:
+        where = f"{error.where}: " if error.where else ""
+        trouble = Trouble(f"{where}{error.what}", error.fix)
+    findings = examine(gathered(effective, trouble))
+    print("\n".join(map(_as_json, findings)) if as_json else _as_text(findings))
+    raise typer.Exit(int(any(one.verdict is Verdict.BAD for one in findings)))
+
+
+def _as_json(finding: "Finding") -> str:
+    return json.dumps(asdict(finding))
+
+
+def _as_text(findings: "Sequence[Finding]") -> str:
+    width = max(len(one.about) for one in findings)
+    return "\n".join(
+        f"{one.verdict:<4}  {one.about:<{width}}  {one.what}"
+        + (f" -- {one.fix}" if one.fix else "")
+        for one in findings
+    )

@@ -1,0 +1,29 @@
+"""`mocapd reload`"""
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("reload")(reload)
+
+
+def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
+    """Have the running daemon read its config again.
+
+    And its calibration, from where it was started with. The stream goes on, but for the moment in which cameras
+    are closed and opened. All of it is checked first: what is wrong is told with its key, and the daemon goes
+    on as it was; the exit code is then that of `mocapd run`, such as 78. What only the next start takes up is
+    named.
+
+    Example: mocapd reload
+    """
+    from mocapd.control.meant import daemon_meant
+
+    daemon = daemon_meant(config_to_look_after(config, settings)[0].config)
+    done = daemon.reload()
+    print(f"{daemon.instance}: taken up, {done.gap_s:.2f} s without a frame")
+    if done.waiting:
+        print(f"changed, but only for the next start: {', '.join(done.waiting)}")

@@ -1,0 +1,93 @@
+"""`mocapd status`"""
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+from mocapd.cli.watch import endpoint_of
+
+if TYPE_CHECKING:
+    from mocapd.control.messages import StatusReport
+
+# As of an init script's `status` (LSB), where 150 to 199 are the program's own.
+ABLE = 0
+NOT_RUNNING = 3
+UNKNOWN = 4
+UNABLE = 150
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("status")(status)
+
+
+def status(
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a daemon.")] = False,
+    config: ConfigOption = None,
+    settings: SetOption = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Every daemon on the Zenoh bus, also of other machines.")
+    ] = False,
+    endpoint: Annotated[
+        str | None,
+        typer.Option(help="With --all: the router, or a daemon [default: that of the config]"),
+    ] = None,
+) -> None:
+    """Print how the running daemon fares.
+
+    State, tracker, rate, latency, cameras, outputs, calibration, last trouble. Ends with 0 when it tracks or
+    could, as soon as somebody comes; 150 when it runs and cannot: it is still starting, or no camera delivers;
+    3 when none is running; 4 when one is there and does not answer, or is another user's. Of several that run
+    the one of this configuration, else all. With --all the worst of those on the bus counts.
+
+    Example: mocapd status --json | jq .state
+    """
+    from mocapd.app.status_text import status_lines
+    from mocapd.control.meant import daemons_found, meant, why_none
+
+    effective, error = config_to_look_after(config, settings)
+    chosen = effective.config
+    if every:
+        from mocapd.outputs.registry import zenoh_section
+
+        zenoh = zenoh_section(chosen.outputs)
+        raise typer.Exit(_print_all(endpoint or endpoint_of(zenoh), as_json))
+    found = daemons_found(chosen)
+    reports = [one.status for one in meant(found.daemons, chosen)]
+    for report in reports:
+        print(_as_json(report) if as_json else "\n".join(status_lines(report)))
+    if not reports:
+        typer.echo(f"mocapd: {why_none(found)}", err=True)
+        raise typer.Exit(UNKNOWN if found.silent or found.foreign else NOT_RUNNING)
+    if error is not None:
+        typer.echo(f"mocapd: the next start or reload will not do: {error}", err=True)
+    raise typer.Exit(max(map(exit_code, reports)))
+
+
+def _print_all(endpoint: str, as_json: bool) -> int:
+    """The exit code."""
+    from mocapd.app.watch_all import as_dict, as_text, is_able, on_the_bus
+    from mocapd.client import Link
+    from mocapd.errors import UnavailableError
+
+    try:
+        states = on_the_bus(Link(endpoint))
+    except UnavailableError as error:
+        typer.echo(f"mocapd: {error}", err=True)
+        return NOT_RUNNING
+    for one in states:
+        print(json.dumps(as_dict(one)) if as_json else as_text(one))
+    return ABLE if all(map(is_able, states)) else UNABLE
+
+
+def exit_code(report: "StatusReport") -> int:
+    """Of one daemon that answers."""
+    return ABLE if report.state in ("tracking", "nobody") else UNABLE
+
+
+def _as_json(report: "StatusReport") -> str:
+    import msgspec
+
+    return json.dumps(msgspec.to_builtins(report))

@@ -1,0 +1,1 @@
+"""Commands around mocapd as a service of systemd."""

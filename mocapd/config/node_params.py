@@ -1,0 +1,25 @@
+"""The section [node] of the configuration: what is a camera node's own."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from msgspec import Meta
+
+Side = Annotated[int, Meta(ge=16, le=8192)]
+
+
+@dataclass(frozen=True, slots=True)
+class Params:
+    """What `mocapd camera-node` needs besides [[camera]] and [zenoh].
+
+    size_px: width and height to ask the webcams for [px]
+    jpeg_quality: of pictures that a camera does not deliver as JPEG, 1 to 100
+    paired_user: who may set the cameras' controls: a user of zenoh.password_file, or with zenoh.tls_require_client the
+      name (CN) in the certificate; empty: nobody
+    router_decides: behind a router, where nobody can be told apart: take orders from whomever its access control lets through
+    """
+
+    size_px: tuple[Side, Side] = (640, 480)
+    jpeg_quality: Annotated[int, Meta(ge=1, le=100)] = 90
+    paired_user: Annotated[str, Meta(max_length=64)] = ""
+    router_decides: bool = False

@@ -1,0 +1,141 @@
+"""The daemon's end of the control socket: answers its own user and root, each in a thread, a few at once."""
+
+import logging
+import os
+import socket
+import socketserver
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from mocapd.boundary.messages import decode_json
+from mocapd.control.line import read_line
+from mocapd.control.messages import Answer, Refused, Request, Verb
+from mocapd.control.socket_place import may_command, peer_of, short_address
+from mocapd.errors import CannotCreateError, MalformedError, MocapdError, PermissionDeniedError
+
+LONGEST_REQUEST = 4 << 10  # [bytes]
+ASK_S = 2.0  # that a request may take to come, and its answer to be taken [s]
+MOST_AT_ONCE = 16  # connections; further ones are closed
+_LOOK_EVERY_S = 0.1  # whether it is to end [s]
+
+_log = logging.getLogger(__name__)
+
+
+class ControlSocket:
+    """Serves from `open` to `close`. `answer` does what is asked, in a thread of its own, and raises MocapdError
+    for a refusal; `died` hears, there, of anything unexpected."""
+
+    def __init__(
+        self,
+        path: Path,
+        answer: Callable[[Verb], msgspec.Struct],
+        died: Callable[[BaseException], None],
+    ) -> None:
+        self._path, self._answer, self._died = path, answer, died
+        self._server: _Server | None = None
+
+    def open(self) -> None:
+        """Returns as soon as it can be asked. Raises CannotCreateError."""
+        try:
+            self._path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            self._path.unlink(missing_ok=True)  # of a process that had our number before
+            self._server = _Server(self._path, self._answer, self._died)
+        except OSError as error:
+            raise CannotCreateError(
+                f"no control socket can be made: {error.strerror}",
+                str(self._path.parent),
+                "set XDG_RUNTIME_DIR to your own folder",
+            ) from None
+        threading.Thread(
+            target=self._server.serve_forever, args=(_LOOK_EVERY_S,), name="control", daemon=True
+        ).start()
+
+    def close(self) -> None:
+        """No new connection; those there are end with the process. May be called twice."""
+        server, self._server = self._server, None
+        if server is not None:
+            server.shutdown()
+            server.server_close()
+            with suppress(OSError):
+                self._path.unlink()
+
+
+class _Server(socketserver.ThreadingMixIn, socketserver.UnixStreamServer):
+    daemon_threads = True
+    request_queue_size = MOST_AT_ONCE
+
+    def __init__(
+        self,
+        path: Path,
+        answer: Callable[[Verb], msgspec.Struct],
+        died: Callable[[BaseException], None],
+    ) -> None:
+        self.answer = answer
+        self._died = died
+        self._room = threading.BoundedSemaphore(MOST_AT_ONCE)
+        self._told_of_strangers = False
+        with short_address(path) as address:
+            super().__init__(address, _Connection)
+
+    def server_bind(self) -> None:
+        """For nobody else, from its first moment: Linux makes the file with the socket's own mode."""
+        os.fchmod(self.socket.fileno(), 0o600)
+        self.socket.bind(self.server_address)
+
+    def verify_request(self, _request: Any, _address: Any) -> bool:
+        """Whether there is room for another one."""
+        return self._room.acquire(blocking=False)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """One connection, in its thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._room.release()
+
+    def handle_error(self, _request: Any, _address: Any) -> None:
+        """The library would print it, and go on."""
+        error = sys.exc_info()[1]
+        if error is not None:
+            self._died(error)
+
+    def stranger(self, uid: int) -> None:
+        """Somebody else has come in, whose right the file's mode does not give."""
+        if not self._told_of_strangers:
+            self._told_of_strangers = True
+            _log.warning("user %d asked at the control socket, and is refused", uid)
+
+
+class _Connection(socketserver.BaseRequestHandler):
+    server: _Server
+    request: socket.socket
+
+    def handle(self) -> None:
+        """Read one line, answer with one."""
+        with suppress(OSError):  # it has left, or takes too long
+            self.request.settimeout(ASK_S)
+            self.request.sendall(msgspec.json.encode(self._answered()) + b"\n")
+
+    def _answered(self) -> Answer:
+        try:
+            uid = peer_of(self.request)
+            if not may_command(uid):
+                self.server.stranger(uid)
+                raise PermissionDeniedError("another user's", "the control socket")
+            asked = decode_json(read_line(self.request, LONGEST_REQUEST, ASK_S), Request)
+            told = self.server.answer(asked.verb)
+            return Answer(msgspec.Raw(msgspec.json.encode(told)))
+        except MalformedError as error:
+            return _refusal(MalformedError(f"not understood: {error.what}", "the control socket"))
+        except MocapdError as error:
+            return _refusal(error)
+
+
+def _refusal(error: MocapdError) -> Answer:
+    return Answer(refused=Refused(error.what, error.where, error.fix, error.exit_code))

@@ -1,0 +1,85 @@
+"""What a daemon does when it is asked at its control socket."""
+
+import logging
+from pathlib import Path
+from typing import assert_never
+
+from mocapd.config.sections import Config
+from mocapd.control.control_socket import ControlSocket
+from mocapd.control.last_trouble import LastTrouble
+from mocapd.control.messages import Recentered, Reloaded, StatusReport, Verb
+from mocapd.control.reloads import Reloads
+from mocapd.control.status_report import starting_report, status_report
+from mocapd.errors import MocapdError, UnavailableError
+from mocapd.service.open_outputs import OpenOutputs
+from mocapd.service.service import Service, Snapshot
+
+_log = logging.getLogger(__name__)
+
+
+class DaemonControl:
+    """A context manager, and beside the service when there is one (see app.running.Beside). Its socket is there from
+    `open` on, while the first session is still prepared. `path`: where."""
+
+    def __init__(
+        self, path: Path, config: Config, outputs: OpenOutputs, trouble: LastTrouble
+    ) -> None:
+        self._config, self._outputs, self._trouble = config, outputs, trouble
+        self._socket = ControlSocket(path, self._answer, self._died)
+        self._service: Service | None = None
+        self._reloads = Reloads()
+        self._death: BaseException | None = None
+
+    def __enter__(self) -> "DaemonControl":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.let_go()
+
+    def open(self) -> None:
+        """The outputs are open: somebody may ask."""
+        try:
+            self._socket.open()
+        except MocapdError as error:  # it tracks as well without
+            _log.warning("`mocapd status` will not find this daemon: %s", error)
+
+    def attach(self, service: Service, reloads: Reloads) -> None:
+        """There is a session."""
+        self._reloads, self._service = reloads, service
+        if self._death is not None:
+            service.died(self._death)
+
+    def beat(self, _snapshot: Snapshot) -> None:
+        """See Beside."""
+
+    def let_go(self) -> None:
+        """See Beside."""
+        self._socket.close()
+
+    def _died(self, error: BaseException) -> None:
+        """In a thread of the socket's."""
+        self._death = error
+        if self._service is not None:
+            self._service.died(error)
+
+    def _answer(self, verb: Verb) -> StatusReport | Recentered | Reloaded:
+        """In a thread of the socket's. Raises MocapdError."""
+        service = self._service
+        if service is None:
+            if verb != "status":
+                raise _starting()
+            return starting_report(self._config, self._outputs, self._trouble.newest)
+        match verb:
+            case "status":
+                return status_report(service, self._trouble.newest)
+            case "recenter":
+                facing, outputs = service.recenter(), service.snapshot().outputs
+                return Recentered(facing.yaw_deg, tuple(outputs))
+            case "reload":
+                return self._reloads.ask()
+            case other:
+                assert_never(other)
+
+
+def _starting() -> UnavailableError:
+    return UnavailableError("it is still starting", "the daemon", "see `mocapd status`")

@@ -1,0 +1,33 @@
+"""Remembers the newest warning of the log, for who asks how the daemon fares."""
+
+import logging
+
+from mocapd.control.messages import Trouble
+
+_LONGEST = 1000  # characters
+
+
+class LastTrouble(logging.Handler):
+    """Hears mocapd's own warnings and errors from `__enter__` to `__exit__`, as far as `log_level` lets them be made."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self._newest: Trouble | None = None
+
+    def __enter__(self) -> "LastTrouble":
+        # not at the root: its handlers are replaced when log_level changes
+        logging.getLogger("mocapd").addHandler(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        logging.getLogger("mocapd").removeHandler(self)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take note of one record."""
+        text = record.getMessage()[:_LONGEST]
+        self._newest = Trouble(record.created, record.levelname.lower(), text)
+
+    @property
+    def newest(self) -> Trouble | None:
+        """None while there was none; from any thread."""
+        return self._newest

@@ -1,0 +1,114 @@
+"""From a running service to the answer of `mocapd status`."""
+
+import math
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+
+import mocapd
+from mocapd.capture.capture_status import CaptureStatus
+from mocapd.config.sections import Config
+from mocapd.control.messages import (
+    CalibrationReport,
+    CameraReport,
+    OutputReport,
+    StatusReport,
+    Trouble,
+)
+from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.messages import CameraStatus
+from mocapd.service.fitness import fitness_of
+from mocapd.service.open_outputs import OpenOutputs
+from mocapd.service.service import Service
+from mocapd.session.session import Session
+from mocapd.types import Tracking
+
+SILENT = "silent"  # a camera that counts as live and sends nothing
+
+
+def status_report(service: Service, last_trouble: Trouble | None) -> StatusReport:
+    """How the service fares now; from any thread."""
+    snapshot, session = service.snapshot(), service.session
+    metrics, cameras = snapshot.metrics, service.camera_messages()
+    return StatusReport(
+        version=mocapd.__version__,
+        pid=os.getpid(),
+        instance=service.instance,
+        state_dir=str(service.config.state_dir.resolve()),
+        state=fitness_of(snapshot),
+        tracker=metrics.tracker or session.tracker.name,
+        tracking=metrics.tracking.value,
+        rate_hz=metrics.rate_hz,
+        latency_median_ms=_measured(metrics.latency_ms.median),
+        latency_p95_ms=_measured(metrics.latency_ms.p95),
+        published=metrics.published,
+        dropped=metrics.sets_dropped,
+        uptime_s=service.uptime_s,
+        cameras=tuple(_camera(one, snapshot.cameras.get(one.camera)) for one in cameras),
+        outputs=_outputs(snapshot.outputs),
+        calibration=_calibration(session),
+        last_trouble=last_trouble,
+    )
+
+
+def starting_report(
+    config: Config, outputs: OpenOutputs, last_trouble: Trouble | None
+) -> StatusReport:
+    """The same while the outputs are open, and the first session is still prepared."""
+    return StatusReport(
+        version=mocapd.__version__,
+        pid=os.getpid(),
+        instance=outputs.instance,
+        state_dir=str(config.state_dir.resolve()),
+        state="starting",
+        tracker=config.tracker.name,
+        tracking=Tracking.LOST.value,
+        rate_hz=0.0,
+        latency_median_ms=None,
+        latency_p95_ms=None,
+        published=0,
+        dropped=0,
+        uptime_s=outputs.uptime_s,
+        cameras=(),
+        outputs=_outputs({sink.name: sink.status() for sink in outputs.sinks}),
+        last_trouble=last_trouble,
+    )
+
+
+def _outputs(statuses: Mapping[str, SinkStatus]) -> tuple[OutputReport, ...]:
+    return tuple(
+        OutputReport(name, one.sent, one.refused, one.listeners, one.detail)
+        for name, one in statuses.items()
+    )
+
+
+def _camera(message: CameraStatus, status: CaptureStatus | None) -> CameraReport:
+    is_silent = status is not None and status.is_silent
+    return CameraReport(
+        id=message.camera,
+        state=SILENT if is_silent else message.state,
+        detail=message.detail,
+        source=message.source,
+        rate_hz=message.rate_hz,
+        frames=message.frames,
+        lost_frames=message.lost_frames,
+        reopened=message.reopened,
+        mounting=message.mounting,
+    )
+
+
+def _calibration(session: Session) -> CalibrationReport | None:
+    if session.rig is None:
+        return None
+    return CalibrationReport(session.rig_source, _unix_s(session.calibrated))
+
+
+def _unix_s(when: datetime | None) -> float | None:
+    """A time without a zone is UTC, as `calibration.toml` has it."""
+    if when is None:
+        return None
+    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp()
+
+
+def _measured(value: float) -> float | None:
+    return None if math.isnan(value) else value

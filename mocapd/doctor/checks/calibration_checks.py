@@ -1,0 +1,32 @@
+"""The calibration: there, readable, not too old, and good enough."""
+
+from mocapd.doctor.facts import CalibrationFacts
+from mocapd.doctor.finding import Finding, bad, ok, warn
+
+OLD_S = 180 * 86400.0  # in half a year mountings sink and lamps are changed
+POOR_PX = 1.5
+POOR_CM = 3.0
+
+_ROOM = "mocapd calibrate --step room"
+
+
+def check_calibration(facts: CalibrationFacts) -> Finding:
+    """What a daemon that is started now would track with."""
+    about = "calibration"
+    if facts.trouble is not None:
+        return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
+    if facts.path is None:
+        return warn(about, "none is saved", "mocapd calibrate")
+    days = int(facts.age_s / 86400.0)
+    told = (
+        f"{facts.path}: {facts.cameras} camera{'s' if facts.cameras > 1 else ''}, {days} days old"
+    )
+    told += f", {facts.rms_px:.2f} px" if facts.rms_px is not None else ""
+    told += f", {facts.play_area_cm:.1f} cm" if facts.play_area_cm is not None else ""
+    if facts.age_s < -86400.0:
+        return warn(about, f"{facts.path} is of the future", "set the clock: timedatectl")
+    if (facts.rms_px or 0.0) > POOR_PX or (facts.play_area_cm or 0.0) > POOR_CM:
+        return warn(about, f"{told}: it fits badly", _ROOM)
+    if facts.age_s > OLD_S:
+        return warn(about, f"{told}: it is old", f"{_ROOM}, and --step colour if the lamps changed")
+    return ok(about, told)

@@ -1,0 +1,52 @@
+"""Folders: private, writable, with room; and the ports that are wanted."""
+
+from collections.abc import Iterator, Sequence
+
+from mocapd.control.messages import StatusReport
+from mocapd.doctor.facts import FolderFacts, PortFacts
+from mocapd.doctor.finding import Finding, bad, ok, warn
+
+LITTLE_BYTES = 1 << 30  # a recording with pictures takes that in minutes
+TOO_LITTLE_BYTES = 200 << 20  # compiled code and pose database
+
+
+def check_folder(facts: FolderFacts) -> Finding:
+    """Whether what is kept there can be, and by us alone."""
+    about = f"folder {facts.key}"
+    if facts.trouble is not None:
+        return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
+    if facts.free_bytes is not None and facts.free_bytes < TOO_LITTLE_BYTES:
+        return bad(
+            about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
+        )
+    if facts.open_to_others:
+        return warn(about, f"{facts.path}: others may look into it", f"chmod 700 {facts.path}")
+    if facts.free_bytes is not None and facts.free_bytes < LITTLE_BYTES:
+        return warn(
+            about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
+        )
+    room = "" if facts.free_bytes is None else f", {_room(facts.free_bytes)}"
+    return ok(about, f"{facts.path}: private and writable{room}")
+
+
+def check_ports(ports: Sequence[PortFacts], daemons: Sequence[StatusReport]) -> Iterator[Finding]:
+    """Whether a daemon that is started now could have them."""
+    own = {str(one.pid) for one in daemons}
+    for one in ports:
+        about = f"port {one.port}"
+        if not one.holder:
+            yield ok(about, f"free for {one.key}")
+        elif any(f"(pid {pid})" in one.holder for pid in own):
+            yield ok(about, f"{one.key} of the running daemon")
+        else:
+            yield bad(
+                about,
+                f"{one.holder} has it, and {one.key} wants it",
+                f"end that program, or set {one.key} to another",
+            )
+
+
+def _room(free_bytes: int) -> str:
+    if free_bytes < 1 << 30:
+        return f"{free_bytes / (1 << 20):.0f} MB free"
+    return f"{free_bytes / (1 << 30):.0f} GB free"

@@ -1,0 +1,80 @@
+"""Configuration, running daemons, processor, clock, Python and its libraries."""
+
+from collections.abc import Iterator, Sequence
+
+from mocapd.control.messages import StatusReport
+from mocapd.doctor.facts import ClockFacts, ConfigFacts, LibraryFacts, ProcessorFacts
+from mocapd.doctor.finding import Finding, bad, ok, warn
+
+FEWEST_CORES = 2
+# Drivers whose `powersave` follows the load within milliseconds.
+_QUICK_DRIVERS = ("intel_pstate", "amd-pstate-epp")
+
+
+def check_config(facts: ConfigFacts) -> Finding:
+    """Whether it can be read."""
+    if facts.trouble is not None:
+        return bad("config", facts.trouble.what, facts.trouble.fix)
+    return ok("config", str(facts.file) if facts.file else "no file: what is built in")
+
+
+def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
+    """Those that run, and how they fare."""
+    if not daemons:
+        yield ok("daemon", "none of yours is running")
+    for one in daemons:
+        told = f"{one.instance} (pid {one.pid}) is running"
+        if one.state == "blind":
+            yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
+        else:
+            yield ok("daemon", told)
+
+
+def check_processor(facts: ProcessorFacts) -> Iterator[Finding]:
+    """Cores, and whether they are kept slow."""
+    if facts.cores < FEWEST_CORES:
+        yield warn(
+            "processor",
+            f"{facts.cores} core: tracking and everything else share it",
+            "give it two, or lower fps_hz",
+        )
+    slow = facts.governors.get("powersave", 0)
+    if slow and not facts.driver.startswith(_QUICK_DRIVERS):
+        yield warn(
+            "processor",
+            f"{slow} cores are kept at their lowest frequency (governor powersave)",
+            "sudo cpupower frequency-set -g schedutil",
+        )
+    elif facts.cores >= FEWEST_CORES:
+        kinds = ", ".join(sorted(facts.governors)) or "no governor is told"
+        yield ok("processor", f"{facts.cores} cores ({kinds})")
+
+
+def check_clock(facts: ClockFacts) -> Finding:
+    """Frames carry the wall clock's time besides the monotonic one; ages of files are told by it."""
+    if facts.now_unix_s < facts.built_unix_s - 86400.0:
+        return bad("clock", "it is earlier than mocapd itself", "sudo timedatectl set-ntp true")
+    if facts.synchronised is False:
+        return warn(
+            "clock",
+            "it is not synchronised: cameras and games of other machines are told wrong times",
+            "sudo timedatectl set-ntp true",
+        )
+    return ok("clock", "synchronised" if facts.synchronised else "plausible; nobody tells more")
+
+
+def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
+    """Whether everything can be imported."""
+    for name, why in facts.broken.items():
+        yield bad("library", f"{name}: {why}", "install mocapd anew: pipx reinstall mocapd")
+    versions = ", ".join(f"{name} {version}" for name, version in facts.versions.items())
+    yield ok("python", f"{facts.python}; {versions}")
+    if facts.wants_vrchat and not facts.has_vrchat:
+        yield bad(
+            "vrchat",
+            'vrchat.destination = "auto" needs the extra, which is not installed',
+            "pip install 'mocapd[vrchat]'",
+        )
+    else:
+        has = "installed" if facts.has_vrchat else "not installed, and not needed"
+        yield ok("vrchat", f"the extra that finds it is {has}")

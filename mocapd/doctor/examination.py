@@ -1,0 +1,31 @@
+"""Every check, in the order in which it is told."""
+
+from mocapd.doctor.checks.calibration_checks import check_calibration
+from mocapd.doctor.checks.camera_checks import check_bandwidth, check_rights, check_webcams
+from mocapd.doctor.checks.storage_checks import check_folder, check_ports
+from mocapd.doctor.checks.system_checks import (
+    check_clock,
+    check_config,
+    check_daemons,
+    check_libraries,
+    check_processor,
+)
+from mocapd.doctor.facts import Facts
+from mocapd.doctor.finding import Finding
+
+
+def examine(facts: Facts) -> tuple[Finding, ...]:
+    """A line for each thing that was looked at."""
+    return (
+        check_config(facts.config),
+        *check_daemons(facts.daemons),
+        *check_rights(facts.user, facts.cameras),
+        *check_webcams(facts.cameras, facts.daemons),
+        *check_bandwidth(facts.cameras),
+        check_calibration(facts.calibration),
+        *check_ports(facts.ports, facts.daemons),
+        *(check_folder(one) for one in facts.folders),
+        *check_processor(facts.processor),
+        check_clock(facts.clock),
+        *check_libraries(facts.libraries),
+    )

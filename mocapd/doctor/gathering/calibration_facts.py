@@ -1,0 +1,43 @@
+"""The calibration that a daemon of this configuration would track with."""
+
+import time
+from datetime import UTC
+from pathlib import Path
+
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.config.sections import Config
+from mocapd.doctor.facts import CalibrationFacts, Trouble
+from mocapd.errors import MocapdError
+from mocapd.geometry.rig_file import load_rig
+from mocapd.session.saved_session import LoadedCalibration, configured_calibration
+
+
+def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibration | None]:
+    """With the calibration itself, where one is saved and can be read."""
+    place = config.rig if config.rig is not None else config.state_dir / FILE_NAME
+    try:
+        saved = configured_calibration(config)
+        if saved is None and config.rig is not None:
+            return _of_rig_file(config.rig), None
+    except MocapdError as error:
+        return CalibrationFacts(place, Trouble(error.what, error.fix)), None
+    if saved is None:
+        return CalibrationFacts(None), None
+    made, room = saved.tables.made.when, saved.tables.room
+    when = made if made.tzinfo else made.replace(tzinfo=UTC)
+    facts = CalibrationFacts(
+        saved.path,
+        age_s=time.time() - when.timestamp(),
+        rms_px=room.rms_px,
+        play_area_cm=room.play_area_cm,
+        cameras=len(saved.tables.camera),
+    )
+    return facts, saved
+
+
+def _of_rig_file(path: Path) -> CalibrationFacts:
+    """A rig in the capture format says nothing of its age but the file's own. Raises MocapdError."""
+    rig = load_rig(path)
+    return CalibrationFacts(
+        path, age_s=time.time() - path.stat().st_mtime, cameras=len(rig.cameras)
+    )

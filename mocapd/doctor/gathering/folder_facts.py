@@ -1,0 +1,47 @@
+"""The folders in which mocapd keeps things: rights and room."""
+
+import os
+import shutil
+from pathlib import Path
+
+from mocapd.boundary.folders import readable_by_others, require_own_folder
+from mocapd.config.runtime_folder import runtime_folder
+from mocapd.config.sections import Config
+from mocapd.doctor.facts import FolderFacts, Trouble
+from mocapd.errors import MocapdError
+
+
+def folder_facts(config: Config) -> tuple[FolderFacts, ...]:
+    """Cache, state, and where the running process says how to reach it. Makes none of them."""
+    return (
+        _folder("cache_dir", config.cache_dir, runs_from_it=True),
+        _folder("state_dir", config.state_dir),
+        _folder("XDG_RUNTIME_DIR", runtime_folder(config.state_dir)),
+    )
+
+
+def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
+    there = _nearest(path)
+    trouble = None
+    if runs_from_it and there == path:
+        try:
+            require_own_folder(path)
+        except MocapdError as error:
+            trouble = Trouble(error.what, error.fix)
+    if trouble is None and not os.access(there, os.W_OK | os.X_OK):
+        trouble = Trouble("cannot be written to", f"chown or chmod it, or set {key} to another")
+    try:
+        free: int | None = shutil.disk_usage(there).free
+    except OSError:
+        free = None
+    # code that is run from there is nobody's secret
+    secret = not runs_from_it and there == path
+    return FolderFacts(key, path, trouble, secret and readable_by_others(path), free)
+
+
+def _nearest(path: Path) -> Path:
+    """The folder, or the one in which it will be made."""
+    for one in (path, *path.parents):
+        if one.is_dir():
+            return one
+    return Path("/")

@@ -1,0 +1,37 @@
+"""Python and the libraries that do the work."""
+
+import importlib
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+
+from mocapd.config.sections import Config
+from mocapd.doctor.facts import LibraryFacts
+from mocapd.outputs.registry import VRChatSection
+from mocapd.outputs.vrchat.vrchat_sink import AUTO
+
+# What is imported, and the package that brings it: those with compiled code, of which any may be broken.
+_COMPILED = {
+    "numpy": "numpy",
+    "scipy": "scipy",
+    "numba": "numba",
+    "cv2": "opencv-python-headless",
+    "zenoh": "eclipse-zenoh",
+    "msgspec": "msgspec",
+}
+
+
+def library_facts(config: Config) -> LibraryFacts:
+    """Imports each of them."""
+    versions, broken = {}, {}
+    for module, package in _COMPILED.items():
+        try:
+            importlib.import_module(module)
+            versions[package] = version(package)
+        except (ImportError, PackageNotFoundError) as error:
+            broken[package] = str(error)
+    section = config.outputs.get("vrchat")
+    wants = isinstance(section, VRChatSection) and section.enabled and section.destination == AUTO
+    return LibraryFacts(
+        platform.python_version(), versions, broken, wants, find_spec("zeroconf") is not None
+    )

@@ -1,0 +1,17 @@
+"""The TCP ports that the configuration wants, and who has them."""
+
+from mocapd.config.sections import Config
+from mocapd.doctor.facts import PortFacts
+from mocapd.outputs.registry import zenoh_section
+from mocapd.outputs.socket_owners import holder_of
+
+
+def port_facts(config: Config) -> tuple[PortFacts, ...]:
+    """Zenoh's own on this machine, and the page's where it is a fixed one."""
+    wanted = []
+    zenoh = zenoh_section(config.outputs)
+    if zenoh.enabled and not zenoh.connect and not zenoh.listen:
+        wanted.append(("zenoh.port", zenoh.port))
+    if config.web.enabled and config.web.port:
+        wanted.append(("web.port", config.web.port))
+    return tuple(PortFacts(key, port, holder_of(port)) for key, port in wanted)

@@ -1,0 +1,169 @@
+"""When a leg does not agree with the pictures: other poses of it are tried, the best is kept.
+
+A knee that comes up in a tenth of a second is out of the fit's reach, and a leg that slipped onto the other one stays there.
+As for arms (`limb_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.regions import Label
+from mocapd.body.skeleton import PARENTS
+from mocapd.fit.arm_samples import Arm, leg_of, placed
+from mocapd.fit.fit_params import LegSearchParams
+from mocapd.fit.limb_search import (
+    PX_OF_M2,
+    best_poses,
+    mirrored_bones,
+    part,
+    score_in_view,
+    spread,
+    turned_about,
+    turned_rad2,
+)
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import unusual_leg, usual_leg
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+_LABELS = {
+    "left": [Label.LEFT_THIGH, Label.LEFT_SHIN],
+    "right": [Label.RIGHT_THIGH, Label.RIGHT_SHIN],
+}
+_LIBRARY = 1024
+_IN_SIGHT = 0.02  # of all pixels that are drawn; a leg with fewer is not asked
+
+
+class LegSearch:
+    """Tries other poses of legs that the pictures do not confirm."""
+
+    def __init__(self, fitter: Fitter, params: LegSearchParams) -> None:
+        """fitter: of a whole body whose pixels are counted by `Label`."""
+        self.fitter, self.params = fitter, params
+        self.legs = {side: leg_of(fitter.model, side) for side in SIDES}
+        u = spread(_LIBRARY)
+        near = np.where(np.arange(_LIBRARY) % 2, 1.2, 0.5)[:, None]
+        self._cloud = (2.0 * u - 1.0) * near * np.array([1.2, 0.4, 0.5, 1.2, 0.1, 0.1])
+        self._library = {side: _library(u, side) for side in SIDES}
+
+    def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
+        """Run the search once for nothing: the first uncertain leg must not wait for its kernels to be compiled or loaded."""
+        for side, leg in self.legs.items():
+            self._scores(state, side, leg, views, self._candidates(state, side, leg, views, 0)[:1])
+
+    def improve(
+        self,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        terms: Sequence[PoseTerm] = (),
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """A better fit, if another pose of an uncertain leg gives one, and the sides that changed.
+
+        turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
+        """
+        p = self.params
+        changed = []
+        for side, leg in self.legs.items():
+            if confirmed(side, fit) >= p.uncertain:
+                continue
+            tries = self._candidates(fit.state, side, leg, views, turn)
+            scores = self._scores(fit.state, side, leg, views, tries)
+            here = tries[0]
+            best, least = fit, fit.cost + self._price(side, here, here) - p.gain
+            for n in best_poses(tries[:, :2], scores, p.fits):
+                local = fit.state.local_xyzw.copy()
+                local[leg.chain[:3]] = tries[n]
+                other = self.fitter.fit(
+                    replace(fit.state, local_xyzw=local),
+                    views,
+                    dt_s,
+                    3,
+                    learn_shape=False,
+                    fine=1,
+                    terms=terms,
+                )
+                cost = other.cost + self._price(side, other.state.local_xyzw[leg.chain[:3]], here)
+                if cost < least:
+                    best, least = other, cost
+            if best is not fit:
+                fit = best
+                changed.append(side)
+        return fit, tuple(changed)
+
+    def _candidates(
+        self, state: MotionState, side: str, leg: Arm, views: Sequence[View], turn: int
+    ) -> Floats:
+        """Local rotations (N,3,4) of thigh, shank and foot to try; the first is the present pose."""
+        p = self.params
+        joints, globals_ = self.fitter.joints(state)
+        thigh, shank, foot = leg.chain[:3]
+        present = state.local_xyzw[leg.chain[:3]]
+        out = [present]
+        hips = globals_[PARENTS[thigh]]
+        for view in views:
+            camera = self.fitter.drawings[view.index].camera
+            for q_thigh, q_shank in mirrored_bones(joints, globals_, (thigh, shank, foot), camera):
+                local = present.copy()
+                local[0] = rotations.multiply(rotations.inverse(hips), q_thigh)
+                local[1] = rotations.multiply(rotations.inverse(q_thigh), q_shank)
+                out.append(local)
+        cloud = part(self._cloud, turn, p.cloud)
+        turned = np.repeat(present[None], len(cloud), axis=0)
+        turned[:, :2] = turned_about(present[:2], cloud)
+        return np.concatenate([np.array(out), turned, part(self._library[side], turn, p.library)])
+
+    def _scores(
+        self, state: MotionState, side: str, leg: Arm, views: Sequence[View], tries: Floats
+    ) -> Floats:
+        """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
+        p = self.params
+        samples = placed(self.fitter.shaper(state.factors), leg, leg.sleeve)
+        scores = np.zeros(len(tries))
+        for view in views:
+            base = self.fitter.drawings[view.index].render_parts(
+                state, view.dt_s, view.roi, leg.others
+            )
+            score_in_view(
+                self.fitter, view, base, base.ids, view.ids, samples, tries, p.empty, scores
+            )
+        away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
+        unusual = p.unusual_px * unusual_leg(tries, side)
+        out: Floats = PX_OF_M2 * scores - unusual - p.farther_px * away_rad2
+        return out
+
+    def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
+        """What a pose (3,4) of a leg costs beside what the pictures say: it is seldom seen, or far from here."""
+        p = self.params
+        away_rad2 = float(turned_rad2(there_xyzw[None, :2], here_xyzw[:2])[0])
+        unusual = float(unusual_leg(there_xyzw[None], side)[0])
+        return p.unusual_cost * unusual + p.farther_px * away_rad2
+
+
+def confirmed(side: str, fit: Fit) -> float:
+    """0..1: share of a leg's pixels that the pictures confirm; 1 for one that is hardly in sight."""
+    mine = _LABELS[side]
+    asked = float(fit.visible[mine].sum() + fit.unexplained[mine].sum())
+    if asked < _IN_SIGHT * float(fit.visible.sum()):
+        return 1.0
+    return float(fit.matched[mine].sum()) / (asked + 1.0)
+
+
+def _library(u: Floats, side: str) -> Floats:
+    """Poses (L,3,4) of one leg spread evenly over what legs do."""
+    mirror = 1.0 if side == "left" else -1.0
+    low = np.array([-1.9, -0.4, -0.3, 0.0])
+    high = np.array([0.5, 0.4, 0.7, 2.2])
+    angles = low + (high - low) * u[:, :4]
+    thigh = angles[:, :3] * np.array([1.0, mirror, mirror])
+    shank = np.zeros_like(thigh)
+    shank[:, 0] = angles[:, 3]
+    out = np.tile(usual_leg(side), (len(u), 1, 1))
+    out[:, 0], out[:, 1] = rotations.exp(thigh), rotations.exp(shank)
+    return out

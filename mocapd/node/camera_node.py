@@ -1,0 +1,164 @@
+"""The composition of a camera node: a Zenoh session, its clock, and its cameras."""
+
+import logging
+import secrets
+import threading
+import time
+from collections.abc import Sequence
+from contextlib import ExitStack
+from typing import Self
+
+import zenoh
+
+from mocapd.bus.zenoh_close import close_soon
+from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.camera_wire import CameraState, ClockAnswer
+from mocapd.capture.suspension import SuspensionWatch
+from mocapd.capture.webcam.plug_events import PlugEvents
+from mocapd.clock import monotonic_ns
+from mocapd.config.node_params import Params
+from mocapd.errors import MocapdError
+from mocapd.node.imperfections import Imperfections, PoorWay, Way
+from mocapd.node.node_access import check_pairing, node_session_config, takes_orders
+from mocapd.node.node_camera import NodeCamera
+from mocapd.outputs.instance import instance_name
+from mocapd.outputs.zenoh import zenoh_config
+from mocapd.outputs.zenoh.zenoh_open import open_session
+from mocapd.outputs.zenoh.zenoh_warnings import warnings
+from mocapd.session.camera_inputs import CameraInput
+
+_log = logging.getLogger(__name__)
+
+BEAT_S = 0.1  # how soon it is told that a camera is gone or back [s]
+_STOP_S = 1.4
+
+
+class NodeThreadDiedError(Exception):
+    """A bug ended one of the node's threads; it is the cause of this."""
+
+
+class CameraNode:
+    """`with CameraNode(...) as node: node.wait(...)`. `wait` by one thread, `end` and `died` by any."""
+
+    def __init__(
+        self,
+        name: str,
+        zenoh_params: zenoh_config.Params,
+        params: Params,
+        cameras: Sequence[CameraInput],
+        imperfections: Imperfections | None = None,
+    ) -> None:
+        """name: in the keys; empty: the machine's. Raises ConfigError."""
+        check_pairing(zenoh_params, params)
+        self.name = instance_name(name)
+        self._zenoh, self._params = zenoh_params, params
+        self._imperfections = imperfections or Imperfections()
+        poor = imperfections is not None
+        self._out, self._in = (PoorWay(self._imperfections) if poor else Way() for _ in range(2))
+        self._run = secrets.randbits(48)
+        self._plugs, self._suspension = PlugEvents(self._look_again), SuspensionWatch()
+        self._opened = ExitStack()
+        self._over = threading.Event()
+        self._death: BaseException | None = None
+        self.cameras = tuple(
+            NodeCamera(
+                self.name,
+                self._run,
+                one,
+                takes_orders(params),
+                params.jpeg_quality,
+                self._imperfections,
+                self._out,
+                self.died,
+            )
+            for one in cameras
+        )
+
+    def __enter__(self) -> Self:
+        for text in warnings(self._zenoh):
+            _log.warning("%s", text)
+        config = node_session_config(self._zenoh, self._params, self.name)
+        session = self._opened.enter_context(open_session(self._zenoh, config))
+        handler = zenoh.handlers.Callback(self._tell_time, indirect=False)
+        self._opened.enter_context(session.declare_queryable(camera_wire.clock(self.name), handler))
+        for camera in self.cameras:
+            camera.start(session, self._opened)
+        self._plugs.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._plugs.stop()
+        for camera in self.cameras:
+            camera.let_go()
+        until_s = time.monotonic() + _STOP_S
+        for camera in self.cameras:
+            camera.stop(max(0.0, until_s - time.monotonic()))
+        for way in (self._in, self._out):
+            way.close()
+        close_soon(self._opened)
+
+    def wait(self, timeout_s: float) -> bool:
+        """Go on for so long [s]; whether it is over: told to end, or every recording has ended. Raises the named
+        error that ended a thread, or NodeThreadDiedError."""
+        until_s = time.monotonic() + timeout_s
+        while not self._over.wait(BEAT_S):
+            slept_s = self._suspension.slept_s()
+            for camera in self.cameras:
+                if slept_s:
+                    camera.renew(f"the machine has slept for {slept_s:.0f} s")
+                camera.beat()
+            if all(camera.is_over for camera in self.cameras):
+                self._over.set()
+            if time.monotonic() > until_s:
+                break
+        if isinstance(self._death, MocapdError):
+            raise self._death
+        if self._death is not None:
+            raise NodeThreadDiedError from self._death
+        return self._over.is_set()
+
+    def end(self) -> None:
+        """Have `wait` return."""
+        self._over.set()
+
+    def died(self, error: BaseException) -> None:
+        """A thread ended unexpectedly."""
+        self._death = self._death or error
+        self._over.set()
+
+    def states(self) -> tuple[CameraState, ...]:
+        """How each camera fares."""
+        return tuple(camera.state for camera in self.cameras)
+
+    def addresses(self) -> tuple[str, ...]:
+        """What to write as `source` in the daemon, but for the host: it is not known here how others reach it."""
+        endpoint = (*self._zenoh.connect, *zenoh_config.listen_endpoints(self._zenoh))[0]
+        protocol, _, place = endpoint.partition("/")
+        scheme = "zenohs" if protocol in zenoh_config.ENCRYPTED else "zenoh"
+        login = (
+            f"{self._params.paired_user or 'USER'}:PASSWORD@" if self._zenoh.password_file else ""
+        )
+        host, _, port = place.partition("#")[0].rpartition(":")
+        if host in ("0.0.0.0", "[::]"):
+            host = "THIS_MACHINE"
+        return tuple(
+            f"{scheme}://{login}{host}:{port}/{self.name}/{one.name}" for one in self.cameras
+        )
+
+    def _look_again(self) -> None:
+        for camera in self.cameras:
+            camera.look_again()
+
+    def _tell_time(self, query: zenoh.Query) -> None:
+        def answer() -> None:
+            taken_ns = self._imperfections.node_ns(monotonic_ns())
+            answered_ns = self._imperfections.node_ns(monotonic_ns())
+            data = camera_wire.encode(ClockAnswer(self._run, taken_ns, answered_ns))
+            self._out.send(lambda: _reply(query, camera_wire.clock(self.name), data))
+
+        self._in.send(answer)
+
+
+def _reply(query: zenoh.Query, key: str, data: bytes) -> None:
+    with query:
+        query.reply(key, data, encoding=camera_wire.ENCODING)

@@ -1,0 +1,195 @@
+"""One camera of a node: the newest picture goes out as the JPEG that it came in, or encoded once."""
+
+import threading
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import cv2
+import zenoh
+
+from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.camera_wire import CameraState, PictureStamp
+from mocapd.capture.thread import CaptureThread
+from mocapd.capture.webcam.control_lock import Lockable
+from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.node.imperfections import Imperfections, Way
+from mocapd.node.node_controls import NodeControls
+from mocapd.outputs.instance import chunk
+from mocapd.pipeline.latest import Latest
+from mocapd.session.camera_inputs import CameraInput
+from mocapd.types import Frame
+
+_HEARD_NS = NS_PER_S // 10  # who was heard is taken to be for so long
+_STATES = {
+    CaptureState.OPENING: "starting",
+    CaptureState.LIVE: "live",
+    CaptureState.LOST: "lost",
+    CaptureState.ENDED: "ended",
+}
+_REASON = 400  # characters
+
+
+class NodeCamera:
+    """From `start` to `stop`, both called by its owner, as is `beat`; the rest from any thread.
+
+    While nobody listens nothing is encoded or sent. `sent` counts the pictures handed to Zenoh; name: as in the keys.
+    """
+
+    def __init__(
+        self,
+        node: str,
+        run: int,
+        camera: CameraInput,
+        can_set: bool,
+        quality: int,
+        imperfections: Imperfections,
+        way: Way,
+        died: Callable[[BaseException], None],
+    ) -> None:
+        """can_set: whether there is somebody whose orders are taken; way: what it sends goes this way."""
+        self.name = chunk(camera.source.name)
+        self.sent = 0
+        self._node, self._run, self._quality = node, run, quality
+        self._imperfections, self._way, self._died = imperfections, way, died
+        self._newest: Latest[Frame] = Latest()
+        self._size_px = camera.size_px
+        self._capture = CaptureThread(camera.source, self, died, camera.expected_hz)
+        source = camera.source
+        self.controls = NodeControls(source) if can_set and isinstance(source, Lockable) else None
+        self._thread = threading.Thread(target=self._work, name=f"send-{self.name}", daemon=True)
+        self._session: zenoh.Session | None = None
+        self._publisher: zenoh.Publisher | None = None
+        self._token: zenoh.LivelinessToken | None = None
+        self._heard_until_ns = 0
+
+    def start(self, session: zenoh.Session, opened: ExitStack) -> None:
+        """Begin, in this session, until `opened` is closed."""
+        self._session = session
+        self._publisher = opened.enter_context(
+            session.declare_publisher(
+                camera_wire.picture(self._node, self.name),
+                encoding=zenoh.Encoding.IMAGE_JPEG,
+                # a picture that cannot leave now is worthless in a moment: drop it, never wait
+                congestion_control=zenoh.CongestionControl.DROP,
+                priority=zenoh.Priority.INTERACTIVE_LOW,
+                express=True,
+            )
+        )
+        opened.callback(self._undeclare)
+        handler = zenoh.handlers.Callback(self._answer, indirect=False)
+        key = camera_wire.state(self._node, self.name)
+        opened.enter_context(session.declare_queryable(key, handler))
+        if self.controls is not None:
+            self.controls.attach(
+                session, camera_wire.control(self._node, self.name), opened, self._died
+            )
+        self._thread.start()
+        self._capture.start()
+
+    def put(self, frame: Frame) -> None:
+        """See Mailbox."""
+        height, width = frame.pixels.shape[:2]
+        self._size_px = (width, height)
+        self._newest.put(frame)
+
+    def look_again(self) -> None:
+        """A camera was plugged in, maybe this one."""
+        self._capture.look_again()
+
+    def renew(self, why: str) -> None:
+        """Open it again, although it has not failed."""
+        self._capture.renew(why)
+
+    def beat(self) -> None:
+        """Several times a second: the token is there while the camera delivers, and a driver that hangs is left alone."""
+        self._capture.watch()
+        session, status = self._session, self._capture.status()
+        if session is None:
+            return
+        is_live = status.state is CaptureState.LIVE and not status.is_silent
+        if is_live and self._token is None:
+            key = camera_wire.alive(self._node, self.name)
+            self._token = session.liveliness().declare_token(key)
+        elif not is_live:
+            self._undeclare()
+
+    @property
+    def state(self) -> CameraState:
+        """How it fares."""
+        status = self._capture.status()
+        return CameraState(
+            node=self._node,
+            camera=self.name,
+            state="lost" if status.is_silent else _STATES[status.state],  # type: ignore[arg-type]
+            reason=status.trouble[:_REASON],
+            size_px=self._size_px,
+            rate_hz=min(status.fps_hz, 1e4),
+            can_set=self.controls is not None,
+            run=self._run,
+        )
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it was a recording, and has ended."""
+        return self._capture.status().state is CaptureState.ENDED
+
+    def let_go(self) -> None:
+        """First pass of stopping; never blocks."""
+        self._session = None
+        self._capture.let_go()
+        self._newest.close()
+
+    def stop(self, timeout_s: float) -> None:
+        """Wait for its threads, for so long."""
+        self._capture.stop(timeout_s)
+        if self._thread.ident is not None:
+            self._thread.join(0.2)
+
+    def _undeclare(self) -> None:
+        token, self._token = self._token, None
+        if token is not None:
+            token.undeclare()  # type: ignore[no-untyped-call]
+
+    def _work(self) -> None:
+        try:
+            while not self._newest.closed:
+                frame = self._newest.get()
+                if frame is not None and self._is_heard():
+                    self._send(frame)
+        except BaseException as error:  # nobody else watches this thread
+            self._died(error)
+            raise
+
+    def _is_heard(self) -> bool:
+        now_ns, publisher = monotonic_ns(), self._publisher
+        if now_ns < self._heard_until_ns:
+            return True
+        if publisher is None or not publisher.matching_status.matching:  # type: ignore[attr-defined]
+            return False
+        self._heard_until_ns = now_ns + _HEARD_NS
+        return True
+
+    def _send(self, frame: Frame) -> None:
+        data = frame.encoded
+        if data is None:
+            good, file = cv2.imencode(
+                ".jpg", frame.pixels, [cv2.IMWRITE_JPEG_QUALITY, self._quality]
+            )
+            assert good
+            data = file.tobytes()
+        exposure_ns = self._imperfections.node_ns(frame.t_ns)
+        stamp = camera_wire.encode(PictureStamp(self._run, frame.seq, exposure_ns))
+        publisher = self._publisher
+        if publisher is None:
+            return
+        self._way.send(lambda: publisher.put(data, attachment=stamp))
+        self.sent += 1
+
+    def _answer(self, query: zenoh.Query) -> None:
+        with query:
+            query.reply(
+                camera_wire.state(self._node, self.name),
+                camera_wire.encode(self.state),
+                encoding=camera_wire.ENCODING,
+            )

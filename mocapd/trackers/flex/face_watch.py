@@ -1,0 +1,108 @@
+"""Which way somebody faces, told by the face: from the front and from behind two cameras side by side see the same outline.
+
+A frontal face that shows where the tracked head is thought to face away speaks for a body that is turned round. One that does
+not show tells little: it looks down, a hand is before it, or it is one that the cascade does not know.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.head.head_shape import FACE_WIDTH, MIDDLE
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import centre, project, to_camera
+from mocapd.types import Camera, Floats, FrameSet
+from mocapd.vision.face.face_detection import faces_near
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+_REACH = 0.6  # about the head's place, of the face's side
+_FORWARD = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True)
+class FaceWatchParams:
+    """When a face is looked for, and what it tells."""
+
+    every: int = 2  # turns from one look to the next; each at another camera
+    away_rad: float = 2.4  # from a camera, that a chest faces: an ear seen from 2.1 is taken for a face now and then
+    windows: int = 2  # that agree on a face
+    rate: float = 0.5  # of looks at frontal faces that find them
+    false_rate: float = 0.02  # of looks at other things that find one
+    sure: float = (
+        7.0  # logarithm of the odds at which the body is turned round: three faces in a row
+    )
+
+
+class FaceWatch:
+    """The odds that the tracked body is turned round, which are all of its state."""
+
+    def __init__(self, cascade: CascadeArrays, stature_m: float, params: FaceWatchParams) -> None:
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`."""
+        self._cascade, self._stature_m, self._params = cascade, stature_m, params
+        self.reset()
+
+    def reset(self) -> None:
+        """The body faces where it is thought to."""
+        self._odds = 0.0
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether the body very likely faces the other way."""
+        return self._odds > self._params.sure
+
+    def rehearse(self) -> None:
+        """Look once at nothing: the first face must not wait for its kernels to be compiled or loaded."""
+        blank = np.zeros((64, 64), np.uint8)
+        faces_near(self._cascade, blank, 32.0, 32.0, 28.0, 8.0, self._params.windows)
+
+    def look(
+        self, fitter: Fitter, state: MotionState, views: Sequence[View], frames: FrameSet, turn: int
+    ) -> None:
+        """Look for the face of a body in one of the views; turn: a running number."""
+        p = self._params
+        if turn % p.every or not views:
+            return
+        camera = fitter.drawings[views[turn // p.every % len(views)].index].camera
+        joints, globals_ = fitter.joints(state)
+        head, chest = INDEX["head"], INDEX["upperChest"]
+        middle = joints[head] + rotations.rotate(globals_[head], MIDDLE * self._stature_m)
+        if _away_rad(globals_[chest], camera, middle) < p.away_rad:
+            return
+        share = (
+            (p.rate, p.false_rate)
+            if self._found(camera, middle, frames)
+            else (1.0 - p.rate, 1.0 - p.false_rate)
+        )
+        self._odds = max(self._odds + float(np.log(share[0] / share[1])), 0.0)
+
+    def _found(self, camera: Camera, middle_m: Floats, frames: FrameSet) -> bool:
+        depth_m = float(to_camera(camera, middle_m)[2])
+        if depth_m <= 0.1:
+            return False
+        size_px = float(camera.K[0, 0]) * FACE_WIDTH * self._stature_m / depth_m
+        x, y = project(camera, middle_m).tolist()
+        pixels = frames.frames[camera.name].pixels
+        h, w = pixels.shape[:2]
+        reach = int((1.0 + _REACH) * size_px) + 2
+        x0, y0, x1, y1 = (int(v) for v in (x - reach, y - reach, x + reach, y + reach))
+        x0, y0, x1, y1 = max(x0, 0), max(y0, 0), min(x1, w), min(y1, h)
+        if x1 - x0 < size_px or y1 - y0 < size_px:
+            return False
+        grey = np.asarray(cv2.cvtColor(pixels[y0:y1, x0:x1], cv2.COLOR_BGR2GRAY), np.uint8)
+        return bool(
+            faces_near(
+                self._cascade, grey, x - x0, y - y0, size_px, _REACH * size_px, self._params.windows
+            )
+        )
+
+
+def _away_rad(global_xyzw: Floats, camera: Camera, at_m: Floats) -> float:
+    """Between where a bone (4,) faces and where the camera is, seen from above."""
+    forward, eye = rotations.rotate(global_xyzw, _FORWARD), centre(camera) - at_m
+    angle = np.arctan2(forward[0], forward[2]) - np.arctan2(eye[0], eye[2])
+    return float(abs((angle + np.pi) % (2.0 * np.pi) - np.pi))

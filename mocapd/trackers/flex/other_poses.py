@@ -1,0 +1,121 @@
+"""Poses out of the fit's reach that pictures bear better: another arm or leg, a body turned round, legs exchanged."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from mocapd.body.pose_space import SIDES
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import unusual_legs
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry.camera_model import centre
+from mocapd.trackers.base import Probe
+from mocapd.trackers.flex.face_watch import FaceWatch
+from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
+from mocapd.trackers.flex.look import Dressed
+from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex.turned import turned_round
+from mocapd.types import FrameSet
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+WHOLE = "whole"  # as a part that changed: all of the body
+_TURNS_S = 0.4  # a body that is turned round is held as loosely as a prediction over this time
+
+Terms = Sequence[PoseTerm]
+
+
+class OtherPoses:
+    """What tells that the pose is wrong, from frame to frame: where the face looks, for how long legs were crossed."""
+
+    def __init__(self, params: Params, stature_m: float, cascade: CascadeArrays) -> None:
+        """cascade: of frontal faces."""
+        self._params = params
+        self._facing = FaceWatch(cascade, stature_m, params.facing)
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing was seen of anybody."""
+        self._facing.reset()
+        self._crossed_looks = 0
+
+    def rehearse(self, dressed: Dressed, state: MotionState, views: Sequence[View]) -> None:
+        """Do everything once for nothing: what ordinary frames do not reach must not wait for its kernels."""
+        dressed.arms.rehearse(state, views)
+        dressed.legs.rehearse(state, views)
+        self._facing.rehearse()
+
+    def improve(
+        self,
+        dressed: Dressed,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        frames: FrameSet,
+        turn: int,
+        terms: Terms,
+        measured: Callable[[MotionState], Terms],
+        probe: Probe,
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """The fit, or a better one, and the parts of the body that changed over.
+
+        turn: a running number; terms: of the fit; measured: those of another pose, once it is drawn last into every view.
+        """
+        fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
+        changed = [f"{side}_arm" for side in arms]
+        probe("arms")
+        self._facing.look(dressed.fitter, fit.state, views, frames, turn)
+        if self._facing.is_turned:
+            self._facing.reset()
+            round_ = self._turned(dressed.fitter, fit, views, measured)
+            if round_ is not None:
+                fit = round_
+                changed.append(WHOLE)
+        probe("face")
+        fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms)
+        apart = self.legs_apart(dressed.fitter, fit, views, dt_s, turn, terms)
+        changed += [f"{side}_leg" for side in (legs if apart is fit else SIDES)]
+        probe("legs")
+        return apart, tuple(changed)
+
+    def legs_apart(
+        self,
+        fitter: Fitter,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        terms: Terms,
+    ) -> Fit:
+        """The fit, or that with the legs exchanged: both look alike, and crossed ones are unusual."""
+        p = self._params
+        if turn % p.crossed_turns:
+            return fit
+        crossed = are_crossed(fitter.joints(fit.state)[0])
+        self._crossed_looks = self._crossed_looks + 1 if crossed else 0
+        if self._crossed_looks < p.crossed_looks:
+            return fit
+        self._crossed_looks = 0
+        start = with_legs_exchanged(fitter, fit.state)
+        other = fitter.fit(start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms)
+        costs = [one.cost + unusual_legs(one.state.local_xyzw) for one in (fit, other)]
+        return other if costs[1] < costs[0] - p.crossed_gain else fit
+
+    def _turned(
+        self,
+        fitter: Fitter,
+        fit: Fit,
+        views: Sequence[View],
+        measured: Callable[[MotionState], Terms],
+    ) -> Fit | None:
+        """The body facing the other way, if the pictures bear it."""
+        p = self._params
+        eye = np.mean([centre(fitter.drawings[view.index].camera) for view in views], axis=0)
+        fits = []
+        for start in turned_round(fitter, fit.state, fit.state.root_m - eye):
+            for view in views:
+                fitter.drawings[view.index].render(start, view.dt_s, view.roi)
+            terms = measured(start)
+            fits.append(fitter.fit(start, views, _TURNS_S, p.start.iterations, learn_shape=False, terms=terms))  # fmt: skip
+        best = min(fits, key=lambda one: one.cost)
+        return best if best.explained > fit.explained - p.turned_loss else None

@@ -1,0 +1,43 @@
+"""The same body facing the other way: as seen in a mirror behind it, and with its limbs where they are."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import PARENTS
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+_LEFT_TO_RIGHT = np.diag([-1.0, 1.0, 1.0])
+_ROUND = np.diag([-1.0, 1.0, -1.0])
+_ACROSS = np.array([
+    NAMES.index({"left": "right" + name[4:], "righ": "left" + name[5:]}.get(name[:4], name)) for name in NAMES
+])  # fmt: skip
+
+
+def turned_round(
+    fitter: Fitter, state: MotionState, along_m: Floats
+) -> tuple[MotionState, MotionState]:
+    """Two bodies whose outline is about the same along a view (3,), left and right exchanged: mirrored in depth, and turned
+    by half a turn under limbs that stay in place."""
+    along = along_m * (1.0, 0.0, 1.0)
+    along = along / np.linalg.norm(along)
+    mirror = np.eye(3) - 2.0 * np.outer(along, along)
+    across = rotations.to_matrix(fitter.joints(state)[1])[_ACROSS]
+    return (
+        _posed(state, mirror @ across @ _LEFT_TO_RIGHT),
+        _posed(state, across @ _ROUND),
+    )
+
+
+def _posed(state: MotionState, R: Floats) -> MotionState:
+    """The state with these global rotations (J,3,3), at rest."""
+    q = rotations.from_matrix(R)
+    local = q.copy()
+    for joint, parent in enumerate(PARENTS):
+        if parent >= 0:
+            local[joint] = rotations.multiply(rotations.inverse(q[parent]), q[joint])
+    return replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))

@@ -1,0 +1,82 @@
+"""One camera's background from a recording in which somebody is seen from its first frame to its last.
+
+A pixel is believed while nothing moves near it: people who stand still sway, and the room does not (stable intervals:
+Gutchess et al., A Background Model Initialization Algorithm for Video Surveillance, ICCV 2001). Where that is seldom so,
+somebody was there too often, and nothing is known; nor in what it encloses, the smooth middle of a shirt or of trousers.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.types import Bytes, Floats
+
+_NEAR_PX = 9  # side of the square in which nothing may move
+_GAP = np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (31, 31)), np.uint8)  # a thigh
+
+
+@dataclass(frozen=True, slots=True)
+class ClipBackgroundParams:
+    """When a pixel counts as still, and how often it must be."""
+
+    apart_s: float = (
+        0.13  # between pictures that are compared: in less time hardly anybody moves a pixel
+    )
+    tolerance: float = 10.0  # of a channel, 0..255
+    noises: float = 4.0  # or as often the difference that half of the picture has
+    moving_share: float = 0.12  # of the pixels nearby that may differ: noise does
+    still_share: float = 0.12  # of the pictures in which a pixel must be still
+
+
+def clip_background(
+    pictures: Sequence[Bytes], times_s: Floats, params: ClipBackgroundParams | None = None
+) -> tuple[Bytes, NDArray[np.bool_]]:
+    """The room (h,w,3) behind whoever moves in pictures (h,w,3) of times (N,) [s], and where it was seen (h,w)."""
+    p = params if params is not None else ClipBackgroundParams()
+    shown = np.stack(pictures)
+    still = np.stack([_still(shown, k, times_s, p) for k in range(len(shown))])
+    moving = (still.mean(axis=0) < p.still_share).astype(np.uint8)
+    unknown = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _GAP), np.uint8)
+    return _median_of(shown, still), _joined_to_the_border(1 - unknown)
+
+
+def _still(
+    shown: Bytes, k: int, times_s: Floats, params: ClipBackgroundParams
+) -> NDArray[np.bool_]:
+    """Where (h,w) picture k looks like those before and after it."""
+    before = int(np.searchsorted(times_s, times_s[k] - params.apart_s, side="right")) - 1
+    after = int(np.searchsorted(times_s, times_s[k] + params.apart_s))
+    others = [j for j in (before, after) if 0 <= j < len(shown)]
+    if not others:
+        return np.zeros(shown.shape[1:3], dtype=bool)
+    differ = np.zeros(shown.shape[1:3], np.uint8)
+    for j in others:
+        apart = cv2.absdiff(shown[k], shown[j]).max(axis=-1)
+        tolerance = max(params.tolerance, params.noises * float(np.median(apart)))
+        np.maximum(differ, (apart > tolerance).astype(np.uint8), out=differ)
+    near = cv2.blur(differ.astype(np.float32), (_NEAR_PX, _NEAR_PX))
+    moving = (near >= params.moving_share).astype(np.uint8)
+    return np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _GAP) == 0, dtype=bool)
+
+
+def _median_of(shown: Bytes, still: NDArray[np.bool_]) -> Bytes:
+    """Of each pixel (h,w,3), of the pictures (N,h,w,3) in which it is still (N,h,w); black where it never is."""
+    count = still.sum(axis=0)
+    middle = np.maximum(count - 1, 0) // 2
+    room = np.zeros(shown.shape[1:], np.uint8)
+    for channel in range(3):
+        # what is not still goes to the end
+        values = np.sort(np.where(still, shown[..., channel], np.uint8(255)), axis=0)
+        room[..., channel] = np.take_along_axis(values, middle[None], axis=0)[0]
+    room[count == 0] = 0
+    return room
+
+
+def _joined_to_the_border(known: Bytes) -> NDArray[np.bool_]:
+    """Where known (h,w) is not 0, without islands that the unknown surrounds."""
+    framed = cv2.copyMakeBorder(known, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=1)
+    _, pieces = cv2.connectedComponents(framed)
+    return np.asarray(pieces == pieces[0, 0], dtype=bool)[1:-1, 1:-1]

@@ -1,0 +1,82 @@
+"""Two cameras that have changed places are told by the room, however symmetrically they stand; the dark tells nothing."""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mocapd.calibrate.bump.changed_places import Places, places_of
+from mocapd.calibrate.bump.places_watch import PlacesWatch
+from mocapd.clock import nanoseconds
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.world import World
+from mocapd.types import Bytes, Camera, Frame
+from tests.sim import small
+
+THINGS: list[dict[str, Any]] = [
+    {"kind": "bookshelf", "base_m": [-0.9, 0.0, -1.6], "size_m": [1.0, 1.9, 0.3]},
+    {"kind": "poster", "base_m": [0.3, 1.0, -1.9], "size_m": [0.8, 0.9, 0.02]},
+    {"kind": "portrait", "base_m": [1.3, 1.0, -1.9], "size_m": [0.6, 0.8, 0.02]},
+]
+STANDS = {"close": 0.06, "symmetrical": 0.5}  # to the left and right of the middle [m]
+
+
+@cache
+def room(stand: str) -> tuple[tuple[Camera, Camera], tuple[Bytes, Bytes]]:
+    """Two cameras of 640x480, and what they see of a furnished room with somebody in it."""
+    table = small.table(room={"things": THINGS})
+    for camera, side in zip(table["cameras"], (-1.0, 1.0), strict=True):
+        x = side * STANDS[stand]
+        # a close pair looks straight ahead
+        ahead = x if stand == "close" else 0.0
+        camera |= {
+            "size_px": [640, 480],
+            "position_m": [x, 1.4, 2.6],
+            "look_at_m": [ahead, 1.1, 0.0],
+        }
+    left, right = camera_renderers(World(small.scenario(**table)), samples=1)
+    return (left.camera, right.camera), (left.frame(3), right.frame(3))
+
+
+@pytest.mark.parametrize("stand", STANDS)
+def test_cameras_in_their_places_and_exchanged_ones_are_told_apart(stand: str) -> None:
+    cameras, (a, b) = room(stand)
+    assert places_of(cameras, (a, b)) is Places.RIGHT
+    assert places_of(cameras, (b, a)) is Places.CHANGED
+
+
+def test_cameras_that_see_different_rooms_tell_nothing() -> None:
+    cameras, (a, _) = room("close")
+    noise = np.random.default_rng(0).integers(0, 256, a.shape, dtype=np.uint8)
+    dark = np.zeros_like(a)
+    for other in (noise, dark, np.ascontiguousarray(a[::-1])):
+        assert places_of(cameras, (a, other)) is Places.UNKNOWN
+
+
+def newest(pictures: tuple[Bytes, Bytes], at_s: float) -> dict[str, Frame]:
+    names = [camera.name for camera in room("close")[0]]
+    shown = zip(names, pictures, strict=True)
+    return {name: Frame(name, 0, nanoseconds(at_s), one) for name, one in shown}
+
+
+def test_it_is_told_once_and_again_when_they_are_put_back() -> None:
+    cameras, (a, b) = room("close")
+    watch, names = PlacesWatch(cameras), (cameras[0].name, cameras[1].name)
+    assert watch.look(newest((b, a), 1.0)) == (names, Places.CHANGED)
+    assert all(watch.is_swapped(name) for name in names)
+    assert watch.look(newest((b, a), 20.0)) is None  # known
+    assert watch.look(newest((a, b), 40.0)) == (names, Places.RIGHT)
+    assert not any(watch.is_swapped(name) for name in names)
+    assert watch.look(newest((b, a), 60.0)) is None  # what happens later is a bump
+
+
+def test_cameras_that_tell_nothing_are_not_looked_at_for_ever() -> None:
+    cameras, (a, b) = room("close")
+    watch = PlacesWatch((cameras[0], replace(cameras[1], name="right")))
+    dark = np.zeros_like(a)
+    for k in range(20):
+        assert watch.look(newest((a, dark), 11.0 * k)) is None
+    assert watch.look(newest((b, a), 1000.0)) is None
+    assert watch.look({}) is None

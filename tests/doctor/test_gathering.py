@@ -1,0 +1,131 @@
+"""What is asked of the machine: its folders, its processor, its calibration; and the command over all of it."""
+
+import json
+import os
+import socket
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
+from mocapd.config.sections import CameraSection, Config, WebSection
+from mocapd.doctor.gathering.calibration_facts import calibration_facts
+from mocapd.doctor.gathering.camera_facts import wanted_cameras
+from mocapd.doctor.gathering.folder_facts import folder_facts
+from mocapd.doctor.gathering.port_facts import port_facts
+from mocapd.doctor.gathering.system_facts import clock_facts, processor_facts, user_facts
+from mocapd.outputs.registry import ZenohSection
+from tests.calibration.test_calibration_file import pictures, saved_calibration
+from tests.cli.mocapd_process import Outcome, mocapd_here
+
+Run = Callable[..., Outcome]
+
+
+@pytest.fixture
+def run(empty_home: Path) -> Run:
+    return lambda *words: mocapd_here(dict(os.environ), *words)
+
+
+def test_a_calibration_is_looked_at_as_a_daemon_would(tmp_path: Path) -> None:
+    config = Config(state_dir=tmp_path)
+    assert calibration_facts(config)[0].path is None
+    path = tmp_path / FILE_NAME
+    write_calibration(path, saved_calibration(), pictures())
+    facts, saved = calibration_facts(config)
+    assert (facts.path, facts.cameras, facts.rms_px, facts.play_area_cm) == (path, 2, 0.4, 0.3)
+    assert facts.age_s > 0.0
+    assert [one.id for one in wanted_cameras(config, saved)] == ["left", "right/2"]
+    own = replace(config, camera=(CameraSection("cam", "http://me:secret@camera/"),))
+    assert [one.source for one in wanted_cameras(own, saved)] == ["http://me:***@camera/"]
+    path.write_text("schema = 99\n")
+    facts, saved = calibration_facts(config)
+    assert facts.trouble is not None
+    assert "schema 99" in facts.trouble.what
+    assert saved is None
+
+
+def test_a_rig_file_that_is_missing_is_a_trouble(tmp_path: Path) -> None:
+    facts, saved = calibration_facts(Config(state_dir=tmp_path, rig=tmp_path / "rig.json"))
+    assert facts.trouble is not None
+    assert saved is None
+
+
+def test_folders_are_looked_at_and_not_made(
+    empty_home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = Config(cache_dir=empty_home / "deep" / "cache", state_dir=empty_home / "state")
+    cache, state, runtime = folder_facts(config)
+    assert not cache.path.exists()
+    assert cache.trouble is None
+    assert cache.free_bytes
+    assert (state.open_to_others, runtime.trouble) == (False, None)
+    state.path.chmod(0o755)
+    config.cache_dir.mkdir(parents=True)
+    config.cache_dir.chmod(0o777)
+    cache, state, _ = folder_facts(config)
+    assert state.open_to_others
+    assert cache.trouble is not None
+    assert "can be written by others" in cache.trouble.what
+
+
+def test_who_has_a_port_that_is_wanted() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        config = Config(outputs={"zenoh": ZenohSection(port=port)}, web=WebSection(port=port))
+        zenoh, web = port_facts(config)
+    assert f"(pid {os.getpid()})" in zenoh.holder
+    assert (zenoh.key, web.key) == ("zenoh.port", "web.port")
+    assert port_facts(Config(outputs={"zenoh": ZenohSection(connect=("tcp/127.0.0.1:1",))})) == ()
+
+
+def test_the_processor_is_read_from_sysfs(tmp_path: Path) -> None:
+    for number, governor in enumerate(("powersave", "powersave", "performance")):
+        folder = tmp_path / f"devices/system/cpu/cpu{number}/cpufreq"
+        folder.mkdir(parents=True)
+        (folder / "scaling_governor").write_text(f"{governor}\n")
+        (folder / "scaling_driver").write_text("acpi-cpufreq\n")
+    facts = processor_facts(tmp_path)
+    assert facts.governors == {"powersave": 2, "performance": 1}
+    assert facts.driver == "acpi-cpufreq"
+    assert facts.cores == len(os.sched_getaffinity(0))
+    assert processor_facts(tmp_path / "nothing").governors == {}
+
+
+def test_user_and_clock_are_this_process_own() -> None:
+    assert user_facts().is_root == (os.geteuid() == 0)
+    facts = clock_facts()
+    assert facts.now_unix_s > facts.built_unix_s
+
+
+def test_the_command_prints_a_line_for_each_and_ends_with_1_when_one_is_bad(
+    run: Run, empty_home: Path
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        taken = f"zenoh.port={port}"
+        done = run("doctor", "--set", taken, "--json")
+    lines = [json.loads(line) for line in done.out.splitlines()]
+    assert done.code == 1
+    bad = [one for one in lines if one["verdict"] == "bad"]
+    assert [one["about"] for one in bad] == [f"port {port}"]
+    assert all(one["fix"] for one in lines if one["verdict"] != "ok")
+    assert {"config", "daemon", "rights", "webcam", "calibration", "processor", "clock"} <= {
+        one["about"] for one in lines
+    }
+    text = run("doctor", "--set", f"zenoh.port={port}")
+    assert text.code == 0
+    assert "warn  calibration" in text.out
+    assert "mocapd calibrate" in text.out
+
+
+def test_a_wrong_configuration_is_a_line_of_its_own(run: Run, empty_home: Path) -> None:
+    file = empty_home / "config.toml"
+    file.write_text("[smoothing]\npreset = 'nonsense'\n")
+    done = run("doctor", "--config", str(file))
+    assert done.code == 1
+    first = done.out.splitlines()[0]
+    assert first.startswith("bad")
+    assert "smoothing.preset" in first
+    assert "one of: off" in first

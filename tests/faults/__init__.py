@@ -1,0 +1,1 @@
+"""Faults done to real processes, a row of docs/faults.md each."""

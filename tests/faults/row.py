@@ -1,0 +1,33 @@
+"""What a fault row is: something done to a real process at random, and what must come of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much of it: the seed of everything that is random, and the share of the full run, 1.0 for all of it."""
+
+    seed: int
+    share: float = 1.0
+
+    def of(self, count: float, least: float = 1.0) -> float:
+        """So much of a count or a time."""
+        return max(least, count * self.share)
+
+
+@dataclass(frozen=True, slots=True)
+class Came:
+    """What came of it: figures for the table, and everything that was not as it should be."""
+
+    figures: str
+    wrong: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class FaultRow:
+    """`fault` and `wanted` are the table's words; `run` does it, which may take minutes."""
+
+    fault: str
+    wanted: str
+    run: Callable[[Extent], Came]

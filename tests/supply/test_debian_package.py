@@ -1,0 +1,116 @@
+"""The Debian package holds what an admin expects of one, and nothing of where it was made.
+
+That it installs, runs and goes is shown under a real systemd: tests/vm/deb_proof.sh.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.supply.distributions import SITE, build
+from tests.supply.lock_files import ROOT
+
+DEBIANS = Path("/usr/bin/python3")
+
+
+def _skipped_for() -> str:
+    if shutil.which("dpkg-deb") is None or not DEBIANS.exists():
+        return "this is no Debian"
+    asked = [str(DEBIANS), "-c", "import sys; print(*sys.version_info[:2])"]
+    version = subprocess.run(asked, capture_output=True, text=True, check=True).stdout.split()
+    if version != [str(part) for part in sys.version_info[:2]]:
+        return "what is here to run mocapd on is not for the Python that packages stand on"
+    return ""
+
+
+pytestmark = pytest.mark.skipif(bool(_skipped_for()), reason=_skipped_for())
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Without what mocapd runs on: that is there already."""
+    folder = tmp_path_factory.mktemp("deb")
+    wheel = build(ROOT, "wheel", folder / "wheel")
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    env |= {"XDG_CACHE_HOME": str(folder / "cache"), "TMPDIR": str(folder)}
+    argv = [str(ROOT / "deb/build.sh"), sys.executable, str(wheel), str(folder / "out"), str(SITE)]
+    done = subprocess.run(argv, env=env, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    (made,) = (folder / "out").iterdir()
+    return made
+
+
+@pytest.fixture(scope="module")
+def unpacked(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("unpacked")
+    subprocess.run(["dpkg-deb", "--raw-extract", str(package), str(folder)], check=True)
+    return folder
+
+
+def test_it_is_for_this_python_and_says_so(package: Path) -> None:
+    asked = ["dpkg-deb", "--field", str(package), "Depends"]
+    depends = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    minor = sys.version_info.minor
+    assert f"python3 (>= 3.{minor}~), python3 (<< 3.{minor + 1}~)" in depends
+
+
+def test_the_units_start_what_is_in_the_package(unpacked: Path) -> None:
+    python = unpacked / "usr/lib/mocapd/bin/python"
+    for unit in ("system/mocapd.service", "system/mocapd@.service", "user/mocapd.service"):
+        text = (unpacked / "usr/lib/systemd" / unit).read_text()
+        assert f"ExecStart=/{python.relative_to(unpacked)} -P -m mocapd.cli.main run" in text
+    assert python.is_symlink()
+    assert python.resolve() == DEBIANS.resolve()
+    assert (unpacked / "usr/bin/mocapd").resolve() == unpacked / "usr/lib/mocapd/bin/mocapd"
+
+
+def test_everything_around_the_program_is_placed(unpacked: Path) -> None:
+    for path in (
+        *("usr/lib/sysusers.d/mocapd.conf", "usr/lib/udev/rules.d/70-mocapd-webcams.rules"),
+        *("usr/share/man/man1/mocapd.1.gz", "usr/share/bash-completion/completions/mocapd"),
+        *("usr/share/doc/mocapd/copyright", "usr/share/doc/mocapd/examples/network.conf.example"),
+    ):
+        assert (unpacked / path).stat().st_size > 0
+
+
+def test_an_update_asks_before_it_changes_the_configuration(unpacked: Path) -> None:
+    assert (unpacked / "DEBIAN/conffiles").read_text().split() == ["/etc/mocapd/config.toml"]
+    assert (unpacked / "etc/mocapd/config.toml").is_file()
+
+
+def test_it_is_roots_whoever_made_it_and_others_may_only_read(package: Path) -> None:
+    asked = ["dpkg-deb", "--contents", str(package)]
+    listing = subprocess.run(asked, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert len(listing) > 100
+    for line in listing:
+        mode, owner, *_ = line.split()
+        assert owner == "root/root"
+        assert mode[0] == "l" or (mode[5], mode[7], mode[8]) == ("-", "r", "-"), line
+
+
+def test_every_module_is_compiled_so_that_root_leaves_nothing_behind(unpacked: Path) -> None:
+    (library,) = (unpacked / "usr/lib/mocapd/lib").glob("python3*")
+    own = library / "site-packages/mocapd"
+    modules = {path.relative_to(own) for path in own.rglob("*.py")}
+    compiled = {
+        path.parent.parent.relative_to(own) / f"{path.name.split('.')[0]}.py"
+        for path in own.rglob("*.pyc")
+    }
+    assert modules == compiled
+
+
+@pytest.mark.parametrize("name", ["postinst", "prerm", "postrm"])
+def test_its_scripts_are_what_a_plain_shell_reads_and_enable_nothing(
+    name: str, unpacked: Path
+) -> None:
+    script = unpacked / "DEBIAN" / name
+    assert os.access(script, os.X_OK)
+    subprocess.run(["sh", "-n", str(script)], check=True)
+    commands = [line for line in script.read_text().splitlines() if "systemctl" in line]
+    assert not [
+        line for line in commands if line.split()[:2] == ["systemctl", "enable"] and "#" not in line
+    ]
