@@ -15,7 +15,7 @@ BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults load dist deb lock sbom test-lowest clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb lock sbom test-lowest clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
@@ -94,7 +94,10 @@ attack: dev ## attack a daemon of its own as another process of this machine cou
 	$(BIN)/python -m tests.attacks
 
 faults: dev ## pull cameras, kill and starve daemons of its own at random for half an hour, and print the table
-	$(BIN)/python -m tests.faults
+	$(BIN)/python -m tests.faults unplugging ailing killing ending
+
+soak: dev ## send a daemon the frames of an hour in a quarter of one, and print what has grown
+	$(BIN)/python -m tests.faults soaking
 
 load: dev ## many camera nodes, streams and subscribers on this machine: print what was measured
 	@$(BIN)/python -m tests.load

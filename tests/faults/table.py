@@ -1,6 +1,6 @@
 """Every fault by its name. Whoever writes another adds its row here."""
 
-from tests.faults import ailing, ending, killing, unplugging
+from tests.faults import ailing, ending, killing, soaking, unplugging
 from tests.faults.row import FaultRow
 
 ROWS: dict[str, FaultRow] = {
@@ -8,4 +8,5 @@ ROWS: dict[str, FaultRow] = {
     "ailing": ailing.ROW,
     "killing": killing.ROW,
     "ending": ending.ROW,
+    "soaking": soaking.ROW,
 }

@@ -2,7 +2,6 @@
 
 import signal
 import subprocess
-import tarfile
 import time
 import zipfile
 from pathlib import Path
@@ -54,8 +53,8 @@ def test_the_source_distribution_makes_the_same_wheel_and_has_tests_and_pages(
     wheel: Path, tmp_path: Path
 ) -> None:
     sdist = build(ROOT, "sdist", tmp_path / "sdist")
-    with tarfile.open(sdist) as opened:
-        opened.extractall(tmp_path, filter="data")
+    # Debian 12's own Python has no safe way of its own to unpack
+    subprocess.run(["tar", "-xzf", sdist, "-C", tmp_path], check=True)
     source = tmp_path / sdist.name.removesuffix(".tar.gz")
     assert names(build(source, "wheel", tmp_path / "again")) == names(wheel)
     for one in (
