@@ -67,7 +67,7 @@ def _fast_scene(folder: Path) -> Path:
 def _watch(
     daemon: FaultyDaemon, time_s: float, wrong: list[str]
 ) -> tuple[list[tuple[float, int, int]], int, int]:
-    """MB, threads and descriptors at each look; how many messages and pictures came."""
+    """MB of its own, threads and descriptors at each look; how many messages and pictures came."""
     usage: list[tuple[float, int, int]] = []
     bodies = pictures = 0
     began_s = heard_s = time.monotonic()
@@ -86,10 +86,16 @@ def _watch(
         daemon.pictures.clear()
         with daemon.usage.oneshot():
             now: psutil.Process = daemon.usage
-            usage.append((now.memory_info().rss / 1e6, now.num_threads(), now.num_fds()))
+            usage.append((_own_mb(now), now.num_threads(), now.num_fds()))
     if time.monotonic() - heard_s > time_s / PARTS + LONGEST_SILENCE_S:
         wrong.append("silent at the end")
     return usage, bodies, pictures
+
+
+def _own_mb(process: psutil.Process) -> float:
+    """In memory or swapped out, without pages of libraries, which the system drops and reads again as it likes."""
+    memory = process.memory_full_info()
+    return float(memory.rss - memory.shared + memory.swap) / 1e6
 
 
 ROW = FaultRow(
