@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-from mocapd.capture.base import CountsTorn, Pluggable, Source
+from mocapd.capture.base import CountsTorn, LookedAfter, Pluggable, Source
 from mocapd.capture.capture_record import CaptureRecord
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.capture.frame_faults import FrameFaults
@@ -73,6 +73,7 @@ class CaptureThread:
             source if isinstance(source, CountsTorn) else None
         )  # asked once: it takes 0.1 ms
         self._plug = source if isinstance(source, Pluggable) else None
+        self._keeper = source if isinstance(source, LookedAfter) else None
         self._mailbox = mailbox
         self._on_death = on_death
         self._expected_hz = expected_hz
@@ -235,7 +236,7 @@ class CaptureThread:
         """Raises CameraLost for a camera that shows the past."""
         if self._faults.add(frame, self._torn()):
             self._record.noticed(self._faults.notice, self._place())
-        if self._faults.frozen:
+        if self._faults.frozen and self._keeper is None:
             raise CameraLost(
                 "sends the same picture over and over",
                 fix="it is opened again; where that does not help, unplug it and plug it in again",
@@ -260,7 +261,8 @@ class CaptureThread:
             return
         # who pulls its plug does not wear a camera out: only that it is still there, and fails, counts
         there = self._plug is None or bool(self._plugged_now())
-        spent = delivered and there and self._budget.spend(monotonic_ns())
+        ours = self._keeper is None or not self._keeper.camera_failed
+        spent = delivered and there and ours and self._budget.spend(monotonic_ns())
         if spent:
             error = self._budget.left_out(error, self._plug is not None)
         self._lost(error)

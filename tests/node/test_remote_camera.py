@@ -10,6 +10,7 @@ from mocapd.capture.capture_status import CaptureState
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.remote_address import parse_remote
 from mocapd.capture.remote.remote_link import RemoteLink
+from mocapd.capture.reopening import RestartBudget
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.thread import CaptureThread
 from mocapd.clock import monotonic_ns
@@ -80,6 +81,22 @@ def test_a_camera_unplugged_at_its_node_is_lost_with_the_nodes_reason_and_comes_
         camera.plugged = True
         assert eventually(lambda: capture.status().state is CaptureState.LIVE)
         assert capture.status().reopens == 1
+        capture.stop()
+
+
+def test_what_its_node_counts_is_not_counted_again() -> None:
+    """Else whoever pulls its plug now and then has it left out for minutes, though its node has it back at once."""
+    camera, box = Pluggable("cam0"), Latest[Frame]()
+    with running_node(camera) as running:
+        budget = RestartBudget(most=1, within_s=600.0, rest_s=600.0)
+        capture = CaptureThread(running.source(), box, _died, budget=budget)
+        capture.start()
+        for _ in range(3):
+            assert eventually(lambda: capture.status().state is CaptureState.LIVE)
+            camera.plugged = False
+            assert eventually(lambda: capture.status().state is CaptureState.LOST)
+            camera.plugged = True
+        assert eventually(lambda: capture.status().state is CaptureState.LIVE)
         capture.stop()
 
 

@@ -34,7 +34,7 @@ class RemoteSource:
     """See Source and, where the node lets this daemon set the camera, Lockable: `takes_orders` says so.
 
     The exposure is told by the node's clock, which is related to ours by `clock`; `torn` counts pictures that came
-    damaged or with an impossible time. A node that was started anew is opened anew.
+    damaged or with an impossible time. A node that was started anew is opened anew. `camera_failed`: see LookedAfter.
     """
 
     recorded = False
@@ -50,6 +50,7 @@ class RemoteSource:
         size and rate are the node's own."""
         self.name = name
         self.torn = 0
+        self.camera_failed = False
         self._address, self._size_px = address, size_px
         self._settings = settings if settings is not None else WebcamSettings()
         self._lock = threading.Lock()  # guards what follows against `close` from another thread
@@ -70,6 +71,7 @@ class RemoteSource:
     def open(self) -> None:
         """Raises UnavailableError with the node's own reason, or ConfigError for another size than its calibration."""
         self.close()
+        self.camera_failed = False
         with self._lock:
             turn = self._turn
         link = RemoteLink(self._address)
@@ -230,6 +232,8 @@ class RemoteSource:
             state = link.ask(key, CameraState, None, _MAY_I_S)
         except UnavailableError:
             return "its node is gone", "check the network, and that `mocapd camera-node` runs there"
+        # also of one that is back already
+        self.camera_failed = link.is_gone or state.state != "live"
         if state.state == "live":
             return "its pictures do not arrive", "check the network: it may be too slow for them"
         return _trouble(state)
