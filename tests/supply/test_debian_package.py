@@ -146,3 +146,29 @@ def test_its_scripts_are_what_a_plain_shell_reads_and_enable_nothing(
     assert not [
         line for line in commands if line.split()[:2] == ["systemctl", "enable"] and "#" not in line
     ]
+
+
+@pytest.mark.parametrize("restarts", [True, False])
+def test_an_update_after_which_the_service_does_not_start_is_installed_and_told(
+    restarts: bool, unpacked: Path, tmp_path: Path
+) -> None:
+    """As where a key of the configuration is gone: else every later call of apt would fail."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for tool in ("systemd-sysusers", "udevadm", "systemctl"):
+        fails = tool == "systemctl" and not restarts
+        (tools / tool).write_text(f'#!/bin/sh\n[ "$1" != try-restart ] || exit {int(fails)}\n')
+        (tools / tool).chmod(0o755)
+    (tmp_path / "confmodule").write_text("db_stop() { :; }\n")
+    script = (unpacked / "DEBIAN/postinst").read_text()
+    script = script.replace("/run/systemd/system", str(tmp_path))
+    script = script.replace("/usr/share/debconf/confmodule", str(tmp_path / "confmodule"))
+    done = subprocess.run(
+        ["sh", "-c", script, "postinst", "configure", "0.0.9"],
+        env={"PATH": f"{tools}:{os.environ['PATH']}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert ("did not start again" in done.stderr) is not restarts
