@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.errors import one_line
+
 if TYPE_CHECKING:
     from mocapd.capture.webcam.listing import CameraInfo
     from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
@@ -62,7 +64,7 @@ def _print_remote(place: str, as_json: bool) -> None:
             lines.append(
                 "note    its controls cannot be set from here: node.paired_user of its node"
             )
-        print("\n    ".join(lines))
+        print("\n    ".join(map(one_line, lines)))
 
 
 def _as_dict(info: "CameraInfo") -> dict[str, object]:
@@ -90,7 +92,7 @@ def _as_text(info: "CameraInfo") -> str:
         lines.append(f"cannot be used: {info.problem} -- {info.fix}")
     if info.note:
         lines.append(f"note    {info.note}")
-    return "\n    ".join(lines)
+    return "\n    ".join(map(one_line, lines))
 
 
 def _format(one: "PixelFormat") -> str:

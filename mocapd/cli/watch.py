@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.errors import one_line
 
 if TYPE_CHECKING:
     from mocapd.client import Body, Link
@@ -110,4 +111,4 @@ def _as_text(body: "Body") -> str:
         if name in body:
             x, y, z = body[name].position_m
             line += f"  {name} {x:+.2f} {y:+.2f} {z:+.2f}"
-    return line
+    return one_line(line)

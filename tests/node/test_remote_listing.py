@@ -1,14 +1,22 @@
 """`mocapd cameras --at`: what a node has, with what to write into the configuration."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
+import zenoh
 
+from mocapd.capture.kinds.source_kinds import open_source
+from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.camera_wire import CameraState
 from mocapd.capture.remote.remote_listing import list_remote
+from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, UnavailableError
 from tests.cli.mocapd_process import mocapd_here
 from tests.node.node_pair import Pluggable, StreamingWebcam, opened, running_node
-from tests.outputs.frames import free_port
+from tests.outputs.frames import eventually, free_port
+from tests.outputs.zenoh_pair import other_program
 
 
 def test_every_camera_with_its_source(clean_env: dict[str, str]) -> None:
@@ -35,3 +43,61 @@ def test_the_password_is_not_printed_and_nobody_is_told() -> None:
     assert "hunter2" not in str(caught.value)
     with pytest.raises(ConfigError):
         list_remote("rtsp://host/attic")
+
+
+@pytest.fixture
+def router() -> Iterator[str]:
+    """A session in router mode, as anybody's node may join one."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    config = {
+        "mode": "router",
+        "listen": {"endpoints": [endpoint]},
+        "scouting": {"multicast": {"enabled": False}},
+    }
+    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))):
+        yield endpoint
+
+
+@contextmanager
+def answering(router: str, node: str, data: bytes) -> Iterator[None]:
+    """Some program that answers as camera cam0 of a node would."""
+    key = camera_wire.state(node, "cam0")
+    with (
+        other_program(router) as session,
+        session.declare_queryable(key, lambda query: query.reply(key, data)),
+    ):
+        yield
+
+
+def state(node: str, reason: str = "") -> bytes:
+    return camera_wire.encode(CameraState(node, "cam0", "lost", reason, (0, 0), 0.0, False, 1))
+
+
+def test_what_a_node_says_of_itself_gives_the_terminal_no_orders(
+    router: str, clean_env: dict[str, str]
+) -> None:
+    place = f"zenoh://{router.removeprefix('tcp/')}"
+    with answering(router, "odd", state("odd", "gone\x1b]0;owned\x07\nsource  zenoh://trap")):
+        assert eventually(lambda: len(listed(place)) == 1)
+        said = mocapd_here(clean_env, "cameras", "--at", place)
+        assert "cannot be used: gone ]0;owned  source  zenoh://trap\n" in said.out
+        with pytest.raises(UnavailableError) as caught:
+            open_source(f"{place}/odd/cam0", SourceRequest("left")).open()
+    assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("strange", [b"\xff", state("a/b?ca=/trap"), state("")])
+def test_one_that_is_not_understood_does_not_hide_the_others(router: str, strange: bytes) -> None:
+    place = f"zenoh://{router.removeprefix('tcp/')}"
+    with answering(router, "odd", strange):
+        with answering(router, "attic", state("attic")):
+            assert eventually(lambda: listed(place) == [f"{place}/attic/cam0"])
+        with pytest.raises(UnavailableError, match="not understood"):
+            list_remote(f"{place}/odd")
+
+
+def listed(place: str) -> list[str]:
+    try:
+        return [one.spec for one in list_remote(place)]
+    except UnavailableError:
+        return []

@@ -96,6 +96,12 @@ def test_a_line_says_what_is_wrong() -> None:
     assert json.loads(json.dumps(as_dict(known)))["health"]["tracker"] == "auto"
 
 
+def test_what_a_daemon_says_of_itself_gives_the_terminal_no_orders() -> None:
+    odd = {"left": camera("pc", "left", "lost", "\x1b[2Jgone\nhall-9 30.0 Hz")}
+    assert as_text(InstanceState("pc", True, health("pc"), odd)).isprintable()
+    assert as_text(InstanceState("pc", trouble="\x1b[2J")).isprintable()
+
+
 def test_what_is_not_understood_is_told_beside_the_others(router: str) -> None:
     with ExitStack() as opened:
         daemon(router, "hall-1", opened)
