@@ -156,6 +156,24 @@ def test_what_does_not_fit_is_told() -> None:
         running.source().open()
 
 
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (("left/1", "left_1"), "'left/1' and 'left_1' are both 'left_1' in the keys"),
+        (("left", "x" * 65), "is too long"),
+    ],
+)
+def test_cameras_that_no_daemon_could_tell_apart_are_refused(
+    names: tuple[str, str], told: str
+) -> None:
+    """Else each would get the pictures of both."""
+    with (
+        pytest.raises(ConfigError, match=told),
+        running_node(*(Pluggable(name) for name in names)),
+    ):
+        pass
+
+
 def test_a_reader_is_woken_by_close() -> None:
     with running_node(Pluggable("cam0")) as running:
         source = opened(running.source())
