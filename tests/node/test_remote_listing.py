@@ -69,8 +69,8 @@ def answering(router: str, node: str, data: bytes) -> Iterator[None]:
         yield
 
 
-def state(node: str, reason: str = "") -> bytes:
-    return camera_wire.encode(CameraState(node, "cam0", "lost", reason, (0, 0), 0.0, False, 1))
+def state(node: str, reason: str = "", run: int = 1) -> bytes:
+    return camera_wire.encode(CameraState(node, "cam0", "lost", reason, (0, 0), 0.0, False, run))
 
 
 def test_what_a_node_says_of_itself_gives_the_terminal_no_orders(
@@ -84,6 +84,18 @@ def test_what_a_node_says_of_itself_gives_the_terminal_no_orders(
         with pytest.raises(UnavailableError) as caught:
             open_source(f"{place}/odd/cam0", SourceRequest("left")).open()
     assert str(caught.value).isprintable()
+
+
+def test_two_nodes_of_one_name_are_told_apart_by_nobody_and_named(router: str) -> None:
+    """As two small computers that are both called `raspberrypi`."""
+    place = f"zenoh://{router.removeprefix('tcp/')}"
+    with (
+        answering(router, "attic", state("attic")),
+        answering(router, "attic", state("attic", run=2)),
+    ):
+        assert eventually(lambda: len(listed(place)) == 2)
+        with pytest.raises(UnavailableError, match=r"2 camera nodes are called 'attic'.*--name"):
+            open_source(f"{place}/attic/cam0", SourceRequest("left")).open()
 
 
 @pytest.mark.parametrize("strange", [b"\xff", state("a/b?ca=/trap"), state("")])

@@ -118,7 +118,12 @@ class RemoteLink:
         try:
             with zenoh_call():
                 replies = self._session.get(
-                    key, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL
+                    key,
+                    payload=payload,
+                    timeout=timeout_s,
+                    target=zenoh.QueryTarget.ALL,
+                    # else of two that answer to one name the first is not heard of
+                    consolidation=zenoh.ConsolidationMode.NONE,
                 )
                 told = (one.ok.payload.to_bytes() for one in replies if one.ok is not None)
                 answers = list(itertools.islice(told, _MOST_ANSWERS))

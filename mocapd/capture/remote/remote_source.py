@@ -157,14 +157,20 @@ class RemoteSource:
 
     def _looked_up(self, link: RemoteLink) -> CameraState:
         node, camera = self._address.node, self._address.camera
-        try:
-            state = link.ask(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
-        except UnavailableError:
+        states = link.ask_all(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
+        if not states:
             raise UnavailableError(
                 f"no camera {camera!r} of a node {node!r} answers there",
                 self._address.endpoint,
                 "start `mocapd camera-node`, which says what its cameras are called",
-            ) from None
+            )
+        if len({one.run for one in states}) > 1:  # their pictures and clocks would come mixed
+            raise UnavailableError(
+                f"{len(states)} camera nodes are called {node!r}, and each has a camera {camera!r}",
+                self._address.endpoint,
+                "start one of them with another --name",
+            )
+        state = states[0]
         if state.state != "live":
             what, fix = _trouble(state)
             raise UnavailableError(what, f"{self.name} at {node}", fix)
