@@ -1,16 +1,19 @@
 """What is asked of the machine: its folders, its processor, its calibration; and the command over all of it."""
 
 import json
+import multiprocessing
 import os
 import socket
 from collections.abc import Callable
 from dataclasses import replace
+from multiprocessing.queues import SimpleQueue
 from pathlib import Path
 
 import pytest
 
 from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
 from mocapd.config.sections import CameraSection, Config, WebSection
+from mocapd.doctor.checks.storage_checks import check_ports
 from mocapd.doctor.checks.system_checks import check_whose
 from mocapd.doctor.facts import UserFacts
 from mocapd.doctor.finding import Verdict
@@ -86,6 +89,25 @@ def test_who_has_a_port_that_is_wanted() -> None:
     assert f"(pid {os.getpid()})" in zenoh.holder
     assert (zenoh.key, web.key) == ("zenoh.port", "web.port")
     assert port_facts(Config(outputs={"zenoh": ZenohSection(connect=("tcp/127.0.0.1:1",))})) == ()
+
+
+def _said_by_nobody(asked: "SimpleQueue[int]", told: "SimpleQueue[str]") -> None:
+    os.setuid(65534)
+    port = asked.get()
+    config = Config(outputs={"zenoh": ZenohSection(port=port)}, web=WebSection(enabled=False))
+    told.put("; ".join(f"{one.verdict} {one.what}" for one in check_ports(port_facts(config), ())))
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody else")
+def test_a_port_that_another_users_daemon_has_is_not_free() -> None:
+    fork = multiprocessing.get_context("fork")
+    asked, told = fork.SimpleQueue(), fork.SimpleQueue()
+    child = fork.Process(target=_said_by_nobody, args=(asked, told))
+    child.start()  # before there is a socket that it would share
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        asked.put(server.getsockname()[1])
+        child.join()
+    assert told.get() == "bad a process of another user has it, and zenoh.port wants it"
 
 
 def test_the_processor_is_read_from_sysfs(tmp_path: Path) -> None:
