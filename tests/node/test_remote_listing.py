@@ -1,8 +1,10 @@
 """`mocapd cameras --at`: what a node has, with what to write into the configuration."""
 
 import json
+import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 import zenoh
@@ -13,7 +15,7 @@ from mocapd.capture.remote.camera_wire import CameraState
 from mocapd.capture.remote.remote_listing import list_remote
 from mocapd.capture.source_request import SourceRequest
 from mocapd.errors import ConfigError, UnavailableError
-from tests.cli.mocapd_process import mocapd_here
+from tests.cli.mocapd_process import COMMAND, mocapd_here
 from tests.node.node_pair import Pluggable, StreamingWebcam, opened, running_node
 from tests.outputs.frames import eventually, free_port
 from tests.outputs.zenoh_pair import other_program
@@ -43,6 +45,30 @@ def test_the_password_is_not_printed_and_nobody_is_told() -> None:
     assert "hunter2" not in str(caught.value)
     with pytest.raises(ConfigError):
         list_remote("rtsp://host/attic")
+
+
+def test_a_password_need_not_stand_on_the_command_line(
+    clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    users = tmp_path / "users"
+    users.write_text("pc:sec/ret\n")
+    users.chmod(0o600)
+    with running_node(Pluggable("left"), password_file=str(users)) as running:
+        place = f"127.0.0.1:{running.port}/attic"
+        for password, code in (("sec/ret\n", 0), ("guess\n", 69)):
+            done = subprocess.run(
+                [*COMMAND, "cameras", "--at", f"zenoh://pc@{place}"],
+                env=clean_env,
+                input=password,
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            assert done.returncode == code, done.stderr
+            assert "sec" not in done.stdout + done.stderr
+        told = mocapd_here(clean_env, "cameras", "--at", f"zenoh://pc:sec%2Fret@{place}")
+    assert told.code == 0
+    assert "the password stands on the command line" in told.err
 
 
 @pytest.fixture
