@@ -131,9 +131,10 @@ def hidden_hint(target: Target, system: Path = Path("/")) -> str:
         return ""
     flag, sudo = (" --user", "") if target.user else ("", "sudo ")
     return (
-        f"a package has installed mocapd here too: {', '.join(map(str, hidden))}. These are hidden now, and so are the"
-        f" package's updates, by what is put in place here; to run the package's again: `{sudo}systemctl{flag} disable"
-        f" --now mocapd; {sudo}mocapd uninstall-service{flag}; {sudo}systemctl{flag} daemon-reload`"
+        f"a package has installed mocapd here too: what is put in place here hides {', '.join(map(str, hidden))}, and so"
+        f" the package's updates; to run the package's: `{sudo}systemctl{flag} disable --now mocapd;"
+        f" {sudo}mocapd uninstall-service{flag}; {sudo}systemctl{flag} daemon-reload;"
+        f" {sudo}systemctl{flag} enable --now mocapd`"
     )
 
 

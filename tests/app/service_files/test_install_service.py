@@ -191,7 +191,7 @@ def test_a_user_has_one_unit_and_no_configuration(
         (
             Target(user=True),
             "user",
-            "mocapd uninstall-service --user; systemctl --user daemon-reload`",
+            "mocapd uninstall-service --user; systemctl --user daemon-reload;",
         ),
     ],
 )
