@@ -90,6 +90,7 @@ class CaptureThread:
         self._renewal = ""  # why it is opened anew though it does not fail
         self._plugging = ""  # see Pluggable
         self._stuck: list[threading.Thread] = []  # abandoned
+        self._hang = CameraLost("")  # what is told while one of them hangs
         self._thread = self._new_thread()
 
     # -- the owner's -----------------------------------------------------------------------------
@@ -141,12 +142,11 @@ class CaptureThread:
         self._called_ns = None
         self._stuck.append(self._thread)
         self._thread = self._new_thread()
-        self._lost(
-            CameraLost(
-                f"its driver has not come back for {seconds(stuck_ns):.0f} s, and is left to itself",
-                fix="unplug the camera and plug it in again",
-            )
+        self._hang = CameraLost(
+            f"its driver has not come back for {seconds(stuck_ns):.0f} s, and is left to itself",
+            fix="unplug the camera and plug it in again",
         )
+        self._lost(self._hang)
         self._source.close()
 
     def status(self) -> CaptureStatus:
@@ -261,6 +261,9 @@ class CaptureThread:
             return
         # who pulls its plug does not wear a camera out: only that it is still there, and fails, counts
         there = self._plug is None or bool(self._plugged_now())
+        hangs = there and any(one.is_alive() for one in self._stuck)
+        if hangs and isinstance(error, UnavailableError):
+            error = self._hang  # busy with ourselves: ending another program mends nothing
         ours = self._keeper is None or not self._keeper.camera_failed
         spent = delivered and there and ours and self._budget.spend(monotonic_ns())
         if spent:
