@@ -25,19 +25,21 @@ def sockets_in(folder: Path) -> tuple[Path, ...]:
 
 def service_sockets(system: Path = SYSTEM) -> tuple[Path, ...]:
     """Of daemons that systemd has started: RuntimeDirectory=mocapd, mocapd-NAME or mocapd/NAME."""
-    found = [*system.glob("mocapd*/control-*.sock"), *system.glob("mocapd*/*/control-*.sock")]
-    return tuple(sorted(found))
+    found = (sockets_in(one) for one in _service_folders(system) if os.access(one, _LOOK))
+    return tuple(sorted(path for paths in found for path in paths))
 
 
 def closed_folders(system: Path = SYSTEM) -> tuple[Path, ...]:
     """Runtime directories of running services that our user may not look into; systemd removes them with the service."""
-    closed = []
-    # not by glob(), which ends at the first folder that it may not look into
+    return tuple(one for one in _service_folders(system) if not os.access(one, _LOOK))
+
+
+def _service_folders(system: Path) -> Iterator[Path]:
+    """Whether our user may look into them or not."""
+    # not by glob(), which ends at the first link into a folder that is closed
     for folder in _folders_in(system):
         if folder.name == "mocapd" or folder.name.startswith("mocapd-"):
-            found = (folder, *_folders_in(folder))
-            closed += [one for one in found if not os.access(one, _LOOK)]
-    return tuple(closed)
+            yield from (folder, *_folders_in(folder))
 
 
 def _folders_in(path: Path) -> list[Path]:

@@ -280,6 +280,7 @@ def _asked_by(uid: int, path: Path) -> str:
 def _seen_by_nobody(folder: Path, told: "SimpleQueue[list[str]]") -> None:
     os.setuid(NOBODY)
     told.put([one.name for one in closed_folders(folder)])
+    told.put([one.name for one in service_sockets(folder)])
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody else")
@@ -301,6 +302,7 @@ def test_a_service_is_known_to_run_by_those_who_may_not_look_into_its_folder() -
         child.start()
         child.join()
     assert told.get() == ["mocapd", "hall"]
+    assert told.get() == ["control-12.sock"]  # of one beside them that is open
 
 
 def test_what_is_said_of_it() -> None:
