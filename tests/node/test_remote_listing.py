@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-import zenoh
 
 from mocapd.capture.kinds.source_kinds import open_source
 from mocapd.capture.remote import camera_wire
@@ -18,7 +17,7 @@ from mocapd.errors import ConfigError, UnavailableError
 from tests.cli.mocapd_process import COMMAND, mocapd_here
 from tests.node.node_pair import Pluggable, StreamingWebcam, opened, running_node
 from tests.outputs.frames import eventually, free_port
-from tests.outputs.zenoh_pair import other_program
+from tests.outputs.zenoh_pair import other_program, running_router
 
 
 def test_every_camera_with_its_source(clean_env: dict[str, str]) -> None:
@@ -73,14 +72,7 @@ def test_a_password_need_not_stand_on_the_command_line(
 
 @pytest.fixture
 def router() -> Iterator[str]:
-    """A session in router mode, as anybody's node may join one."""
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    config = {
-        "mode": "router",
-        "listen": {"endpoints": [endpoint]},
-        "scouting": {"multicast": {"enabled": False}},
-    }
-    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))):
+    with running_router() as endpoint:
         yield endpoint
 
 
