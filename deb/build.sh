@@ -5,7 +5,9 @@
 #   deb/build.sh PIP_PYTHON WHEEL OUT [SITE]     PIP_PYTHON: a Python with pip; OUT: the folder for the package;
 #                                                SITE: what it runs on is there already and is not carried (for tests)
 #
-# It is for the Python and the machine that it is made with: DEB_PYTHON, /usr/bin/python3 unless set.
+# It is for the Python and the machine that it is made with: DEB_PYTHON, /usr/bin/python3 unless set. Who gives it to others
+# says who that is, by DEBFULLNAME and DEBEMAIL, as for Debian's own tools. Made again from the same commit, wheel and
+# Python it is the same to the byte.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$here/..
@@ -21,9 +23,13 @@ command -v dpkg-deb >/dev/null || { echo "$0: dpkg-deb is missing -- a Debian pa
 version=$(basename "$wheel" | cut -d- -f2)
 minor=$("$python" -c 'import sys; print(sys.version_info.minor)')
 architecture=$(dpkg --print-architecture)
+# of a domain that leads nowhere (RFC 2606): whoever has it from somebody was told by whom
+maintainer="${DEBFULLNAME:-mocapd} <${DEBEMAIL:-mocapd@nobody.invalid}>"
 # dates in the package are the commit's
 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || stat --format=%Y "$root/CHANGELOG.md")}
 export SOURCE_DATE_EPOCH
+# the order of names is that of their bytes
+export LC_ALL=C.UTF-8
 umask 022
 
 stage=$(mktemp -d "${TMPDIR:-/tmp}/mocapd-deb.XXXXXX")
@@ -42,9 +48,10 @@ else
     "${install[@]}" --require-hashes --only-binary :all: --requirement "$root/locks/run.txt"
 fi
 "${install[@]}" --no-deps --no-index "$wheel"
-# of the commands only ours; pip's note of where the wheel lay is of no use elsewhere
+# of the commands only ours; pip's note of where the wheel lay is of no use elsewhere, nor are its digests of both
 find "$env/bin" -mindepth 1 ! -name 'python*' -delete
 find "$env" -name direct_url.json -delete
+find "$env" -name RECORD -exec sed -i -e '\#^\(\.\./\)*bin/#d' -e '/\/direct_url\.json,/d' {} +
 printf '#!/%s/bin/python -P\nfrom mocapd.cli.main import main\nmain()\n' $prefix >"$env/bin/mocapd"
 chmod 755 "$env/bin/mocapd"
 # compiled here, so that nothing is written there later; a stamp by content, as dates change on the way
@@ -63,14 +70,18 @@ doc=$stage/usr/share/doc/mocapd
 gzip -9n <"$root/CHANGELOG.md" >"$doc/changelog.gz"
 cp "$root/docs/service.md" "$root/docs/operating.md" "$root/docs/security.md" "$doc"
 
+# as dpkg-gencontrol counts [KiB]: what a folder takes is another matter on each file system
+size=$(find "$stage" -mindepth 1 -printf '%y %s\n' | awk '{ kib += $1 == "f" ? int(($2 + 1023) / 1024) : 1 } END { print kib }')
 mkdir "$stage/DEBIAN"
-sed -e "s/@VERSION@/$version/; s/@ARCHITECTURE@/$architecture/; s/@PYTHON@/3.$minor/; s/@NEXT_PYTHON@/3.$((minor + 1))/" \
-    -e "s/@SIZE@/$(du --summarize --apparent-size --block-size=1024 --exclude=DEBIAN "$stage" | cut -f1)/" \
-    "$here/control.in" >"$stage/DEBIAN/control"
+{
+    echo "Maintainer: $maintainer"
+    sed -e "s/@VERSION@/$version/; s/@ARCHITECTURE@/$architecture/; s/@SIZE@/$size/" \
+        -e "s/@PYTHON@/3.$minor/; s/@NEXT_PYTHON@/3.$((minor + 1))/" "$here/control.in"
+} >"$stage/DEBIAN/control"
 install -m 755 "$here/postinst" "$here/prerm" "$here/postrm" "$stage/DEBIAN"
 install -m 644 "$here/templates" "$stage/DEBIAN"
-(cd "$stage" && find etc -type f -printf '/%p\n') >"$stage/DEBIAN/conffiles"
-(cd "$stage" && find usr -type f -exec md5sum {} +) >"$stage/DEBIAN/md5sums"
+(cd "$stage" && find etc -type f -printf '/%p\n' | sort) >"$stage/DEBIAN/conffiles"
+(cd "$stage" && find usr -type f -print0 | sort --zero-terminated | xargs --null md5sum) >"$stage/DEBIAN/md5sums"
 if grep --recursive --quiet --fixed-strings "$stage" "$stage"; then
     echo "$0: the place where it was made is in: $(grep --recursive --files-with-matches --fixed-strings "$stage" "$stage")" >&2
     exit 1

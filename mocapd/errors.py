@@ -1,12 +1,19 @@
 """Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
 
 
+def one_line(text: str) -> str:
+    """As it may be told in a terminal or a log. Others named what is told of: a file, a webcam, a node of the network, and
+    a name may hold line breaks and what a terminal obeys."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else " " for c in text)
+
+
 class MocapdError(Exception):
-    """Base of all expected errors; `exit_code` is what the command line ends with (sysexits)."""
+    """Base of all expected errors, one line each; `exit_code` is what the command line ends with (sysexits)."""
 
     exit_code = 70
 
     def __init__(self, what: str, where: str = "", fix: str = "") -> None:
+        what, where, fix = map(one_line, (what, where, fix))
         self.what, self.where, self.fix = what, where, fix
         super().__init__((f"{where}: " if where else "") + what + (f" -- {fix}" if fix else ""))
 

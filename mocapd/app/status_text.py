@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterable
 
 from mocapd.control.messages import CameraReport, OutputReport, StatusReport
+from mocapd.errors import one_line
 
 _STATES = {
     "tracking": "tracking",
@@ -30,7 +31,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
         ("last trouble", _trouble(report, now_unix_s)),
     ]
     width = max(len(name) for name, _ in rows)
-    return [f"{name:<{width}}  {text}" for name, text in rows]
+    return [one_line(f"{name:<{width}}  {text}") for name, text in rows]
 
 
 def duration(span_s: float) -> str:

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from mocapd.client import Link, connect
 from mocapd.clock import monotonic_ns, seconds
+from mocapd.errors import one_line
 from mocapd.outputs.messages import CameraStatus
 from mocapd.outputs.zenoh.zenoh_instances import Instances, InstanceState, list_instances
 
@@ -58,7 +59,11 @@ def is_able(one: InstanceState) -> bool:
 
 
 def as_text(one: InstanceState) -> str:
-    """One line: rate, who tracks and how, latency, cameras, and what is wrong."""
+    """One line, whatever it says of itself: rate, who tracks and how, latency, cameras, and what is wrong."""
+    return one_line(_as_told(one))
+
+
+def _as_told(one: InstanceState) -> str:
     name = f"{one.name:<16}"
     if one.trouble:
         return f"{name} is not understood: {one.trouble}"

@@ -37,6 +37,15 @@ class CountsTorn(Protocol):
 
 
 @runtime_checkable
+class LookedAfter(Protocol):
+    """A source whose camera somebody else opens again, and leaves out when that does not help: what fails there is
+    counted there alone."""
+
+    camera_failed: bool
+    """Whether the last loss was of that kind, and not one of the way to it. Read by the thread that reads."""
+
+
+@runtime_checkable
 class Pluggable(Protocol):
     """A source whose camera has a plug. From any thread, quickly, without opening it."""
 

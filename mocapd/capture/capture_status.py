@@ -14,6 +14,11 @@ class CaptureState(StrEnum):
     LOST = "lost"
     ENDED = "ended"
 
+    @property
+    def told(self) -> str:
+        """The word for it in messages to others."""
+        return "starting" if self is CaptureState.OPENING else self.value
+
 
 @dataclass(frozen=True, slots=True)
 class CaptureStatus:

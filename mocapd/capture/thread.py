@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-from mocapd.capture.base import CountsTorn, Pluggable, Source
+from mocapd.capture.base import CountsTorn, LookedAfter, Pluggable, Source
 from mocapd.capture.capture_record import CaptureRecord
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.capture.frame_faults import FrameFaults
@@ -73,6 +73,7 @@ class CaptureThread:
             source if isinstance(source, CountsTorn) else None
         )  # asked once: it takes 0.1 ms
         self._plug = source if isinstance(source, Pluggable) else None
+        self._keeper = source if isinstance(source, LookedAfter) else None
         self._mailbox = mailbox
         self._on_death = on_death
         self._expected_hz = expected_hz
@@ -89,6 +90,7 @@ class CaptureThread:
         self._renewal = ""  # why it is opened anew though it does not fail
         self._plugging = ""  # see Pluggable
         self._stuck: list[threading.Thread] = []  # abandoned
+        self._hang = CameraLost("")  # what is told while one of them hangs
         self._thread = self._new_thread()
 
     # -- the owner's -----------------------------------------------------------------------------
@@ -140,12 +142,11 @@ class CaptureThread:
         self._called_ns = None
         self._stuck.append(self._thread)
         self._thread = self._new_thread()
-        self._lost(
-            CameraLost(
-                f"its driver has not come back for {seconds(stuck_ns):.0f} s, and is left to itself",
-                fix="unplug the camera and plug it in again",
-            )
+        self._hang = CameraLost(
+            f"its driver has not come back for {seconds(stuck_ns):.0f} s, and is left to itself",
+            fix="unplug the camera and plug it in again",
         )
+        self._lost(self._hang)
         self._source.close()
 
     def status(self) -> CaptureStatus:
@@ -235,7 +236,7 @@ class CaptureThread:
         """Raises CameraLost for a camera that shows the past."""
         if self._faults.add(frame, self._torn()):
             self._record.noticed(self._faults.notice, self._place())
-        if self._faults.frozen:
+        if self._faults.frozen and self._keeper is None:
             raise CameraLost(
                 "sends the same picture over and over",
                 fix="it is opened again; where that does not help, unplug it and plug it in again",
@@ -260,7 +261,11 @@ class CaptureThread:
             return
         # who pulls its plug does not wear a camera out: only that it is still there, and fails, counts
         there = self._plug is None or bool(self._plugged_now())
-        spent = delivered and there and self._budget.spend(monotonic_ns())
+        hangs = there and any(one.is_alive() for one in self._stuck)
+        if hangs and isinstance(error, UnavailableError):
+            error = self._hang  # busy with ourselves: ending another program mends nothing
+        ours = self._keeper is None or not self._keeper.camera_failed
+        spent = delivered and there and ours and self._budget.spend(monotonic_ns())
         if spent:
             error = self._budget.left_out(error, self._plug is not None)
         self._lost(error)

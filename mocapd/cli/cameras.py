@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.errors import one_line
+
 if TYPE_CHECKING:
     from mocapd.capture.webcam.listing import CameraInfo
     from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
@@ -21,13 +23,14 @@ def cameras(
         str | None,
         typer.Option(
             help="List those of a camera node instead, or of all behind a Zenoh router.",
-            metavar="zenohs://[USER:PASSWORD@]HOST[:PORT][/NODE][?ca=FILE]",
+            metavar="zenohs://[USER@]HOST[:PORT][/NODE][?ca=FILE]",
         ),
     ] = None,
 ) -> None:
     """List the webcams, and why one cannot be used.
 
-    Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config.
+    Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config. Of a user
+    without a password at --at it is asked for, or read from the input.
 
     Example: mocapd cameras
     """
@@ -48,7 +51,7 @@ def _print_remote(place: str, as_json: bool) -> None:
 
     from mocapd.capture.remote.remote_listing import list_remote
 
-    for one in list_remote(place):
+    for one in list_remote(_with_password(place)):
         state = one.state
         if as_json:
             print(json.dumps({"source": one.spec, **msgspec.to_builtins(state)}))
@@ -62,7 +65,33 @@ def _print_remote(place: str, as_json: bool) -> None:
             lines.append(
                 "note    its controls cannot be set from here: node.paired_user of its node"
             )
-        print("\n    ".join(lines))
+        print("\n    ".join(map(one_line, lines)))
+
+
+def _with_password(place: str) -> str:
+    """The address, with what a user without a password is asked for: a command line is read by every user."""
+    import sys
+    from getpass import getpass
+    from urllib.parse import quote
+
+    from mocapd.boundary.urls import split_url
+
+    parts = split_url(place)
+    if parts.username is None:
+        return place
+    if parts.password is not None:
+        typer.echo(
+            "mocapd: the password stands on the command line, which every user of this machine can read: leave it out,"
+            " and it is asked for",
+            err=True,
+        )
+        return place
+    user, _, host = parts.netloc.rpartition("@")
+    asks = sys.stdin.isatty()
+    password = getpass(f"password of {user} at {host}: ") if asks else sys.stdin.readline()
+    return parts._replace(
+        netloc=f"{user}:{quote(password.rstrip(chr(10)), safe='')}@{host}"
+    ).geturl()
 
 
 def _as_dict(info: "CameraInfo") -> dict[str, object]:
@@ -90,7 +119,7 @@ def _as_text(info: "CameraInfo") -> str:
         lines.append(f"cannot be used: {info.problem} -- {info.fix}")
     if info.note:
         lines.append(f"note    {info.note}")
-    return "\n    ".join(lines)
+    return "\n    ".join(map(one_line, lines))
 
 
 def _format(one: "PixelFormat") -> str:

@@ -1,14 +1,16 @@
 """`mocapd watch`"""
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.errors import one_line
 
 if TYPE_CHECKING:
-    from mocapd.client import Body
+    from mocapd.client import Body, Link
     from mocapd.outputs.registry import ZenohSection
 
 SHOWN = ("head", "leftHand", "rightHand", "hips")
@@ -45,33 +47,52 @@ def watch(
 ) -> None:
     """Print the frames of a running daemon.
 
-    It subscribes like any client; the newest frame wins. With --all it takes no frames, but what all daemons
-    behind one router say of themselves.
+    It subscribes like any client, with what the configuration has of certificates and users ([zenoh]); the newest frame
+    wins. With --all it takes no frames, but what all daemons behind one router say of themselves.
 
     Example: mocapd watch --json | head -n 1
     """
-    from mocapd import client
+    from mocapd.client import Client
     from mocapd.outputs.registry import zenoh_section
 
     zenoh = zenoh_section(effective_config(config, settings).config.outputs)
-    place = endpoint or endpoint_of(zenoh)
+    link = link_of(zenoh, endpoint, instance, timeout_s)
     if every:
         from mocapd.app.watch_all import watch_all
 
-        watch_all(client.Link(place, instance, connect_timeout_s=timeout_s), as_json, count)
+        watch_all(link, as_json, count)
         return
-    bodies = client.stream(place, instance=instance, connect_timeout_s=timeout_s)
-    for number, body in enumerate(bodies, start=1):
-        print(_as_json(body) if as_json else _as_text(body), flush=True)
-        if number == count:
-            return
+    with Client(link) as client:
+        for number, body in enumerate(client, start=1):
+            print(_as_json(body) if as_json else _as_text(body), flush=True)
+            if number == count:
+                return
 
 
-def endpoint_of(zenoh: "ZenohSection") -> str:
-    """Where a daemon of this configuration can be reached from this machine."""
+def link_of(
+    zenoh: "ZenohSection",
+    endpoint: str | None = None,
+    instance: str = "*",
+    timeout_s: float = 2.0,
+) -> "Link":
+    """To a daemon, or the router that it joined; endpoint: that of this configuration when None. With the certificate of the
+    configuration, and as the first user of its password file: whoever may read these may listen."""
+    from mocapd.client import Link
     from mocapd.outputs.zenoh.zenoh_config import listen_endpoints
+    from mocapd.outputs.zenoh.zenoh_password_file import first_login
 
-    return zenoh.connect[0] if zenoh.connect else listen_endpoints(zenoh)[0]
+    user, password = first_login(Path(zenoh.password_file)) if zenoh.password_file else ("", "")
+    return Link(
+        endpoint or (zenoh.connect or listen_endpoints(zenoh))[0],
+        instance,
+        connect_timeout_s=timeout_s,
+        tls_root_ca=zenoh.tls_root_ca,
+        user=user,
+        password=password,
+        # both or none: Zenoh asks for the key of a certificate
+        certificate=zenoh.tls_certificate if zenoh.tls_private_key else "",
+        private_key=zenoh.tls_private_key if zenoh.tls_certificate else "",
+    )
 
 
 def _as_json(body: "Body") -> str:
@@ -90,4 +111,4 @@ def _as_text(body: "Body") -> str:
         if name in body:
             x, y, z = body[name].position_m
             line += f"  {name} {x:+.2f} {y:+.2f} {z:+.2f}"
-    return line
+    return one_line(line)

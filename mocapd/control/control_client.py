@@ -22,6 +22,7 @@ from mocapd.control.messages import (
     Verb,
 )
 from mocapd.control.socket_place import (
+    closed_folders,
     may_command,
     peer_of,
     service_sockets,
@@ -59,7 +60,7 @@ _BY_EXIT_CODE: dict[int, type[MocapdError]] = {
 @dataclass(frozen=True, slots=True)
 class Found:
     """Daemons that answered, and sockets of living ones that did not: `silent` gave no answer, `foreign` are of
-    another user, who may be asked by root alone."""
+    another user, who may be asked by root alone, or the folder in which that user's lie."""
 
     daemons: "tuple[RunningDaemon, ...]" = ()
     silent: tuple[Path, ...] = ()
@@ -110,7 +111,8 @@ def running_daemons(folders: Iterable[Path], services: Iterable[Path] | None = N
     """Those of our user's folders, and the machine's services. Sockets that a killed process has left in those
     folders are removed."""
     found: list[RunningDaemon] = []
-    silent, foreign = [], []
+    silent: list[Path] = []
+    foreign = list(closed_folders()) if services is None else []
     own = [path for folder in folders for path in sockets_in(folder)]
     theirs = service_sockets() if services is None else services
     for path in dict.fromkeys((*own, *theirs)):

@@ -9,6 +9,7 @@ from mocapd.doctor.checks.system_checks import (
     check_daemons,
     check_libraries,
     check_processor,
+    check_whose,
 )
 from mocapd.doctor.facts import Facts
 from mocapd.doctor.finding import Finding
@@ -19,6 +20,7 @@ def examine(facts: Facts) -> tuple[Finding, ...]:
     return (
         check_config(facts.config),
         *check_daemons(facts.daemons),
+        *check_whose(facts.user, facts.states),
         *check_rights(facts.user, facts.cameras),
         *check_webcams(facts.cameras, facts.daemons),
         *check_bandwidth(facts.cameras),

@@ -37,6 +37,15 @@ class UserFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class StateFacts:
+    """Folders in which calibrations are kept. own: what is looked at; of_services: what services of this machine have
+    in its place, told to root alone."""
+
+    own: Path
+    of_services: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class CameraFacts:
     """nodes: the machine's; asked: webcams and others of configuration or calibration; crowded: buses that do not
     carry those of them that are plugged in."""
@@ -117,6 +126,7 @@ class Facts:
     config: ConfigFacts
     daemons: tuple[StatusReport, ...]
     user: UserFacts
+    states: StateFacts
     cameras: CameraFacts
     ports: tuple[PortFacts, ...]
     folders: tuple[FolderFacts, ...]

@@ -12,16 +12,16 @@ import zenoh
 
 from mocapd.bus.zenoh_close import close_soon
 from mocapd.capture.remote import camera_wire
-from mocapd.capture.remote.camera_wire import CameraState, ClockAnswer
+from mocapd.capture.remote.camera_wire import MOST_NAME, CameraState, ClockAnswer
 from mocapd.capture.suspension import SuspensionWatch
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params
-from mocapd.errors import MocapdError
+from mocapd.errors import ConfigError, MocapdError
 from mocapd.node.imperfections import Imperfections, PoorWay, Way
 from mocapd.node.node_access import check_pairing, node_session_config, takes_orders
 from mocapd.node.node_camera import NodeCamera
-from mocapd.outputs.instance import instance_name
+from mocapd.outputs.instance import chunk, instance_name
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.outputs.zenoh.zenoh_open import open_session
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
@@ -51,6 +51,7 @@ class CameraNode:
         """name: in the keys; empty: the machine's. Raises ConfigError."""
         check_pairing(zenoh_params, params)
         self.name = instance_name(name)
+        _check_names(self.name, [one.source.name for one in cameras])
         self._zenoh, self._params = zenoh_params, params
         self._imperfections = imperfections or Imperfections()
         poor = imperfections is not None
@@ -157,6 +158,21 @@ class CameraNode:
             self._out.send(lambda: _reply(query, camera_wire.clock(self.name), data))
 
         self._in.send(answer)
+
+
+def _check_names(node: str, cameras: Sequence[str]) -> None:
+    """Raises ConfigError where nobody could tell two cameras apart by their keys, or no daemon takes a name."""
+    by_key: dict[str, str] = {}
+    for name in cameras:
+        other = by_key.setdefault(chunk(name), name)
+        if other != name:
+            raise ConfigError(
+                f"{other!r} and {name!r} are both {chunk(name)!r} in the keys",
+                *("camera", "rename one of them: letters, digits, _ . and - stay as they are"),
+            )
+    for where, name in (("instance", node), *(("camera", one) for one in by_key)):
+        if len(name) > MOST_NAME:
+            raise ConfigError(f"{name!r} is too long", where, f"{MOST_NAME} characters at most")
 
 
 def _reply(query: zenoh.Query, key: str, data: bytes) -> None:

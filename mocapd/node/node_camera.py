@@ -21,12 +21,6 @@ from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Frame
 
 _HEARD_NS = NS_PER_S // 10  # who was heard is taken to be for so long
-_STATES = {
-    CaptureState.OPENING: "starting",
-    CaptureState.LIVE: "live",
-    CaptureState.LOST: "lost",
-    CaptureState.ENDED: "ended",
-}
 _REASON = 400  # characters
 
 
@@ -121,7 +115,7 @@ class NodeCamera:
         return CameraState(
             node=self._node,
             camera=self.name,
-            state="lost" if status.is_silent else _STATES[status.state],  # type: ignore[arg-type]
+            state="lost" if status.is_silent else status.state.told,  # type: ignore[arg-type]
             reason=status.trouble[:_REASON],
             size_px=self._size_px,
             rate_hz=min(status.fps_hz, 1e4),

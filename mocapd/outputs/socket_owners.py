@@ -4,12 +4,14 @@ import os
 
 import psutil
 
+OF_ANOTHER = "a process of another user"
+
 
 def holder_of(port: int) -> str:
-    """Who listens on a local TCP port: `zenohd (pid 12)`; empty when nobody or not visible to us."""
+    """Who listens on a local TCP port: `zenohd (pid 12)`, or OF_ANOTHER; empty when nobody does."""
     for connection in psutil.net_connections("tcp"):
         if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port:
-            return describe(connection.pid)
+            return describe(connection.pid) or OF_ANOTHER
     return ""
 
 

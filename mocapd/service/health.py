@@ -11,14 +11,6 @@ from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
 from mocapd.session.camera_inputs import CameraInput
 
-# the wire's words for the states of a capture thread
-_STATES = {
-    CaptureState.OPENING: "starting",
-    CaptureState.LIVE: "live",
-    CaptureState.LOST: "lost",
-    CaptureState.ENDED: "ended",
-}
-
 
 def health_message(
     instance: str,
@@ -61,7 +53,7 @@ def camera_message(
     return CameraStatus(
         instance=instance,
         camera=status.camera,
-        state=_STATES[status.state],
+        state=status.state.told,
         detail=status.trouble,
         source=camera.spec,
         identity=camera.identity,
@@ -79,7 +71,7 @@ def gone_message(instance: str, name: str, camera: CameraInput) -> CameraStatus:
     return CameraStatus(
         instance=instance,
         camera=name,
-        state=_STATES[CaptureState.ENDED],
+        state=CaptureState.ENDED.told,
         detail="no longer configured",
         source=camera.spec,
         identity="",

@@ -5,6 +5,7 @@ this that they are told apart. Written privately, as it is a small picture of th
 import hashlib
 import logging
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -14,14 +15,17 @@ from msgspec import Meta
 
 from mocapd.boundary.files import MissingError, read_file
 from mocapd.boundary.messages import decode_msgpack
+from mocapd.boundary.numbers import brief
 from mocapd.calibrate.bump.landmarks import Landmarks, landmarks_at
-from mocapd.errors import InputError
+from mocapd.errors import InputError, MocapdError, NewerFileError
+from mocapd.set_aside import Why, set_aside
 from mocapd.types import Camera
 from mocapd.whole_file import whole_file
 
 _log = logging.getLogger(__name__)
 
 FILE_NAME = "rooms_of_twins.msgpack"
+SCHEMA = 1
 _MOST_BYTES = 4 << 20
 _MOST_SIDE_PX = 4096
 DIGEST_BYTES = 16
@@ -44,6 +48,12 @@ class _KeptRoom(msgspec.Struct, frozen=True):
     views: list[_KeptView]
 
 
+class _Schema(msgspec.Struct, frozen=True):
+    """What every version has."""
+
+    schema: int
+
+
 class _KeptRooms(msgspec.Struct, frozen=True):
     schema: Literal[1]
     rooms: list[_KeptRoom]
@@ -57,26 +67,24 @@ class RoomMemory:
         self._failed = False
 
     def read(self, cameras: Mapping[str, Camera]) -> dict[str, list[Landmarks]]:
-        """Of those cameras that are calibrated as they were then."""
+        """Of those cameras that are calibrated as they were then. A file that cannot be used is set aside."""
         try:
-            data = read_file(self._path, _MOST_BYTES)
-            body = data[DIGEST_BYTES:]
-            if digest_of(body) != data[:DIGEST_BYTES]:
-                raise InputError("its checksum does not fit")
-            kept = decode_msgpack(body, _KeptRooms)
-            return {
-                room.camera: [_view(one, cameras[room.camera]) for one in room.views]
-                for room in kept.rooms
-                if room.camera in cameras and room.calibration == _mark(cameras[room.camera])
-            }
+            return kept_rooms(self._path, cameras)
         except MissingError:
             return {}
-        except InputError as error:
-            _log.warning(
-                "%s: %s; it is made anew: until then alike cameras are told apart by their ports alone",
-                *(self._path, error.what),
-            )
+        except (InputError, NewerFileError) as error:
+            self._put_aside(error)
             return {}
+
+    def _put_aside(self, error: MocapdError) -> None:
+        where = ""
+        with suppress(OSError):  # it is met again then
+            why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
+            where = f", and is kept as {set_aside(self._path, why).name}"
+        _log.warning(
+            "%s cannot be used (%s)%s; it is made anew: until then alike cameras are told apart by their ports alone",
+            *(self._path, error.what, where),
+        )
 
     def write(self, cameras: Mapping[str, Camera], rooms: Mapping[str, list[Landmarks]]) -> None:
         """In place of what was there."""
@@ -97,6 +105,27 @@ class RoomMemory:
                     *(error.strerror, self._path),
                 )
             self._failed = True
+
+
+def kept_rooms(path: Path, cameras: Mapping[str, Camera]) -> dict[str, list[Landmarks]]:
+    """Of those cameras that are calibrated as they were then. Raises MissingError, InputError for a damaged one,
+    NewerFileError."""
+    data = read_file(path, _MOST_BYTES)
+    body = data[DIGEST_BYTES:]
+    if digest_of(body) != data[:DIGEST_BYTES]:
+        raise InputError("its checksum does not fit", str(path))
+    schema = decode_msgpack(body, _Schema).schema
+    if schema > SCHEMA:
+        raise NewerFileError(
+            f"has schema {brief(schema)}, this mocapd reads {SCHEMA}",
+            *(str(path), "use the mocapd that wrote it"),
+        )
+    kept = decode_msgpack(body, _KeptRooms)
+    return {
+        room.camera: [_view(one, cameras[room.camera]) for one in room.views]
+        for room in kept.rooms
+        if room.camera in cameras and room.calibration == _mark(cameras[room.camera])
+    }
 
 
 def _kept(view: Landmarks) -> _KeptView:

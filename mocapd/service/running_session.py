@@ -1,14 +1,13 @@
 """The part of a service that can be replaced: the threads of one session's cameras and of its pipeline."""
 
-import logging
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.capture.capture_care import CaptureCare
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.suspension import SuspensionWatch
 from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.config.sections import Config
@@ -26,8 +25,6 @@ from mocapd.service.step_watch import StepWatch
 from mocapd.service.twins import Twins
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
-
-_log = logging.getLogger(__name__)
 
 STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
 
@@ -68,7 +65,7 @@ class RunningSession:
             for c in session.cameras
         ]
         self._plugs = PlugEvents(self._look_again)
-        self._suspension = SuspensionWatch()
+        self._care = CaptureCare(self._captures)
         self._steps = StepWatch(config.tracker.stuck_s)
         smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
         self._loop = PipelineLoop(
@@ -140,13 +137,7 @@ class RunningSession:
         """What hangs or has slept is set right; about once a second or more often, by one thread. Raises
         StuckStepError."""
         self._steps.look(self._loop.step_s)
-        slept_s = self._suspension.slept_s()
-        if slept_s:
-            _log.info("the machine has slept for %.0f s: every camera is opened again", slept_s)
-        for capture in self._captures:
-            if slept_s:
-                capture.renew(f"the machine has slept for {slept_s:.0f} s")
-            capture.watch()
+        self._care.watch()
 
 
 def _absence(config: Config, session: Session) -> Absence | None:

@@ -44,12 +44,21 @@ class Attacked:
 def attacked(*words: str) -> Iterator[Attacked]:
     """A daemon that already serves; killed in the end. `words` are further ones of `mocapd run`."""
     port = free_port()
-    dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "JOURNAL_STREAM", "ZENOH_RUNTIME")
-    env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
+    given = ("--set", f"zenoh.port={port}", "--set", "web.enabled=false", *words)
+    with daemon_process(*given) as (process, log):
+        _wait_until_it_serves(process, port, log)
+        yield Attacked(process, port, log)
+
+
+@contextmanager
+def daemon_process(*words: str) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
+    """A daemon that begins, alone in its surroundings, and its log, in whose folder it keeps everything; killed in
+    the end."""
+    dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "RUNTIME_DIRECTORY", "JOURNAL")
+    env = {k: v for k, v in os.environ.items() if not k.startswith((*dropped, "ZENOH_RUNTIME"))}
     command = [
         *(*COMMAND, "run", "--capture", "sim:living_room", "--tracker", "canned"),
-        *("--set", f"zenoh.port={port}", "--set", "osc.enabled=false"),
-        *("--set", "web.enabled=false", *words),
+        *("--set", "osc.enabled=false", *words),
     ]
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "stderr"
@@ -59,8 +68,7 @@ def attacked(*words: str) -> Iterator[Attacked]:
                 command, env=env, cwd=folder, stdout=stderr, stderr=subprocess.STDOUT
             )
         try:
-            _wait_until_it_serves(process, port, log)
-            yield Attacked(process, port, log)
+            yield process, log
         finally:
             process.kill()
             process.wait()

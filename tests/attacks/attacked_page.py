@@ -1,9 +1,7 @@
 """The page that is attacked: of `mocapd run` on simulated cameras, with a home of its own."""
 
 import json
-import os
 import subprocess
-import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,8 +12,7 @@ import httpx
 import psutil
 
 from mocapd.web.games.frames_access import FILE_NAME
-from tests.cli.mocapd_process import COMMAND
-from tests.conftest import ROOT
+from tests.attacks.attacked import daemon_process
 
 SITE = "https://game.example"  # whose pages may have the frames
 START_S = 300.0  # the first start ever compiles, and renders the film
@@ -64,30 +61,14 @@ class AttackedPage:
 @contextmanager
 def attacked_page() -> Iterator[AttackedPage]:
     """A daemon whose page answers; killed in the end."""
-    dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "RUNTIME_DIRECTORY", "JOURNAL")
-    env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
-    command = [
-        *(*COMMAND, "run", "--capture", "sim:living_room", "--tracker", "canned"),
-        *("--set", "zenoh.enabled=false", "--set", "osc.enabled=false"),
-        *("--set", f'web.allow_origins=["{SITE}"]'),
-    ]
-    with tempfile.TemporaryDirectory() as folder:
-        log = Path(folder) / "stderr"
-        env |= {"XDG_STATE_HOME": folder, "XDG_RUNTIME_DIR": folder, "PYTHONPATH": str(ROOT)}
-        with log.open("wb") as stderr:
-            process = subprocess.Popen(
-                command, env=env, cwd=folder, stdout=stderr, stderr=subprocess.STDOUT
-            )
-        said = Path(folder) / "mocapd" / f"page-{process.pid}.json"
-        try:
-            until_s = time.monotonic() + START_S
-            while not said.exists():
-                if process.poll() is not None or time.monotonic() > until_s:
-                    raise RuntimeError(f"there is no page:\n{log.read_text()}")
-                time.sleep(0.1)
-            told = json.loads(said.read_text())
-            frames_key = (said.parent / FILE_NAME).read_text().strip()
-            yield AttackedPage(process, told["port"], told["token"], frames_key, log)
-        finally:
-            process.kill()
-            process.wait()
+    words = ("--set", "zenoh.enabled=false", "--set", f'web.allow_origins=["{SITE}"]')
+    with daemon_process(*words) as (process, log):
+        said = log.parent / "mocapd" / f"page-{process.pid}.json"
+        until_s = time.monotonic() + START_S
+        while not said.exists():
+            if process.poll() is not None or time.monotonic() > until_s:
+                raise RuntimeError(f"there is no page:\n{log.read_text()}")
+            time.sleep(0.1)
+        told = json.loads(said.read_text())
+        frames_key = (said.parent / FILE_NAME).read_text().strip()
+        yield AttackedPage(process, told["port"], told["token"], frames_key, log)

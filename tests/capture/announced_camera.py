@@ -14,6 +14,7 @@ from mocapd.capture.webcam.plug_events import PlugEvents
 NETLINK_KOBJECT_UEVENT, UDEV_GROUP = 15, 2
 _HEADER = struct.Struct("=8sI3I4I")
 _M = 0x5BD1E995
+MANY = 60_000  # no kernel keeps so many for one listener
 
 
 def hash_of(text: bytes) -> int:
@@ -48,7 +49,7 @@ def announce(action: str, subsystem: str, node: str) -> None:
 
 
 def main() -> None:
-    """Two that are no news, then one that is."""
+    """Two that are no news, then one that is, then far too many."""
     heard = threading.Semaphore(0)
     events = PlugEvents(heard.release)
     print("can hear", events.start())
@@ -59,6 +60,28 @@ def main() -> None:
     print("of a camera", heard.acquire(timeout=10.0))
     events.stop()
     events.stop()
+    print("after more than is taken at once", hears_after_a_flood())
+
+
+def hears_after_a_flood() -> bool:
+    """Whether the next camera is heard still, when words were lost while nobody listened."""
+    heard, listening = threading.Semaphore(0), threading.Event()
+
+    def busy() -> None:
+        listening.wait()
+        heard.release()
+
+    events = PlugEvents(busy)
+    events.start()
+    for _ in range(MANY):
+        announce("add", "video4linux", "video9")
+    listening.set()
+    while heard.acquire(timeout=1.0):
+        pass
+    announce("add", "video4linux", "video9")
+    hears = heard.acquire(timeout=10.0)
+    events.stop()
+    return hears
 
 
 if __name__ == "__main__":

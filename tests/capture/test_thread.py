@@ -135,6 +135,39 @@ class StuckSource:
         pass
 
 
+class HeldSource(StuckSource):
+    """Whose node a second opening finds busy, as a driver has it that hangs."""
+
+    openings = 0
+
+    def open(self) -> None:
+        self.openings += 1
+        if self.inside.is_set() and not self.freed.is_set():
+            raise UnavailableError("busy: used already by this process", fix="end that program")
+
+    def read(self) -> Frame:
+        self.inside.set()
+        self.freed.wait()
+        return Frame(self.name, 0, monotonic_ns(), picture(0))
+
+
+def test_while_a_driver_hangs_its_own_grip_is_not_told_as_another_programs() -> None:
+    source = HeldSource()
+    capture = CaptureThread(source, Shelf(), nobody_dies, back_off=QUICK, stuck_s=0.1)
+    capture.start()
+
+    def tried_again() -> bool:
+        capture.watch()
+        return source.openings > 3
+
+    assert wait_until(tried_again)
+    assert "its driver has not come back" in capture.status().reason
+    assert capture.status().reason.endswith("unplug the camera and plug it in again")
+    source.freed.set()
+    assert wait_until(lambda: capture.status().state is CaptureState.LIVE)
+    assert capture.stop()
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_read_that_never_returns_blocks_neither_status_nor_stop() -> None:
     died: list[BaseException] = []

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from mocapd.app.status_text import duration, status_lines
@@ -131,6 +132,14 @@ def test_every_line_has_what_it_is_about() -> None:
     )
     assert "1 listening, 990 sent, 10 not: game (pid 12)" in text
     assert "3 d 0 h ago: right: lost" in text
+
+
+def test_what_others_have_named_is_told_in_one_line() -> None:
+    """Of a camera node's reason, or of a webcam's serial number, a terminal is to obey nothing."""
+    odd = msgspec.structs.replace(CAMERA, detail="\x1b]0;owned\x07\nstate  tracking")
+    lines = status_lines(report(cameras=(odd,)), 0.0)
+    assert all(line.isprintable() for line in lines)
+    assert str(ConfigError("a\nb", "\x1b[2J", "c\td")) == " [2J: a b -- c d"
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,16 @@
 """The control socket: who may ask, what is answered, and what bytes from outside do to it."""
 
 import json
+import multiprocessing
 import os
 import socket
 import stat
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Iterator
+from multiprocessing.queues import SimpleQueue
 from pathlib import Path
 
 import msgspec
@@ -16,8 +19,15 @@ import pytest
 from mocapd.config.runtime_folder import folders_to_look_in, runtime_folder
 from mocapd.control.control_client import Found, RunningDaemon, running_daemons
 from mocapd.control.control_socket import LONGEST_REQUEST, MOST_AT_ONCE, ControlSocket
+from mocapd.control.meant import why_none
 from mocapd.control.messages import Recentered, Reloaded, StatusReport, Verb
-from mocapd.control.socket_place import service_sockets, short_address, socket_path, sockets_in
+from mocapd.control.socket_place import (
+    closed_folders,
+    service_sockets,
+    short_address,
+    socket_path,
+    sockets_in,
+)
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError, UnavailableError
 from tests.control.reports import report
 from tests.outputs.frames import eventually
@@ -265,3 +275,36 @@ def _asked_by(uid: int, path: Path) -> str:
     """What a process is answered that is this user's once it runs, as that user may not read any file of Python."""
     words = (sys.executable, "-c", _ASK, str(uid), str(path.parent), path.name)
     return subprocess.run(words, capture_output=True, text=True, timeout=60, check=True).stdout
+
+
+def _seen_by_nobody(folder: Path, told: "SimpleQueue[list[str]]") -> None:
+    os.setuid(NOBODY)
+    told.put([one.name for one in closed_folders(folder)])
+    told.put([one.name for one in service_sockets(folder)])
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody else")
+def test_a_service_is_known_to_run_by_those_who_may_not_look_into_its_folder() -> None:
+    """Else `mocapd status` would say that nothing runs, and how to start another."""
+    fork = multiprocessing.get_context("fork")
+    told = fork.SimpleQueue()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o755)
+        for place in ("private/mocapd", "mocapd-rigs/hall", "mocapd-own", "other"):
+            (folder / place).mkdir(parents=True)
+        (folder / "mocapd").symlink_to("private/mocapd")
+        (folder / "mocapd-own/control-12.sock").touch()
+        for place in ("private", "mocapd-rigs/hall", "other"):
+            (folder / place).chmod(0o700)
+        assert closed_folders(folder) == ()  # root may look everywhere
+        child = fork.Process(target=_seen_by_nobody, args=(folder, told))
+        child.start()
+        child.join()
+    assert told.get() == ["mocapd", "hall"]
+    assert told.get() == ["control-12.sock"]  # of one beside them that is open
+
+
+def test_what_is_said_of_it() -> None:
+    refused = why_none(Found(foreign=(Path("/run/mocapd"),)))
+    assert str(refused) == "/run/mocapd: a daemon of another user is running -- ask with sudo"

@@ -1,21 +1,32 @@
 """What is asked of the machine: its folders, its processor, its calibration; and the command over all of it."""
 
 import json
+import multiprocessing
 import os
 import socket
 from collections.abc import Callable
 from dataclasses import replace
+from multiprocessing.queues import SimpleQueue
 from pathlib import Path
 
 import pytest
 
 from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
 from mocapd.config.sections import CameraSection, Config, WebSection
+from mocapd.doctor.checks.storage_checks import check_ports
+from mocapd.doctor.checks.system_checks import check_whose
+from mocapd.doctor.facts import UserFacts
+from mocapd.doctor.finding import Verdict
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import wanted_cameras
 from mocapd.doctor.gathering.folder_facts import folder_facts
 from mocapd.doctor.gathering.port_facts import port_facts
-from mocapd.doctor.gathering.system_facts import clock_facts, processor_facts, user_facts
+from mocapd.doctor.gathering.system_facts import (
+    clock_facts,
+    processor_facts,
+    state_facts,
+    user_facts,
+)
 from mocapd.outputs.registry import ZenohSection
 from tests.calibration.test_calibration_file import pictures, saved_calibration
 from tests.cli.mocapd_process import Outcome, mocapd_here
@@ -80,6 +91,25 @@ def test_who_has_a_port_that_is_wanted() -> None:
     assert port_facts(Config(outputs={"zenoh": ZenohSection(connect=("tcp/127.0.0.1:1",))})) == ()
 
 
+def _said_by_nobody(asked: "SimpleQueue[int]", told: "SimpleQueue[str]") -> None:
+    os.setuid(65534)
+    port = asked.get()
+    config = Config(outputs={"zenoh": ZenohSection(port=port)}, web=WebSection(enabled=False))
+    told.put("; ".join(f"{one.verdict} {one.what}" for one in check_ports(port_facts(config), ())))
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become somebody else")
+def test_a_port_that_another_users_daemon_has_is_not_free() -> None:
+    fork = multiprocessing.get_context("fork")
+    asked, told = fork.SimpleQueue(), fork.SimpleQueue()
+    child = fork.Process(target=_said_by_nobody, args=(asked, told))
+    child.start()  # before there is a socket that it would share
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        asked.put(server.getsockname()[1])
+        child.join()
+    assert told.get() == "bad a process of another user has it, and zenoh.port wants it"
+
+
 def test_the_processor_is_read_from_sysfs(tmp_path: Path) -> None:
     for number, governor in enumerate(("powersave", "powersave", "performance")):
         folder = tmp_path / f"devices/system/cpu/cpu{number}/cpufreq"
@@ -97,6 +127,25 @@ def test_user_and_clock_are_this_process_own() -> None:
     assert user_facts().is_root == (os.geteuid() == 0)
     facts = clock_facts()
     assert facts.now_unix_s > facts.built_unix_s
+
+
+def test_root_is_told_of_the_services_whose_state_it_does_not_look_at(tmp_path: Path) -> None:
+    root, somebody = UserFacts("root", True, frozenset()), UserFacts("me", False, frozenset())
+    config = Config(state_dir=tmp_path / "root")
+    assert state_facts(config, root, tmp_path).of_services == ()
+    (tmp_path / "mocapd-rigs/hall").mkdir(parents=True)
+    (tmp_path / "private/mocapd").mkdir(parents=True)
+    (tmp_path / "mocapd").symlink_to("private/mocapd")
+    states = state_facts(config, root, tmp_path)
+    assert states.of_services == (tmp_path / "mocapd", tmp_path / "mocapd-rigs/hall")
+    (found,) = check_whose(root, states)
+    assert found.verdict is Verdict.WARN
+    assert str(tmp_path / "root") in found.what
+    assert str(tmp_path / "mocapd-rigs/hall") in found.what
+    assert found.fix.startswith("sudo mocapd as-service doctor")
+    assert not [*check_whose(somebody, state_facts(config, somebody, tmp_path))]
+    as_service = Config(state_dir=tmp_path / "private/mocapd")
+    assert state_facts(as_service, root, tmp_path).of_services == (tmp_path / "mocapd-rigs/hall",)
 
 
 def test_the_command_prints_a_line_for_each_and_ends_with_1_when_one_is_bad(

@@ -1,6 +1,5 @@
 """What webcams that are alike saw, kept for the next start, and the file of the simulated sockets."""
 
-import logging
 from random import Random
 
 import cv2
@@ -10,15 +9,14 @@ import numpy as np
 from mocapd.calibrate.bump.landmarks import find_landmarks
 from mocapd.capture.simulated.sockets import Plugged, Sockets, SocketsFile
 from mocapd.service import room_memory
-from mocapd.service.room_memory import FILE_NAME, RoomMemory
+from mocapd.service.room_memory import FILE_NAME, RoomMemory, kept_rooms
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.geometry.rigs import ring
 
 
 def rooms(place: Place) -> Attempt:
-    """A damaged memory is none; where its checksum was made to fit, no mark lies outside of what a picture can be."""
-    logging.getLogger(room_memory.__name__).setLevel(logging.ERROR)
+    """A damaged memory is refused; where its checksum was made to fit, no mark lies outside of what a picture can be."""
     cameras = {camera.name: camera for camera in ring(2)}
     noise = np.random.default_rng(1).integers(0, 255, (480, 640, 3), dtype=np.uint8)
     pixels = np.asarray(cv2.GaussianBlur(noise, (0, 0), 6.0), np.uint8)
@@ -38,7 +36,7 @@ def rooms(place: Place) -> Attempt:
             head = 256 if number % 2 else len(body)
             changed = damaged(random, body[:head]) + body[head:]
             path.write_bytes(room_memory.digest_of(changed) + changed)
-        found = memory.read(cameras)
+        found = kept_rooms(path, cameras)
         for views in found.values():
             for view in views:
                 if view.picture.ndim != 2 or not np.isfinite(view.rays).all():

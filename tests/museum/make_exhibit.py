@@ -8,8 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.skeleton import standard_skeleton
+from mocapd.calibrate.bump.landmarks import find_landmarks
 from mocapd.calibrate.extrinsics.rig_writing import write_rig
+from mocapd.service.room_memory import RoomMemory
 from mocapd.session.offline import RecordedTrack, write_track
+from mocapd.types import Bytes
 from mocapd.web.kept_key import kept_key
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, write_kept
@@ -35,10 +38,18 @@ def make_exhibit(folder: Path) -> None:
     for name in ("frames.key", "metrics.key"):
         kept_key(state / name)
     assert draft.rig is not None
+    seen = {one.name: [find_landmarks(patches(), one)] for one in draft.rig.cameras}
+    RoomMemory(state).write({one.name: one for one in draft.rig.cameras}, seen)
     write_rig(folder / "rig.json", draft.rig)
     record(folder / "packed.mcap", frames(0.5))
     record(folder / "exact.mcap", frames(0.1), exact=True, foxglove_hz=0.0)
     write_track(folder / "track.npz", track())
+
+
+def patches() -> Bytes:
+    """A room of random grey patches, of the size of the cameras' pictures."""
+    grey = np.random.default_rng(1).integers(0, 255, (6, 8, 3), np.uint8)
+    return np.ascontiguousarray(grey.repeat(8, axis=0).repeat(8, axis=1))
 
 
 def track() -> RecordedTrack:

@@ -21,6 +21,9 @@ from mocapd.errors import ConfigError, InputError, MocapdError, NewerFileError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
+from mocapd.service.room_memory import DIGEST_BYTES, RoomMemory, digest_of, kept_rooms
+from mocapd.service.room_memory import FILE_NAME as ROOMS
+from mocapd.types import Camera
 from mocapd.web.kept_key import kept_key
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
@@ -60,6 +63,11 @@ def aside(path: Path, why: str = "corrupt") -> list[Path]:
         for one in found
     )
     return found
+
+
+def cameras_of(exhibit: Path) -> dict[str, Camera]:
+    """Those of its rig, by name."""
+    return {one.name: one for one in load_rig(exhibit / "rig.json").cameras}
 
 
 # -- of each version --------------------------------------------------------------------------------
@@ -103,6 +111,13 @@ def test_a_setup_in_progress_of_any_version_is_gone_on_with(exhibit: Path, tmp_p
     assert draft.stature_m == 1.72
     assert set(draft.colours) == {"cam0", "cam1"}
     keeper.close()
+
+
+@pytest.mark.parametrize("exhibit", with_a(f"state/{ROOMS}"), ids=lambda one: one.name)
+def test_rooms_of_any_version_are_remembered(exhibit: Path) -> None:
+    rooms = RoomMemory(exhibit / "state").read(cameras_of(exhibit))
+    assert {name: len(views) for name, views in rooms.items()} == {"cam0": 1, "cam1": 1}
+    assert rooms["cam0"][0].places.size
 
 
 @pytest.mark.parametrize("exhibit", with_a("rig.json"), ids=lambda one: one.name)
@@ -156,6 +171,7 @@ def _layout(folder: Path) -> dict[str, set[str]]:
     for name in (FILE_NAME, SECRETS, LENSES):
         layout[name] = set(_keys(tomllib.loads((state / name).read_text())))
     layout[DRAFT] = set(_keys(msgspec.msgpack.decode((state / DRAFT).read_bytes()[32:])))
+    layout[ROOMS] = set(_keys(msgspec.msgpack.decode((state / ROOMS).read_bytes()[DIGEST_BYTES:])))
     layout["rig.json"] = set(_keys(json.loads((folder / "rig.json").read_text())))
     with np.load(folder / "track.npz") as track:
         layout["track.npz"] = set(track.files)
@@ -194,6 +210,11 @@ def future_draft(data: bytes) -> bytes:
     return _DIGEST(body).digest() + body
 
 
+def future_rooms(data: bytes) -> bytes:
+    body = msgspec.msgpack.encode({"schema": 2, "what": "nobody knows yet"})
+    return digest_of(body) + body
+
+
 def cut_short(data: bytes) -> bytes:
     return data[: len(data) * 2 // 3]
 
@@ -220,6 +241,7 @@ def changed(path: Path, change: Change) -> bytes:
         (f"state/{SECRETS}", lambda path: known_sources(path.parent)),
         (f"state/{LENSES}", lambda path: read_intrinsics(path.parent)),
         (f"state/{DRAFT}", read_kept),
+        (f"state/{ROOMS}", lambda path: kept_rooms(path, {})),
         ("rig.json", load_rig),
         ("state/frames.key", kept_key),
     ],
@@ -287,6 +309,22 @@ def test_a_setup_in_progress_that_cannot_be_read_is_set_aside_and_told(
     (kept,) = aside(state / DRAFT, why)
     assert kept.read_bytes() == data
     assert kept.name in caplog.text
+
+
+@pytest.mark.parametrize("why", ["corrupt", "newer"])
+def test_rooms_that_cannot_be_read_are_set_aside_and_told(
+    state: Path, why: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    data = changed(state / ROOMS, future_rooms if why == "newer" else cut_short)
+    cameras = cameras_of(NEWEST)
+    memory = RoomMemory(state)
+    assert memory.read(cameras) == {}
+    (kept,) = aside(state / ROOMS, why)
+    assert kept.read_bytes() == data
+    assert kept.name in caplog.text
+    memory.write(cameras, {})
+    assert memory.read(cameras) == {}
+    assert aside(state / ROOMS, why) == [kept]
 
 
 def test_passwords_that_cannot_be_read_stop_a_save_before_anything_is_lost(state: Path) -> None:

@@ -10,6 +10,7 @@ from mocapd.capture.capture_status import CaptureState
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.remote_address import parse_remote
 from mocapd.capture.remote.remote_link import RemoteLink
+from mocapd.capture.reopening import RestartBudget
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.thread import CaptureThread
 from mocapd.clock import monotonic_ns
@@ -83,6 +84,22 @@ def test_a_camera_unplugged_at_its_node_is_lost_with_the_nodes_reason_and_comes_
         capture.stop()
 
 
+def test_what_its_node_counts_is_not_counted_again() -> None:
+    """Else whoever pulls its plug now and then has it left out for minutes, though its node has it back at once."""
+    camera, box = Pluggable("cam0"), Latest[Frame]()
+    with running_node(camera) as running:
+        budget = RestartBudget(most=1, within_s=600.0, rest_s=600.0)
+        capture = CaptureThread(running.source(), box, _died, budget=budget)
+        capture.start()
+        for _ in range(3):
+            assert eventually(lambda: capture.status().state is CaptureState.LIVE)
+            camera.plugged = False
+            assert eventually(lambda: capture.status().state is CaptureState.LOST)
+            camera.plugged = True
+        assert eventually(lambda: capture.status().state is CaptureState.LIVE)
+        capture.stop()
+
+
 def test_the_node_says_at_once_that_a_camera_went_and_is_back() -> None:
     camera = Pluggable("cam0")
     with running_node(camera) as running:
@@ -137,6 +154,24 @@ def test_what_does_not_fit_is_told() -> None:
             running.source("cam7").open()
     with pytest.raises(UnavailableError, match="no camera node and no router answers"):
         running.source().open()
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (("left/1", "left_1"), "'left/1' and 'left_1' are both 'left_1' in the keys"),
+        (("left", "x" * 65), "is too long"),
+    ],
+)
+def test_cameras_that_no_daemon_could_tell_apart_are_refused(
+    names: tuple[str, str], told: str
+) -> None:
+    """Else each would get the pictures of both."""
+    with (
+        pytest.raises(ConfigError, match=told),
+        running_node(*(Pluggable(name) for name in names)),
+    ):
+        pass
 
 
 def test_a_reader_is_woken_by_close() -> None:

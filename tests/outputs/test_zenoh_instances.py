@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 
 import pytest
-import zenoh
 
 from mocapd.app.watch_all import as_dict, as_text, watch_all
 from mocapd.client import Link
@@ -15,8 +14,8 @@ from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_instances import Instances, InstanceState, list_instances
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.cli.mocapd_process import mocapd_here
-from tests.outputs.frames import eventually, free_port
-from tests.outputs.zenoh_pair import other_program
+from tests.outputs.frames import eventually
+from tests.outputs.zenoh_pair import other_program, running_router
 
 
 def health(instance: str) -> Health:
@@ -31,14 +30,7 @@ def camera(instance: str, name: str, state: str = "live", detail: str = "") -> C
 
 @pytest.fixture
 def router() -> Iterator[str]:
-    """A session in router mode; a router of its own is not to be had from PyPI."""
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    config = {
-        "mode": "router",
-        "listen": {"endpoints": [endpoint]},
-        "scouting": {"multicast": {"enabled": False}},
-    }
-    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))):
+    with running_router() as endpoint:
         yield endpoint
 
 
@@ -94,6 +86,12 @@ def test_a_line_says_what_is_wrong() -> None:
         assert part in line
     assert "right lost: was unplugged" in line
     assert json.loads(json.dumps(as_dict(known)))["health"]["tracker"] == "auto"
+
+
+def test_what_a_daemon_says_of_itself_gives_the_terminal_no_orders() -> None:
+    odd = {"left": camera("pc", "left", "lost", "\x1b[2Jgone\nhall-9 30.0 Hz")}
+    assert as_text(InstanceState("pc", True, health("pc"), odd)).isprintable()
+    assert as_text(InstanceState("pc", trouble="\x1b[2J")).isprintable()
 
 
 def test_what_is_not_understood_is_told_beside_the_others(router: str) -> None:

@@ -42,6 +42,19 @@ def running_sink(port: int = 0, **params: object) -> Iterator[Running]:
         sink.close()
 
 
+@contextmanager
+def running_router() -> Iterator[str]:
+    """The endpoint of a session in router mode, that anybody may join; a router of its own is not to be had from PyPI."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    config = {
+        "mode": "router",
+        "listen": {"endpoints": [endpoint]},
+        "scouting": {"multicast": {"enabled": False}},
+    }
+    with zenoh.open(zenoh.Config.from_json5(json.dumps(config))):
+        yield endpoint
+
+
 def other_program(endpoint: str, **more: object) -> zenoh.Session:
     """A client session written out by hand, independent of mocapd's own."""
     config = {

@@ -224,7 +224,8 @@ def test_a_damaged_memory_is_told_and_made_anew(
     path = tmp_path / FILE_NAME
     path.write_bytes(path.read_bytes()[:-7] if damage == b"cut" else damage)
     daemon = again()
-    assert "rooms_of_twins.msgpack: its checksum does not fit; it is made anew" in caplog.text
+    assert "rooms_of_twins.msgpack cannot be used (its checksum does not fit)" in caplog.text
+    assert len([*tmp_path.glob(f"{FILE_NAME}.corrupt-*")]) == 1
     for name in ALIKE:
         assert daemon.send(name)
     cameras = {camera.name: camera for camera in film.setup.rig.cameras}

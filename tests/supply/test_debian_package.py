@@ -31,17 +31,25 @@ pytestmark = pytest.mark.skipif(bool(_skipped_for()), reason=_skipped_for())
 
 
 @pytest.fixture(scope="module")
-def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Without what mocapd runs on: that is there already."""
-    folder = tmp_path_factory.mktemp("deb")
-    wheel = build(ROOT, "wheel", folder / "wheel")
-    env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    env |= {"XDG_CACHE_HOME": str(folder / "cache"), "TMPDIR": str(folder)}
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build(ROOT, "wheel", tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def package(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return made(wheel, tmp_path_factory.mktemp("deb"))
+
+
+def made(wheel: Path, folder: Path, **more: str) -> Path:
+    """The package, made in this folder without what mocapd runs on: that is there already."""
+    unset = ("PYTHONPATH", "DEBFULLNAME", "DEBEMAIL")
+    env = {name: value for name, value in os.environ.items() if name not in unset}
+    env |= {"XDG_CACHE_HOME": str(folder / "cache"), "TMPDIR": str(folder)} | more
     argv = [str(ROOT / "deb/build.sh"), sys.executable, str(wheel), str(folder / "out"), str(SITE)]
     done = subprocess.run(argv, env=env, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    (made,) = (folder / "out").iterdir()
-    return made
+    (package,) = (folder / "out").iterdir()
+    return package
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +64,30 @@ def test_it_is_for_this_python_and_says_so(package: Path) -> None:
     depends = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
     minor = sys.version_info.minor
     assert f"python3 (>= 3.{minor}~), python3 (<< 3.{minor + 1}~)" in depends
+
+
+def test_made_again_elsewhere_it_is_the_same_to_the_byte(
+    package: Path, wheel: Path, tmp_path: Path
+) -> None:
+    other = tmp_path / "another folder"
+    other.mkdir()
+    copy = Path(shutil.copy(wheel, other))
+    again = made(copy, other, LANG="C", LC_ALL="C", TZ="Asia/Tokyo")
+    assert again.name == package.name
+    assert again.read_bytes() == package.read_bytes()
+
+
+def test_it_names_nobody_as_its_maintainer_unless_told(
+    package: Path, wheel: Path, tmp_path: Path
+) -> None:
+    told = made(wheel, tmp_path, DEBFULLNAME="Hall & Söhne", DEBEMAIL="hall@example.org")
+    for one, maintainer in (
+        (package, "mocapd <mocapd@nobody.invalid>"),
+        (told, "Hall & Söhne <hall@example.org>"),
+    ):
+        asked = ["dpkg-deb", "--field", str(one), "Maintainer"]
+        said = subprocess.run(asked, capture_output=True, check=True).stdout.decode()
+        assert said == f"{maintainer}\n"
 
 
 def test_the_units_start_what_is_in_the_package(unpacked: Path) -> None:
@@ -114,3 +146,29 @@ def test_its_scripts_are_what_a_plain_shell_reads_and_enable_nothing(
     assert not [
         line for line in commands if line.split()[:2] == ["systemctl", "enable"] and "#" not in line
     ]
+
+
+@pytest.mark.parametrize("restarts", [True, False])
+def test_an_update_after_which_the_service_does_not_start_is_installed_and_told(
+    restarts: bool, unpacked: Path, tmp_path: Path
+) -> None:
+    """As where a key of the configuration is gone: else every later call of apt would fail."""
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for tool in ("systemd-sysusers", "udevadm", "systemctl"):
+        fails = tool == "systemctl" and not restarts
+        (tools / tool).write_text(f'#!/bin/sh\n[ "$1" != try-restart ] || exit {int(fails)}\n')
+        (tools / tool).chmod(0o755)
+    (tmp_path / "confmodule").write_text("db_stop() { :; }\n")
+    script = (unpacked / "DEBIAN/postinst").read_text()
+    script = script.replace("/run/systemd/system", str(tmp_path))
+    script = script.replace("/usr/share/debconf/confmodule", str(tmp_path / "confmodule"))
+    done = subprocess.run(
+        ["sh", "-c", script, "postinst", "configure", "0.0.9"],
+        env={"PATH": f"{tools}:{os.environ['PATH']}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert ("did not start again" in done.stderr) is not restarts

@@ -14,19 +14,19 @@ import psutil
 
 from mocapd.errors import ConfigError, PermissionDeniedError, UnavailableError
 
-_OF_CALLER = (
-    "TERM",
-    "NO_COLOR",
-    "COLUMNS",
-)  # a terminal is the caller's, all else is the service's
+_OF_CALLER = ("TERM", "NO_COLOR", "COLUMNS", "PATH")  # its terminal, and where root's tools are
+# Of the service's own environment, which it may have changed since its start, no more than this: root's tools are started
+# with it, and LD_PRELOAD= or PATH= of a service that was broken into would be obeyed by root.
+_OF_SERVICE = re.compile(
+    r"(MOCAPD|XDG|NUMBA|OPENCV|LC)_\w+|(RUNTIME|STATE|CACHE|CONFIGURATION|LOGS)_DIRECTORY|HOME|USER|LOGNAME|LANG"
+)
 _RIG = re.compile(r"[A-Za-z0-9_:\-][A-Za-z0-9_.:\-]{0,63}")
 _ANSWER_S = 10.0
-_TOOLS = ("nsenter", "setpriv")  # of util-linux, as every machine has it
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A command line and its environment."""
+    """A command line and its environment; of the tools root's own, wherever the service would look for them."""
 
     argv: tuple[str, ...]
     env: Mapping[str, str]
@@ -56,7 +56,9 @@ def main_pid(unit: str) -> int:
 
 
 def call_like(pid: int, words: Sequence[str], env: Mapping[str, str] | None = None) -> Call:
-    """`mocapd WORDS` as that process runs; env: the caller's, ours when None. Raises UnavailableError when it is gone."""
+    """`mocapd WORDS` as that process runs; env: the caller's, ours when None. Raises UnavailableError when it is gone,
+    or a tool is missing."""
+    nsenter, setpriv = (_tool(name) for name in ("nsenter", "setpriv"))
     env = os.environ if env is None else env
     try:
         process = psutil.Process(pid)
@@ -66,14 +68,13 @@ def call_like(pid: int, words: Sequence[str], env: Mapping[str, str] | None = No
         raise UnavailableError("it has just ended", f"process {pid}", "try again") from None
     (groups,) = (line.split()[1:] for line in status if line.startswith("Groups:"))
     argv = (
-        *("nsenter", f"--target={pid}", "--mount", "--"),
-        *("setpriv", f"--reuid={uid}", f"--regid={gid}"),
+        *(nsenter, f"--target={pid}", "--mount", "--"),
+        *(setpriv, f"--reuid={uid}", f"--regid={gid}"),
         f"--groups={','.join(groups)}" if groups else "--clear-groups",
         *("--", sys.executable, "-P", "-m", "mocapd.cli.main", *words),
     )
     kept = {name: env[name] for name in _OF_CALLER if name in env}
-    dropped = ("NOTIFY_SOCKET", "WATCHDOG_", "JOURNAL_STREAM", "INVOCATION_ID")
-    own = {name: value for name, value in own.items() if not name.startswith(dropped)}
+    own = {name: value for name, value in own.items() if _OF_SERVICE.fullmatch(name)}
     return Call(argv, own | kept)
 
 
@@ -84,10 +85,15 @@ def become(rig: str, words: Sequence[str]) -> NoReturn:
         raise PermissionDeniedError(
             "only root may act as the service", "command line", "run it with sudo"
         )
-    for tool in _TOOLS:
-        if shutil.which(tool) is None:
-            raise UnavailableError("is not installed", tool, "install util-linux")
     call = call_like(main_pid(unit), words)
     sys.stdout.flush()
     os.chdir("/")
-    os.execvpe(call.argv[0], call.argv, call.env)
+    os.execve(call.argv[0], call.argv, call.env)
+
+
+def _tool(name: str) -> str:
+    """Where it is by our own PATH. Raises UnavailableError."""
+    found = shutil.which(name)
+    if found is None:
+        raise UnavailableError("is not installed", name, "install util-linux")
+    return str(Path(found).absolute())

@@ -120,6 +120,29 @@ def what_stays(target: Target) -> list[Path]:
     return [*dict.fromkeys(one for path in there for one in (path, path.resolve()))]
 
 
+def hidden_hint(target: Target, system: Path = Path("/")) -> str:
+    """What to say of files of a package, below `system`, in whose place ours are read; empty when there are none."""
+    if target.root is not None:
+        return ""
+    mine = {_way(one.path) for one in files(target.places(), Path("/python")) if not one.is_admins}
+    theirs = [one.path for one in files(of_package(system), Path("/python"))]
+    hidden = [path for path in theirs if _way(path) in mine and path.exists()]
+    if not hidden:
+        return ""
+    flag, sudo = (" --user", "") if target.user else ("", "sudo ")
+    return (
+        f"a package has installed mocapd here too: what is put in place here hides {', '.join(map(str, hidden))}, and so"
+        f" the package's updates; to run the package's: `{sudo}systemctl{flag} disable --now mocapd;"
+        f" {sudo}mocapd uninstall-service{flag}; {sudo}systemctl{flag} daemon-reload;"
+        f" {sudo}systemctl{flag} enable --now mocapd`"
+    )
+
+
+def _way(path: Path) -> tuple[str, str]:
+    """What is the same of a file in /etc and of the one in /usr/lib that it hides."""
+    return path.parent.name, path.name
+
+
 def _require_sense(target: Target, euid: int) -> None:
     if target.user and target.root is not None:
         raise ConfigError(

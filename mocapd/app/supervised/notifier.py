@@ -10,7 +10,7 @@ from collections.abc import MutableMapping
 from contextlib import suppress
 
 from mocapd.clock import monotonic_ns
-from mocapd.errors import UnavailableError
+from mocapd.errors import UnavailableError, one_line
 
 _VARIABLES = ("NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID")
 _SEND_S = 0.2  # a manager that takes nothing for so long is told the next time
@@ -46,7 +46,8 @@ class Notifier:
 
     def ready(self, status: str) -> None:
         """The outputs are open. Raises UnavailableError when nobody takes that."""
-        self._status = status = _one_line(status)
+        # a camera may call itself anything, also in several lines, of which each would be a word of ours
+        self._status = status = one_line(status)
         if self._socket is None:
             return
         try:
@@ -63,7 +64,7 @@ class Notifier:
 
     def status(self, text: str) -> None:
         """A line for people; sent when it is another one."""
-        text = _one_line(text)
+        text = one_line(text)
         if text != self._status and self._tell(f"STATUS={text}"):
             self._status = text
 
@@ -120,11 +121,6 @@ class Notifier:
     def _send(self, *lines: str) -> None:
         if self._socket is not None:
             self._socket.send("\n".join(lines).encode())
-
-
-def _one_line(text: str) -> str:
-    """A camera may call itself anything, also in several lines, of which each would be a word of ours."""
-    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _connected(address: str) -> socket.socket:

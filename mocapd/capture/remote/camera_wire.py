@@ -21,10 +21,12 @@ ENCODING = f"application/msgpack;{SCHEMA}"
 
 MOST_PICTURE_BYTES = 8 << 20  # a JPEG of 4K at the best quality
 MOST_MESSAGE_BYTES = 16_384
+MOST_NAME = 64  # characters
 MOST_TOGETHER_BYTES = MOST_PICTURE_BYTES + MOST_MESSAGE_BYTES
 
 Text = Annotated[str, Meta(max_length=400)]
-Name = Annotated[str, Meta(max_length=64, min_length=1)]
+# what needs no replacement in a key, nor in an address
+Name = Annotated[str, Meta(max_length=MOST_NAME, pattern=r"\A[A-Za-z0-9_.\-]+\Z")]
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 # 36 years either way: differences of differences still fit 64 bits
 Time = Annotated[int, Meta(ge=-(2**60), le=2**60, description="CLOCK_MONOTONIC of the node [ns]")]

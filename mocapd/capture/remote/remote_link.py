@@ -1,5 +1,6 @@
 """The Zenoh session of one remote camera: its newest picture, questions to its node, and the end of both."""
 
+import itertools
 import json
 import threading
 from contextlib import ExitStack
@@ -111,24 +112,37 @@ class RemoteLink:
     def ask_all(
         self, key: str, kind: type[M], order: msgspec.Struct | None, timeout_s: float
     ) -> list[M]:
-        """What all who take this key answer. Raises UnavailableError for what is not understood."""
+        """What all who take this key answer. Whoever is not understood is left out, and told when nobody else is there:
+        raises UnavailableError."""
         payload = None if order is None else camera_wire.encode(order)
         try:
             with zenoh_call():
                 replies = self._session.get(
-                    key, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL
+                    key,
+                    payload=payload,
+                    timeout=timeout_s,
+                    target=zenoh.QueryTarget.ALL,
+                    # else of two that answer to one name the first is not heard of
+                    consolidation=zenoh.ConsolidationMode.NONE,
                 )
-                answers = [one.ok.payload.to_bytes() for one in replies if one.ok is not None]
+                told = (one.ok.payload.to_bytes() for one in replies if one.ok is not None)
+                answers = list(itertools.islice(told, _MOST_ANSWERS))
         except zenoh.ZError:
             raise self._lost() from None
-        try:
-            return [camera_wire.decode(data, kind) for data in answers[:_MOST_ANSWERS]]
-        except MalformedError as error:
-            raise UnavailableError(
-                f"answers what is not understood: {error.what}",
-                self._address.place,
-                "bring node and daemon to the same version of mocapd",
-            ) from None
+        understood: list[M] = []
+        trouble: MalformedError | None = None
+        for data in answers:
+            try:
+                understood.append(camera_wire.decode(data, kind))
+            except MalformedError as error:
+                trouble = error
+        if understood or trouble is None:
+            return understood
+        raise UnavailableError(
+            f"answers what is not understood: {trouble.what}",
+            self._address.place,
+            "bring node and daemon to the same version of mocapd",
+        )
 
     def ping(self, answered: threading.Event | None = None) -> None:
         """Ask for the other clock; `clock` learns of the answer when it comes. Raises UnavailableError."""

@@ -34,7 +34,7 @@ class RemoteSource:
     """See Source and, where the node lets this daemon set the camera, Lockable: `takes_orders` says so.
 
     The exposure is told by the node's clock, which is related to ours by `clock`; `torn` counts pictures that came
-    damaged or with an impossible time. A node that was started anew is opened anew.
+    damaged or with an impossible time. A node that was started anew is opened anew. `camera_failed`: see LookedAfter.
     """
 
     recorded = False
@@ -50,6 +50,7 @@ class RemoteSource:
         size and rate are the node's own."""
         self.name = name
         self.torn = 0
+        self.camera_failed = False
         self._address, self._size_px = address, size_px
         self._settings = settings if settings is not None else WebcamSettings()
         self._lock = threading.Lock()  # guards what follows against `close` from another thread
@@ -70,6 +71,7 @@ class RemoteSource:
     def open(self) -> None:
         """Raises UnavailableError with the node's own reason, or ConfigError for another size than its calibration."""
         self.close()
+        self.camera_failed = False
         with self._lock:
             turn = self._turn
         link = RemoteLink(self._address)
@@ -155,14 +157,20 @@ class RemoteSource:
 
     def _looked_up(self, link: RemoteLink) -> CameraState:
         node, camera = self._address.node, self._address.camera
-        try:
-            state = link.ask(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
-        except UnavailableError:
+        states = link.ask_all(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
+        if not states:
             raise UnavailableError(
                 f"no camera {camera!r} of a node {node!r} answers there",
                 self._address.endpoint,
                 "start `mocapd camera-node`, which says what its cameras are called",
-            ) from None
+            )
+        if len({one.run for one in states}) > 1:  # their pictures and clocks would come mixed
+            raise UnavailableError(
+                f"{len(states)} camera nodes are called {node!r}, and each has a camera {camera!r}",
+                self._address.endpoint,
+                "start one of them with another --name",
+            )
+        state = states[0]
         if state.state != "live":
             what, fix = _trouble(state)
             raise UnavailableError(what, f"{self.name} at {node}", fix)
@@ -230,6 +238,8 @@ class RemoteSource:
             state = link.ask(key, CameraState, None, _MAY_I_S)
         except UnavailableError:
             return "its node is gone", "check the network, and that `mocapd camera-node` runs there"
+        # also of one that is back already
+        self.camera_failed = link.is_gone or state.state != "live"
         if state.state == "live":
             return "its pictures do not arrive", "check the network: it may be too slow for them"
         return _trouble(state)

@@ -5,6 +5,9 @@ system) nothing is heard, and only that quarter of a second is lost.
 """
 
 import logging
+import os
+import select
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -18,28 +21,60 @@ class PlugEvents:
 
     def __init__(self, heard: Callable[[], None]) -> None:
         self._heard = heard
-        self._observer: Any = None  # pyudev has no types
+        self._thread: threading.Thread | None = None
+        self._end_fd = -1  # readable when the thread is to end
 
     def start(self) -> bool:
         """Whether anything can be heard here."""
         try:
-            import pyudev
-
-            monitor = pyudev.Monitor.from_netlink(pyudev.Context(), source="udev")
-            monitor.filter_by(_SUBSYSTEM)
+            monitor = _monitor()
         except (ImportError, OSError) as error:  # no libudev; no netlink for this service
             _log.debug("udev tells nothing here (%s): cameras are looked for by turns", error)
             return False
-        self._observer = pyudev.MonitorObserver(monitor, callback=self._take, name="udev")
-        self._observer.start()
+        self._end_fd = os.eventfd(0)
+        self._thread = threading.Thread(
+            target=self._listen, args=(monitor, self._end_fd), name="udev", daemon=True
+        )
+        self._thread.start()
         return True
 
     def stop(self) -> None:
         """Ends its thread; may be called twice, and when nothing can be heard."""
-        observer, self._observer = self._observer, None
-        if observer is not None:
-            observer.stop()
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            os.eventfd_write(self._end_fd, 1)
+            thread.join()
+            os.close(self._end_fd)
 
-    def _take(self, device: Any) -> None:
-        if device.action == "add":
-            self._heard()
+    def _listen(self, monitor: Any, end_fd: int) -> None:
+        """monitor: of pyudev, which has no types."""
+        while not _waited_for(monitor, end_fd):
+            try:
+                while (device := monitor.poll(timeout=0)) is not None:
+                    if device.action == "add":
+                        self._heard()
+            except OSError as error:  # more came at once than its buffer takes, maybe a camera
+                _log.debug("udev's words were lost (%s): it is listened to anew", error)
+                try:
+                    monitor = _monitor()
+                except OSError:
+                    return  # cameras are looked for by turns
+                self._heard()
+
+
+def _monitor() -> Any:
+    """Hears of webcams from now on. Raises ImportError or OSError."""
+    import pyudev
+
+    monitor = pyudev.Monitor.from_netlink(pyudev.Context(), source="udev")
+    monitor.filter_by(_SUBSYSTEM)
+    monitor.start()
+    return monitor
+
+
+def _waited_for(monitor: Any, end_fd: int) -> bool:
+    """Returns when something is said, or with True when it is over."""
+    waiting = select.poll()
+    for fd in (monitor.fileno(), end_fd):
+        waiting.register(fd, select.POLLIN)
+    return any(fd == end_fd for fd, _ in waiting.poll())

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
-from mocapd.cli.watch import endpoint_of
+from mocapd.cli.watch import link_of
 
 if TYPE_CHECKING:
+    from mocapd.client import Link
     from mocapd.control.messages import StatusReport
 
 # As of an init script's `status` (LSB), where 150 to 199 are the program's own.
@@ -52,8 +53,7 @@ def status(
     if every:
         from mocapd.outputs.registry import zenoh_section
 
-        zenoh = zenoh_section(chosen.outputs)
-        raise typer.Exit(_print_all(endpoint or endpoint_of(zenoh), as_json))
+        raise typer.Exit(_print_all(link_of(zenoh_section(chosen.outputs), endpoint), as_json))
     found = daemons_found(chosen)
     reports = [one.status for one in meant(found.daemons, chosen)]
     for report in reports:
@@ -66,14 +66,13 @@ def status(
     raise typer.Exit(max(map(exit_code, reports)))
 
 
-def _print_all(endpoint: str, as_json: bool) -> int:
+def _print_all(link: "Link", as_json: bool) -> int:
     """The exit code."""
     from mocapd.app.watch_all import as_dict, as_text, is_able, on_the_bus
-    from mocapd.client import Link
     from mocapd.errors import UnavailableError
 
     try:
-        states = on_the_bus(Link(endpoint))
+        states = on_the_bus(link)
     except UnavailableError as error:
         typer.echo(f"mocapd: {error}", err=True)
         return NOT_RUNNING

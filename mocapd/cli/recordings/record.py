@@ -61,8 +61,7 @@ def record(
     from mocapd.app.recordings.recording_run import Recorder, default_path, duration
     from mocapd.app.running import Signals
     from mocapd.app.status_line import StatusLine
-    from mocapd.cli.watch import endpoint_of
-    from mocapd.client import Link
+    from mocapd.cli.watch import link_of
     from mocapd.clock import monotonic_ns
     from mocapd.clock import seconds as in_seconds
     from mocapd.config.runtime_folder import runtime_folder
@@ -71,11 +70,7 @@ def record(
 
     effective = effective_config(config, settings).config
     set_up_logs(effective.log_level)
-    link = Link(
-        endpoint or endpoint_of(zenoh_section(effective.outputs)),
-        instance,
-        connect_timeout_s=timeout_s,
-    )
+    link = link_of(zenoh_section(effective.outputs), endpoint, instance, timeout_s)
     signals = Signals()
     path = file if file is not None else default_path()
     params = RecordingParams(exact, foxglove_hz, private=pictures)

@@ -48,12 +48,19 @@ def install_service(
 
     Example: sudo /opt/mocapd/bin/mocapd install-service
     """
-    from mocapd.app.service_files.installing import Target, install, kept_hint, next_steps
+    from mocapd.app.service_files.installing import (
+        Target,
+        hidden_hint,
+        install,
+        kept_hint,
+        next_steps,
+    )
 
     target = Target(user, root, python, dry_run)
     done = install(target)
     _print(done, dry_run)
     _print_hint(kept_hint(done))
+    _print_hint(hidden_hint(target))
     steps = next_steps(target, done)
     if steps:
         print("\nnext:")

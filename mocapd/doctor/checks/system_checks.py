@@ -1,9 +1,16 @@
-"""Configuration, running daemons, processor, clock, Python and its libraries."""
+"""Configuration, running daemons, whose they are, processor, clock, Python and its libraries."""
 
 from collections.abc import Iterator, Sequence
 
 from mocapd.control.messages import StatusReport
-from mocapd.doctor.facts import ClockFacts, ConfigFacts, LibraryFacts, ProcessorFacts
+from mocapd.doctor.facts import (
+    ClockFacts,
+    ConfigFacts,
+    LibraryFacts,
+    ProcessorFacts,
+    StateFacts,
+    UserFacts,
+)
 from mocapd.doctor.finding import Finding, bad, ok, warn
 
 FEWEST_CORES = 2
@@ -28,6 +35,18 @@ def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
             yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
         else:
             yield ok("daemon", told)
+
+
+def check_whose(user: UserFacts, states: StateFacts) -> Iterator[Finding]:
+    """Whether root looks at its own things where a service is meant."""
+    if user.is_root and states.of_services:
+        theirs = ", ".join(map(str, states.of_services))
+        yield warn(
+            "service",
+            f"configuration, calibration and folders are looked at as root has them ({states.own}), not as the service"
+            f" has them ({theirs})",
+            "sudo mocapd as-service doctor (of mocapd@NAME: as-service --rig NAME), while it runs",
+        )
 
 
 def check_processor(facts: ProcessorFacts) -> Iterator[Finding]:

@@ -8,17 +8,24 @@ from mocapd.doctor.gathering.camera_facts import camera_facts
 from mocapd.doctor.gathering.folder_facts import folder_facts
 from mocapd.doctor.gathering.library_facts import library_facts
 from mocapd.doctor.gathering.port_facts import port_facts
-from mocapd.doctor.gathering.system_facts import clock_facts, processor_facts, user_facts
+from mocapd.doctor.gathering.system_facts import (
+    clock_facts,
+    processor_facts,
+    state_facts,
+    user_facts,
+)
 
 
 def gathered(effective: Effective, trouble: Trouble | None) -> Facts:
     """trouble: why the configuration proper cannot be used; `effective` is what is built in then."""
     config = effective.config
     calibration, saved = calibration_facts(config)
+    user = user_facts()
     return Facts(
         config=ConfigFacts(effective.file, trouble),
         daemons=tuple(one.status for one in daemons_found(config).daemons),
-        user=user_facts(),
+        user=user,
+        states=state_facts(config, user),
         cameras=camera_facts(config, saved),
         ports=port_facts(config),
         folders=folder_facts(config),

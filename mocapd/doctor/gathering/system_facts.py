@@ -11,9 +11,11 @@ from pathlib import Path
 
 import mocapd
 from mocapd.capture.webcam.webcams import SYSFS
+from mocapd.config.sections import Config
 from mocapd.doctor.checks.camera_checks import GROUP
-from mocapd.doctor.facts import ClockFacts, ProcessorFacts, UserFacts
+from mocapd.doctor.facts import ClockFacts, ProcessorFacts, StateFacts, UserFacts
 
+SERVICES = Path("/var/lib")
 _PATIENCE_S = 5.0
 
 
@@ -27,6 +29,15 @@ def user_facts() -> UserFacts:
     known = {one.gr_gid: one.gr_name for one in grp.getgrall()}
     own = frozenset(known[gid] for gid in (os.getegid(), *os.getgroups()) if gid in known)
     return UserFacts(name, uid == 0, own, GROUP in known.values())
+
+
+def state_facts(config: Config, user: UserFacts, system: Path = SERVICES) -> StateFacts:
+    """system: where systemd keeps what services have. Nobody but root may look there."""
+    if not user.is_root:
+        return StateFacts(config.state_dir)
+    found = [one for one in (system / "mocapd", *system.glob("mocapd-rigs/*")) if one.is_dir()]
+    own = config.state_dir.resolve()
+    return StateFacts(config.state_dir, tuple(one for one in found if one.resolve() != own))
 
 
 def processor_facts(sysfs: Path = SYSFS) -> ProcessorFacts:

@@ -37,6 +37,13 @@ def check_password_file(path: Path) -> None:
         )
 
 
+def first_login(path: Path) -> tuple[str, str]:
+    """User and password of the first line of a file that was checked. Raises ConfigError."""
+    first = next((line for line in _text(path).split("\n") if line.strip()), "")
+    user, _, password = first.partition(":")
+    return user.strip(), password.strip()
+
+
 def _text(path: Path) -> str:
     try:
         if not path.is_file():

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
+from mocapd.capture.capture_care import CaptureCare
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.capture.kinds.source_kinds import identities_of, open_source
 from mocapd.capture.pace import Pace
@@ -43,11 +44,16 @@ class OpenCameras:
             one.id: self._thread(source, one)
             for one, source in zip(cameras, self.sources, strict=True)
         }
+        self._care = CaptureCare(self._captures.values())
 
     def start(self) -> None:
         """Begin; returns at once."""
         for capture in self._captures.values():
             capture.start()
+
+    def watch(self) -> None:
+        """Look after what may hang: call it several times a second."""
+        self._care.watch()
 
     def statuses(self) -> Mapping[str, CaptureStatus]:
         """How each camera fares, by id; from any thread."""

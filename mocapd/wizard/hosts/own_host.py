@@ -90,9 +90,10 @@ class OwnHost:
         self._over.set()
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether it is over. Raises the MocapdError that killed a thread, ThreadDiedError for anything
-        else."""
+        """Whether it is over; what hangs is set right, so call it several times a second. Raises the MocapdError that
+        killed a thread, ThreadDiedError for anything else."""
         over = self._over.wait(timeout_s)
+        self._cameras.watch()
         if isinstance(self._death, MocapdError):
             raise self._death
         if self._death is not None:

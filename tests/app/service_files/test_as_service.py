@@ -20,6 +20,7 @@ def service_pid() -> Iterator[int]:
     """Some process with a service's environment; this one has another."""
     env = {
         "RUNTIME_DIRECTORY": "/run/mocapd",
+        "MOCAPD_CONFIG": "/etc/mocapd/hall.toml",
         "NOTIFY_SOCKET": "/run/notify",
         "WATCHDOG_USEC": "1",
         "TERM": "dumb",
@@ -33,13 +34,39 @@ def service_pid() -> Iterator[int]:
 
 def test_it_is_as_the_service_is(service_pid: int) -> None:
     call = call_like(service_pid, ["cameras", "--json"], {"TERM": "xterm", "HOME": "/root"})
-    assert call.env == {"RUNTIME_DIRECTORY": "/run/mocapd", "TERM": "xterm"}
-    assert call.argv[:3] == ("nsenter", f"--target={service_pid}", "--mount")
+    assert call.env == {
+        "RUNTIME_DIRECTORY": "/run/mocapd",
+        "MOCAPD_CONFIG": "/etc/mocapd/hall.toml",
+        "TERM": "xterm",
+    }
+    assert call.argv[:3] == (shutil.which("nsenter"), f"--target={service_pid}", "--mount")
     groups = [word for word in call.argv if word.startswith(("--groups=", "--clear-groups"))]
     wanted = ",".join(map(str, os.getgroups()))
     assert groups == [f"--groups={wanted}" if wanted else "--clear-groups"]
     assert f"--reuid={os.getuid()}" in call.argv
     assert call.argv[-6:] == (sys.executable, "-P", "-m", "mocapd.cli.main", "cameras", "--json")
+
+
+@pytest.mark.parametrize(
+    "name", ["LD_PRELOAD", "LD_LIBRARY_PATH", "PATH", "PYTHONPATH", "PYTHONHOME"]
+)
+def test_a_service_that_was_broken_into_has_root_run_nothing_of_its_own(
+    name: str, tmp_path: Path
+) -> None:
+    """It may write what it likes into its own environment, by which root's tools would be found and linked."""
+    trap = tmp_path / "nsenter"
+    trap.write_text("#!/bin/sh\n")
+    trap.chmod(0o755)
+    yes = shutil.which("yes")
+    assert yes
+    with subprocess.Popen([yes], env={name: str(tmp_path)}, stdout=subprocess.PIPE) as process:
+        assert process.stdout
+        process.stdout.readline()
+        call = call_like(process.pid, ["version"], {"PATH": "/usr/bin:/bin"})
+        process.kill()
+    assert str(tmp_path) not in " ".join([*call.argv, *call.env.values()])
+    assert Path(call.argv[0]).is_absolute()
+    assert Path(call.argv[call.argv.index("--") + 1]).is_absolute()
 
 
 @pytest.mark.skipif(

@@ -180,6 +180,33 @@ def test_a_user_has_one_unit_and_no_configuration(
     assert not (empty_home / "config/mocapd").exists()
 
 
+@pytest.mark.parametrize(
+    ("target", "unit", "undo"),
+    [
+        (
+            Target(),
+            "system",
+            "`sudo systemctl disable --now mocapd; sudo mocapd uninstall-service;",
+        ),
+        (
+            Target(user=True),
+            "user",
+            "mocapd uninstall-service --user; systemctl --user daemon-reload;",
+        ),
+    ],
+)
+def test_what_it_hides_of_a_package_is_told_with_the_way_back(
+    target: Target, unit: str, undo: str, tmp_path: Path
+) -> None:
+    assert installing.hidden_hint(target, tmp_path) == ""
+    install(Target(root=tmp_path))
+    hint = installing.hidden_hint(target, tmp_path)
+    assert f"{tmp_path}/usr/lib/systemd/{unit}/mocapd.service" in hint
+    assert undo in hint
+    assert "config.toml" not in hint
+    assert installing.hidden_hint(Target(root=tmp_path), tmp_path) == ""
+
+
 def test_no_place_no_file() -> None:
     assert not [*files(Places(None, None), Path("/opt/m/bin/python"))]
 
