@@ -23,6 +23,8 @@ Look = tuple[
 ]  # by region 0..: the region whose colours it shares, itself where it has its own
 
 ALL_DIFFER: Look = (0, *(int(part) for part in (*Region, *Band)))
+# the look that somebody is found with, and of those who come in turn; each has some 5 MB of buffers
+_KEPT = 4
 _MAY_BE_ONE = (
     (Region.HAND, Region.FOREARM),
     (Region.FOREARM, Region.TRUNK),
@@ -73,7 +75,7 @@ class Dressed(NamedTuple):
 
 
 class DressedFitters:
-    """Fitter and searches for arms and legs of each look, made when it is first asked for."""
+    """Fitter and searches for arms and legs of each look, made when it is asked for; the newest are kept."""
 
     def __init__(
         self,
@@ -90,10 +92,13 @@ class DressedFitters:
         self._made: dict[Look, Dressed] = {}
 
     def of(self, look: Look) -> Dressed:
-        """The same ones to whoever asks for the same look."""
-        if look not in self._made:
+        """The same ones to whoever asks for the same look, unless _KEPT others were asked for since."""
+        dressed = self._made.pop(look, None)
+        if dressed is None:
             colour = np.array(look, np.uint8)[regions(self._body)]
             fitter = Fitter(recoloured(self._body, colour), self._cameras, self._scales, self._fit)
-            arms, legs = ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs)
-            self._made[look] = Dressed(fitter, arms, legs)
-        return self._made[look]
+            dressed = Dressed(fitter, ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs))
+        self._made[look] = dressed
+        if len(self._made) > _KEPT:
+            del self._made[next(iter(self._made))]
+        return dressed

@@ -1,5 +1,8 @@
 """Colours of regions: learned where they agree, told apart, joined when alike, expected in another light."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -177,3 +180,15 @@ def test_the_table_is_the_smoothed_share_of_each_class() -> None:
             smooth = 0.5 * smooth + 0.25 * (low + high)
         expected = -np.log(smooth.ravel() / (counts[k].sum() + 1e-3) + 2e-5)
         assert out[k] == pytest.approx(expected, rel=1e-4)
+
+
+def test_of_many_who_came_in_other_clothes_few_fitters_are_kept() -> None:
+    body = build_model(1.75, full_body())
+    fitters = DressedFitters(
+        body, ring(2), [4, 4], FitParams(), LimbSearchParams(), LegSearchParams()
+    )
+    looks = [(*ALL_DIFFER[:-1], worn) for worn in range(6)]
+    made = [weakref.ref(fitters.of(look).fitter) for look in looks]
+    assert fitters.of(looks[-2]).fitter is made[-2]()
+    gc.collect()
+    assert [ref() is not None for ref in made] == [False, False, True, True, True, True]
