@@ -123,7 +123,7 @@ def _jumps(before: BodyState, now: BodyState, params: Params) -> bool:
     assert now.joints_m is not None
     farthest_m = np.linalg.norm(now.joints_m - before.joints_m, axis=1).max()
     gap_s = seconds(now.t_ns - before.t_ns)
-    return bool(farthest_m > max(params.glide_m, params.jump_m_s * gap_s))
+    return bool(farthest_m > params.jump_m_s * gap_s)
 
 
 def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:

@@ -34,5 +34,6 @@ class Params:
     glide_s: float = 0.25
     glide_m_s: float = 1.5
     glide_m: float = 0.09
-    jump_m_s: float = 3.0  # who settles after a switch goes faster than that; hands do in a throw
+    # on the way, too, who settles goes faster than that; a hand that is thrown then is told a little late
+    jump_m_s: float = 1.8
     glide_within_s: float = 0.5  # after a longer gap nothing is left to glide from

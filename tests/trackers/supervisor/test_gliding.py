@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 
 from mocapd.body.skeleton import joint_positions, standard_skeleton
 from mocapd.geometry import rotations
-from mocapd.trackers.supervisor.gliding import Away, away_from, lessened, off
-from mocapd.types import Floats, Pose
+from mocapd.trackers.supervisor.gliding import Away, Glider, Sourced, away_from, lessened, off
+from mocapd.trackers.supervisor.params import Params
+from mocapd.types import BodyState, Floats, Pose, Tracking
 from tests.body.random_poses import pose_of, random_local, random_root
 
 SKELETON = standard_skeleton(1.75)
@@ -77,3 +78,19 @@ def test_a_small_difference_is_gone_at_once() -> None:
     known = body(3, 0.5)
     told = Pose(known.root_m + (0.0, 0.05, 0.0), known.quats_xyzw)
     assert lessened(known, away_from(told, known), SKELETON, STEP_M) is None
+
+
+def test_who_settles_on_the_way_does_not_jump_either() -> None:
+    """By 8 cm in a frame, which is less than a way may take but not beside that."""
+    aside_m = [0.0, 0.3, 0.3, 0.38, 0.38, 0.38, 0.38, 0.38, 0.38]
+    glider, told_m = Glider(Params()), []
+    for n, x_m in enumerate(aside_m):
+        pose = Pose(body(3, 0.5).root_m + (x_m, 0.0, 0.0), body(3, 0.5).quats_xyzw)
+        known = BodyState(
+            n * 33_333_333, Tracking.LIVE, "one" if n == 0 else "other", pose, joints(pose), np.ones(len(joints(pose)))
+        )  # fmt: skip
+        told, _ = glider.step(Sourced(known, known.tracker), None, SKELETON)
+        assert told.joints_m is not None
+        told_m.append(told.joints_m)
+    assert np.linalg.norm(np.diff(told_m, axis=0), axis=2).max() <= Params().glide_m + 1e-9
+    assert np.allclose(told_m[-1], joints(pose))
