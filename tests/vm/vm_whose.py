@@ -1,0 +1,27 @@
+"""Whose pictures a camera of the running service delivers: runs in the guest, with the package's Python.
+
+    python vm_whose.py RECORDING FOLDER      a line `left cam0`: the camera `left` shows what FOLDER/cam0.png does
+"""
+
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mocapd.capture.recording.mcap_origin import open_recording
+
+
+def main(recording: Path, folder: Path) -> None:
+    known = {path.stem: cv2.imread(str(path)).astype(float) for path in folder.glob("cam?.png")}
+    seen: dict[str, str] = {}
+    for frames in open_recording(recording).frame_sets():
+        for name, frame in frames.frames.items():
+            off = {film: np.abs(frame.pixels - picture).mean() for film, picture in known.items()}
+            seen[name] = min(off, key=lambda film: off[film])
+    for name in sorted(seen):
+        print(name, seen[name])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
