@@ -18,6 +18,7 @@ home=${VM_HOME:-${XDG_CACHE_HOME:-$HOME/.cache}/mocapd-vm}
     echo "$0: the virtual machine is missing: $vm -- put its folder there, or say where it is with VM_FOLDER" >&2
     exit 2
 }
+vm=$(realpath "$vm") # the disk is kept by its builder's path
 [ "$(id -u)" = 0 ] || { echo "$0: only root may build the machine's disk -- sudo" >&2; exit 2; }
 [ "$(dpkg-deb --field "$deb" Depends | grep -c 'python3 (>= 3.11')" = 1 ] || {
     echo "$0: $deb is not for Python 3.11, which the machine has -- make it on Debian 12" >&2

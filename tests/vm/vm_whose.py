@@ -1,6 +1,6 @@
 """Whose pictures a camera of the running service delivers: runs in the guest, with the package's Python.
 
-    python vm_whose.py RECORDING FOLDER      a line `left cam0`: the camera `left` shows what FOLDER/cam0.png does
+python vm_whose.py RECORDING FOLDER      a line `left cam0`: the camera `left` shows what FOLDER/cam0.png does
 """
 
 import sys
@@ -13,7 +13,10 @@ from mocapd.capture.recording.mcap_origin import open_recording
 
 
 def main(recording: Path, folder: Path) -> None:
-    known = {path.stem: cv2.imread(str(path)).astype(float) for path in folder.glob("cam?.png")}
+    known = {
+        path.stem: np.asarray(cv2.imread(str(path)), dtype=float)
+        for path in folder.glob("cam?.png")
+    }
     seen: dict[str, str] = {}
     for frames in open_recording(recording).frame_sets():
         for name, frame in frames.frames.items():
