@@ -1,27 +1,7 @@
 #!/usr/bin/env bash
-# What vm_test.sh does in the machine that it boots.
+# What vm_test.sh does in the machine that it boots: the package installed, and everything that befalls it.
 set -uo pipefail
-proof=$(cd "$(dirname "$0")" && pwd)
-. "$proof/steps.sh"
-export DEBIAN_FRONTEND=noninteractive # nobody sits there
-python=/usr/lib/mocapd/bin/python
-
-step() { echo; echo "== $* ($((SECONDS / 60)) min)"; }
-rig() { # plug N [--port P] | unplug N | ctl N COMMAND: the webcams' plugs, in another's hand
-    echo "# ($*)"
-    bash /mnt/share/rig/cam.sh "$@" >/dev/null 2>&1 || { echo "FAILED: $*"; failed=1; }
-}
-since() { mark=$(date '+%F %T'); } # what is logged from here on
-newly() { echo "journalctl -u mocapd -o cat --no-pager --since '$mark' | grep -q '$1'"; }
-both="$(state 'left live') && $(state 'right live')"
-tracked="$(state 'somebody is tracked') && $both"
-whose() { # that each camera of the service shows what its webcam does: two seconds of pictures, compared
-    rm -f /var/lib/mocapd/whose.mcap
-    mocapd as-service record /var/lib/mocapd/whose.mcap --pictures --seconds 2 >/tmp/record.log 2>&1 || cat /tmp/record.log
-    $python -P "$proof/vm_whose.py" /var/lib/mocapd/whose.mcap "$proof" >/tmp/whose 2>&1
-    wanted 1 "$1" "[ \"\$(cat /tmp/whose | tr '\n' ' ')\" = 'left cam0 right cam1 ' ]"
-    [ "$(wc -l </tmp/whose)" = 2 ] || tail -n 3 /tmp/whose
-}
+. "$(dirname "$0")/vm_rig.sh"
 
 step "The package, and two webcams"
 wanted 5 "a real kernel with uvcvideo and a real systemd" "[ -d /sys/bus/usb/drivers/uvcvideo ] && systemctl is-system-running | grep -v offline"
@@ -42,13 +22,15 @@ told "mocapd doctor"
 step "A calibration of two cameras, by socket and serial number; the service"
 cp -r "$proof/state" /var/lib/mocapd
 chown -R mocapd: /var/lib/mocapd
+# one processor, that acts the webcams too: the search for somebody without a shirt is too much for it
+sed -i 's/^\[tracker\]/[tracker]\nname = "colour"/' /etc/mocapd/config.toml
 told mocapd check-config --changed
 began=$SECONDS
 told systemctl enable --now mocapd
 echo "ready after $((SECONDS - began)) s"
 wanted 1 "it is ready while the tracker is compiled" "$(state compiling) && $(is ActiveState active)"
 wanted 30 "a line in the log says so" "$(logged 'compiling the tracker')"
-wanted 3600 "somebody is tracked by two USB webcams" "$tracked"
+every=5 wanted 3600 "somebody is tracked by two USB webcams" "$tracked"
 told 'journalctl -u mocapd -o cat --no-pager'
 told 'systemctl status mocapd --no-pager --lines=0'
 told mocapd status
@@ -121,7 +103,7 @@ dd if=/dev/zero of=/filler2 bs=4k status=none 2>/dev/null
 wanted 1 "not a byte is free" "[ \$(df --output=avail / | tail -n 1) -lt 8 ]"
 told 'mocapd as-service record /var/lib/mocapd/full.mcap --pictures --seconds 5'
 wanted 1 "no recording, and who wanted it is told the file" \
-    "! mocapd as-service record /var/lib/mocapd/full.mcap --pictures --seconds 5 2>/tmp/said && grep -q full.mcap /tmp/said"
+    "said=\$(mocapd as-service record /var/lib/mocapd/full.mcap --pictures --seconds 5 2>&1); [ \$? != 0 ] && [[ \$said == *full.mcap* ]]"
 wanted 10 "doctor tells it" "mocapd as-service doctor | grep -i '^\(bad\|warn\).*\(room\|full\|free\)'"
 wanted 30 "it goes on" "$tracked && $(is NRestarts 0)"
 told systemctl kill --signal=KILL mocapd
@@ -149,24 +131,5 @@ told systemctl reload mocapd
 wanted 60 "a right one is taken up" "$(newly 'taken up, within')"
 wanted 60 "with both webcams" "$(is ActiveState active) && $tracked"
 
-step "Stop, remove, purge"
-told systemctl stop mocapd
-wanted 5 "told to end, it ends well" "$(is Result success) && $(is ExecMainStatus 0)"
-wanted 1 "the webcams are free" "! fuser /dev/video*"
-told systemctl start mocapd
-wanted 60 "started, it tracks" "$tracked"
-told dpkg --remove mocapd
-wanted 10 "removed, it runs no more and is not enabled" \
-    "! systemctl is-active mocapd && ! find /etc/systemd/system -name 'mocapd*' | grep . && [ ! -e /usr/lib/mocapd ]"
-wanted 1 "configuration and calibration are there for another time" "[ -f /etc/mocapd/config.toml ] && [ -f /var/lib/mocapd/calibration.toml ]"
-told dpkg --purge mocapd
-wanted 1 "purged without an answer, the calibration stays" "[ -f /var/lib/mocapd/calibration.toml ] && [ ! -e /var/cache/mocapd ]"
-told dpkg --install "$proof/mocapd.deb"
-told "echo 'mocapd mocapd/purge_state boolean true' | debconf-set-selections"
-told dpkg --purge mocapd
-wanted 1 "purged with the answer yes, nothing of it is left" \
-    "! ls -d /var/lib/mocapd* /var/lib/private/mocapd* /var/cache/mocapd* /etc/mocapd /usr/lib/mocapd && ! getent passwd mocapd"
-
-echo
-echo "$((SECONDS / 60)) min $((SECONDS % 60)) s, $([ $failed = 0 ] && echo 'all ok' || echo 'FAILED, see above')"
+[ $failed = 0 ] || echo "FAILED, see above"
 exit $failed

@@ -44,9 +44,22 @@ done
 ffmpeg -nostdin -loglevel error -y -f mjpeg -i "$VM_SHARE/video/cam0.mjpeg" -frames:v 1 -c copy "$VM_SHARE/proof/still.mjpeg"
 cp -r "$home/home/state" "$VM_SHARE/proof"
 cp "$deb" "$VM_SHARE/proof/mocapd.deb"
-cp "$here/vm_steps.sh" "$here/steps.sh" "$here/vm_whose.py" "$VM_SHARE/proof"
+cp "$here"/vm_steps*.sh "$here/vm_rig.sh" "$here/steps.sh" "$here/vm_whose.py" "$VM_SHARE/proof"
 
+boot() { # now and then the line to the machine does not come up
+    for _ in 1 2 3; do
+        "$vm/boot_uml.sh" "$@" && return
+        "$vm/halt.sh"
+    done
+    exit 1
+}
 trap '"$vm/halt.sh"' EXIT
-# now and then the line to the machine does not come up
-"$vm/boot_uml.sh" || { "$vm/halt.sh"; "$vm/boot_uml.sh"; } || { "$vm/halt.sh"; "$vm/boot_uml.sh"; }
-"$vm/run_in_vm.sh" bash /mnt/share/proof/vm_steps.sh
+failed=0
+boot
+"$vm/run_in_vm.sh" bash /mnt/share/proof/vm_steps.sh || failed=1
+"$vm/halt.sh"
+boot --keep
+"$vm/run_in_vm.sh" bash /mnt/share/proof/vm_steps_after_boot.sh || failed=1
+echo
+echo "$((SECONDS / 60)) min $((SECONDS % 60)) s, $([ $failed = 0 ] && echo 'every step as wanted' || echo 'FAILED, see above')"
+exit $failed
