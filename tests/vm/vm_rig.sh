@@ -13,9 +13,9 @@ since() { mark=$(date '+%F %T'); } # what is logged from here on
 newly() { echo "journalctl -u mocapd -o cat --no-pager --since '$mark' | grep -q '$1'"; }
 both="$(state 'left live') && $(state 'right live')"
 tracked="$(state 'somebody is tracked') && $both"
-whose() { # that each camera of the service shows what its webcam does: two seconds of pictures, compared
+whose() { # that each camera of the service shows what its webcam does: a second of pictures, the first of each compared
     rm -f /var/lib/mocapd/whose.mcap
-    mocapd as-service record /var/lib/mocapd/whose.mcap --pictures --seconds 2 >/tmp/record.log 2>&1 || cat /tmp/record.log
+    mocapd as-service record /var/lib/mocapd/whose.mcap --pictures --seconds 1 >/tmp/record.log 2>&1 || cat /tmp/record.log
     $python -P "$proof/vm_whose.py" /var/lib/mocapd/whose.mcap "$proof" >/tmp/whose 2>&1
     wanted 1 "$1" "[ \"\$(cat /tmp/whose | tr '\n' ' ')\" = 'left cam0 right cam1 ' ]"
     [ "$(wc -l </tmp/whose)" = 2 ] || tail -n 3 /tmp/whose
