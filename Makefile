@@ -15,7 +15,7 @@ BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb lock sbom test-lowest clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb vm-test lock sbom test-lowest clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
@@ -110,6 +110,9 @@ dist: env ## build the wheel and the source distribution into dist/
 
 deb: dist ## make a Debian package of it, with all that it runs on, for this machine's python3
 	deb/build.sh $(BIN)/python dist/*.whl dist
+
+vm-test: deb ## as root: install the package on a real kernel with two USB webcams, pull, freeze, kill, remove (needs ../shared/vm)
+	tests/vm/vm_test.sh $(BIN)/python dist/mocapd_*.deb
 
 lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
 	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)

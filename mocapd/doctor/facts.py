@@ -67,13 +67,14 @@ class PortFacts:
 @dataclass(frozen=True, slots=True)
 class FolderFacts:
     """key: of the configuration; trouble: why it cannot be written to, or is not believed; open_to_others: somebody
-    else may look into it; free_bytes: on its disk, None where that cannot be told."""
+    else may look into it; free_bytes: on its disk, None where that cannot be told; holds_little: only small files."""
 
     key: str
     path: Path
     trouble: Trouble | None
     open_to_others: bool
     free_bytes: int | None
+    holds_little: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """Finding webcams in sysfs, and what the listing says of each node."""
 
+import grp
 import os
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.listing import list_cameras
-from mocapd.capture.webcam.node_access import holders
+from mocapd.capture.webcam.node_access import holders, how_to_be_let_in
 from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
 from mocapd.capture.webcam.v4l2 import V4l2Source
 from mocapd.capture.webcam.webcams import capture_nodes, find_webcam, video_nodes
@@ -95,6 +96,13 @@ def test_a_node_without_permission_says_how_to_get_it(machine: FakeMachine) -> N
     row = next(row for row in rows if row.node and row.node.name == "video10")
     assert row.problem == "no permission"
     assert "usermod -aG" in row.fix
+
+
+def test_nobody_is_told_to_join_the_group_of_root() -> None:
+    node = Path("/dev/video0")
+    assert "usermod" not in how_to_be_let_in(node, 0)
+    assert "sudo chgrp video /dev/video0" in how_to_be_let_in(node, 0)
+    assert "usermod -aG" in how_to_be_let_in(node, max(one.gr_gid for one in grp.getgrall()))
 
 
 def test_a_webcam_without_a_driver_is_listed_with_the_mend(machine: FakeMachine) -> None:

@@ -130,6 +130,8 @@ FOLDER = FolderFacts("state_dir", Path("/var/lib/mocapd"), None, False, 20 << 30
         (replace(FOLDER, free_bytes=None), OK, "private and writable"),
         (replace(FOLDER, free_bytes=500 << 20), WARN, "500 MB free"),
         (replace(FOLDER, free_bytes=5 << 20), BAD, "5 MB free"),
+        (replace(FOLDER, free_bytes=5 << 20, holds_little=True), OK, "5 MB free"),
+        (replace(FOLDER, free_bytes=1000, holds_little=True), BAD, "0 MB free"),
         (replace(FOLDER, open_to_others=True), WARN, "chmod 700 /var/lib/mocapd"),
         (replace(FOLDER, trouble=Trouble("cannot be written to", "chown it")), BAD, "chown it"),
     ],

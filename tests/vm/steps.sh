@@ -5,7 +5,7 @@ told() { # a command, shown with what it says
     echo "# $*"
     bash -c "$*" 2>&1 | cut -c1-160
 }
-wanted() { # seconds, what for, a command: that it comes to be true
+wanted() { # seconds, what for, a command: that it comes to be true; every: how often it is looked at [s]
     local until=$((SECONDS + $1)) what=$2
     shift 2
     until bash -c "$*" >/dev/null 2>&1; do
@@ -14,7 +14,7 @@ wanted() { # seconds, what for, a command: that it comes to be true
             failed=1
             return
         fi
-        sleep 0.2
+        sleep "${every:-0.2}"
     done
     echo "ok: $what"
 }

@@ -79,8 +79,18 @@ def _open_error(node: Path, error: OSError) -> MocapdError:
 
 def _group_fix(node: Path) -> str:
     try:
-        group = grp.getgrgid(node.stat().st_gid).gr_name
-    except (OSError, KeyError):
+        return how_to_be_let_in(node, node.stat().st_gid)
+    except OSError:
+        return _REPLUG
+
+
+def how_to_be_let_in(node: Path, gid: int) -> str:
+    """What gives this user a node that is of this group."""
+    if gid == 0:  # udev gives it to the group a moment after it came; nobody is to join root's
+        return f"wait a moment for udev; if it stays so: sudo chgrp video {node}"
+    try:
+        group = grp.getgrgid(gid).gr_name
+    except KeyError:
         group = "video"
     try:
         user = pwd.getpwuid(os.getuid()).pw_name

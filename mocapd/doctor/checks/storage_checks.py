@@ -8,6 +8,7 @@ from mocapd.doctor.finding import Finding, bad, ok, warn
 
 LITTLE_BYTES = 1 << 30  # a recording with pictures takes that in minutes
 TOO_LITTLE_BYTES = 200 << 20  # compiled code and pose database
+_SMALL_FILES_BYTES = 1 << 20
 
 
 def check_folder(facts: FolderFacts) -> Finding:
@@ -15,13 +16,16 @@ def check_folder(facts: FolderFacts) -> Finding:
     about = f"folder {facts.key}"
     if facts.trouble is not None:
         return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
-    if facts.free_bytes is not None and facts.free_bytes < TOO_LITTLE_BYTES:
+    least, usual = TOO_LITTLE_BYTES, LITTLE_BYTES
+    if facts.holds_little:
+        least = usual = _SMALL_FILES_BYTES
+    if facts.free_bytes is not None and facts.free_bytes < least:
         return bad(
             about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
         )
     if facts.open_to_others:
         return warn(about, f"{facts.path}: others may look into it", f"chmod 700 {facts.path}")
-    if facts.free_bytes is not None and facts.free_bytes < LITTLE_BYTES:
+    if facts.free_bytes is not None and facts.free_bytes < usual:
         return warn(
             about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
         )

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 from mocapd.boundary.folders import readable_by_others, require_own_folder
@@ -16,7 +17,11 @@ def folder_facts(config: Config) -> tuple[FolderFacts, ...]:
     return (
         _folder("cache_dir", config.cache_dir, runs_from_it=True),
         _folder("state_dir", config.state_dir),
-        _folder("XDG_RUNTIME_DIR", runtime_folder(config.state_dir)),
+        # a tenth of the memory is all that systemd gives a user there
+        replace(
+            _folder("XDG_RUNTIME_DIR", runtime_folder(config.state_dir)),
+            holds_little=True,
+        ),
     )
 
 

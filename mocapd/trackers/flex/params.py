@@ -33,6 +33,7 @@ class StartParams:
     )
     people: int = 2  # of whom the best is taken
     pause_s: float = 0.2  # between attempts that failed
+    most_rest_s: float = 2.0  # after one that took longer than that, for as long as it took
 
 
 @dataclass(frozen=True, slots=True)

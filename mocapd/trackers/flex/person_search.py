@@ -14,6 +14,31 @@ from mocapd.trackers.flex.stance import blobs_of, first_fit, is_standing, standi
 from mocapd.types import Camera, Floats
 
 
+class LookTimes:
+    """When to look. Where a look takes long, others get as many pictures between two looks as it cost them."""
+
+    def __init__(self, params: StartParams) -> None:
+        self._pause_ns = nanoseconds(params.pause_s)
+        self._most_ns = nanoseconds(params.most_rest_s)
+        self._next_ns = 0
+        self._looked_ns: int | None = None  # until the frame set after it has come
+
+    def came(self, t_ns: int) -> None:
+        """A frame set: the first after a look tells how long that took."""
+        if self._looked_ns is None:
+            return
+        took_ns, self._looked_ns = t_ns - self._looked_ns, None
+        if took_ns > self._pause_ns:
+            self._next_ns = t_ns + min(took_ns, self._most_ns)
+
+    def is_due(self, t_ns: int) -> bool:
+        """Of a frame set that came, in which nobody is known; True: it is looked now."""
+        if t_ns < self._next_ns:
+            return False
+        self._next_ns, self._looked_ns = t_ns + self._pause_ns, t_ns
+        return True
+
+
 class PersonSearch:
     """Remembers when it may look again, and where somebody was likely at the last look."""
 
@@ -32,7 +57,7 @@ class PersonSearch:
 
     def reset(self) -> None:
         """Look at once, and remember nobody."""
-        self._next_ns = 0
+        self.times = LookTimes(self._params)
         self._likely_m: list[Floats] = []
 
     def look(
@@ -40,9 +65,8 @@ class PersonSearch:
     ) -> tuple[Fit, tuple[str, ...]] | None:
         """Somebody of these proportions, and the cameras that show them; None: nobody, or it is not time to look."""
         p, views = self._params, self._views
-        if views.are_new or t_ns < self._next_ns:
+        if views.are_new or not self.times.is_due(t_ns):
             return None
-        self._next_ns = t_ns + nanoseconds(p.pause_s)
         views.mark_body(None)
         views.stand_before()
         views.take_uncovered()

@@ -166,6 +166,7 @@ class FlexTracker:
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[_Wearer, _Memory | None]:
         """The wearer of this step, and what is known of the last one."""
         self._turn += 1
+        self._find.times.came(frames.t_ns)
         require_stature(shape, self._model.stature_m)
         self._cameras.look(frames)
         self.probe("picture")
