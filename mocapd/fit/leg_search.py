@@ -63,10 +63,11 @@ class LegSearch:
         dt_s: float,
         turn: int,
         terms: Sequence[PoseTerm] = (),
+        motion: Floats | None = None,
     ) -> tuple[Fit, tuple[str, ...]]:
         """A better fit, if another pose of an uncertain leg gives one, and the sides that changed.
 
-        turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
+        turn: a running number; each turn tries another part of the low-discrepancy sets; terms, motion: of every fit.
         """
         p = self.params
         changed = []
@@ -87,6 +88,7 @@ class LegSearch:
                     3,
                     learn_shape=False,
                     fine=1,
+                    motion=motion,
                     terms=terms,
                 )
                 cost = other.cost + self._price(side, other.state.local_xyzw[leg.chain[:3]], here)

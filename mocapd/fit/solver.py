@@ -6,7 +6,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.collision_kernels import TorsoSlices, push_arms_out
 from mocapd.fit.collision_term import TorsoHull, arm_chains
@@ -125,9 +126,10 @@ class Fitter:
         cameras: Sequence[Camera],
         image_scales: Sequence[int],
         params: FitParams,
+        each: Each = in_turn,
     ) -> None:
         """`image_scales`: by how much each camera's frames are averaged down to work pictures."""
-        self.model, self.params = model, params
+        self.model, self.params, self.each = model, params, each
         self.shaper = Shaper(model)
         self.drawings = [
             IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, image_scales, strict=True)
@@ -210,8 +212,9 @@ class Fitter:
             )
             H = np.zeros((P, P))
             b = np.zeros(P)
-            for view in views if is_fine else coarse:
-                self._gather(one, view)
+            used = views if is_fine else coarse
+            self.each(partial(self._gather, one), used)
+            for view in used:
                 mine = self._rows[view.index].system(P)
                 H += mine[0]
                 b += mine[1]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mocapd.calibration.record import Calibration
+from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
@@ -42,7 +43,7 @@ class Resources:
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
     that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
     must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
-    each tracker, by name, as usual where absent.
+    each tracker, by name, as usual where absent; each: of a tracker's cameras.
     """
 
     cache_dir: Path = field(default_factory=Path)
@@ -51,6 +52,7 @@ class Resources:
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
     sections: Mapping[str, Any] = field(default_factory=dict)
+    each: Each = in_turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +132,9 @@ def _database(resources: Resources) -> "PoseDatabase":
 def _colour(calibration: Calibration, section: ColourSection, resources: Resources) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
 
-    return build_colour_tracker(calibration, _database(resources), section, resources.tracking)
+    return build_colour_tracker(
+        calibration, _database(resources), section, resources.tracking, resources.each
+    )
 
 
 def _colour_paper(
@@ -144,7 +148,7 @@ def _colour_paper(
 def _flex(calibration: Calibration, section: FlexSection, resources: Resources) -> Tracker:
     from mocapd.trackers.flex.build import build_flex_tracker
 
-    return build_flex_tracker(calibration, section, resources.tracking)
+    return build_flex_tracker(calibration, section, resources.tracking, resources.each)
 
 
 def _flex_paper(

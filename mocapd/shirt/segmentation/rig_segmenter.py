@@ -30,7 +30,7 @@ class RigSegmenter:
         params: SegmentationParams,
     ) -> None:
         """white_balance: W (3,3) by camera name, identity where absent."""
-        self._fitter, self._params = fitter, params
+        self._fitter, self._params, self._each = fitter, params, fitter.each
         self.each = [
             CameraSegmenter(
                 d.camera, d.image_scale, model,
@@ -50,7 +50,7 @@ class RigSegmenter:
         mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
         for i, frame in mine:
             check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
-            self.each[i].look(frame.pixels)
+        self._each(lambda one: self.each[one[0]].look(one[1].pixels), mine)
         return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
     def views(
@@ -60,19 +60,20 @@ class RigSegmenter:
         p = self._params
         margin = p.uncertain_margin_px if uncertain else p.margin_px
         colours = _colours_of(uncertain)
-        views = []
-        for i, dt_s in present.items():
-            drawing = self._fitter.drawings[i]
+
+        def view(i: int) -> View | None:
+            drawing, dt_s = self._fitter.drawings[i], present[i]
             roi = drawing.region(state, dt_s, margin)
             if roi is None:
-                continue
+                return None
             predicted = drawing.render(state, dt_s, roi)
             ids, pixel_weight = self.each[i].classify(
                 predicted, drawing.outline(), roi, colours, may_relight=True
             )
             bare = self.each[i].bare(roi, ids) if uncertain else None
-            views.append(View(i, roi, ids, pixel_weight, dt_s, bare))
-        return views
+            return View(i, roi, ids, pixel_weight, dt_s, bare)
+
+        return [one for one in self._each(view, present) if one is not None]
 
     def learn_with(self, state: MotionState, fit: Fit, views: list[View], redraw: bool) -> None:
         """Follow the light, and where the body is, from a pose and its fit.
@@ -80,7 +81,8 @@ class RigSegmenter:
         Without `redraw`, the last drawing of the fit will do: it differs by a fraction of a pixel.
         """
         sure = fit.match > self._params.sure_match
-        for view in views:
+
+        def learn(view: View) -> None:
             segmenter, drawing = self.each[view.index], self._fitter.drawings[view.index]
             if redraw:
                 final = drawing.render(state, view.dt_s, view.roi)
@@ -97,13 +99,18 @@ class RigSegmenter:
                 )
             segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
 
+        self._each(learn, views)
+
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
         """Follow the background, in all of the picture when nobody is known."""
-        for i in present:
+
+        def learn(i: int) -> None:
             segmenter = self.each[i]
             if nobody:
                 segmenter.mark_body(None, (0, 0, 0, 0))
             segmenter.learn_background()
+
+        self._each(learn, present)
 
     def roi_px(self, view: View) -> Roi:
         """A view's region in pixels of the frame itself."""

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.each import Each, in_turn
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour.params import Params
@@ -17,6 +18,7 @@ def build_colour_tracker(
     database: PoseDatabase,
     section: ColourSection | None = None,
     tracking: TrackingStateParams | None = None,
+    each: Each = in_turn,
 ) -> ColourTracker:
     """The tracker as a user set it. Raises ConfigError naming what is missing."""
     section = section if section is not None else ColourSection()
@@ -31,4 +33,4 @@ def build_colour_tracker(
         accept_match=section.accept_match,
     )
     rig = known_rig(calibration)
-    return ColourTracker(rig, stature_m(calibration), colours, W, database, params, tracking)
+    return ColourTracker(rig, stature_m(calibration), colours, W, database, params, tracking, each)

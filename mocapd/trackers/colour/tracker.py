@@ -10,6 +10,7 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
+from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.limb_search import ArmSearch, is_uncertain
@@ -82,13 +83,15 @@ class ColourTracker:
         database: PoseDatabase,
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
+        each: Each = in_turn,
     ) -> None:
-        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent."""
+        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent. each: of the
+        cameras."""
         self.params = p = params if params is not None else Params()
         self.rig, self._database = rig, database
         model = build_model(stature_m)
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self._fitter = Fitter(model, rig.cameras, smaller, p.fit)
+        self._fitter = Fitter(model, rig.cameras, smaller, p.fit, each)
         self._segmenters = RigSegmenter(self._fitter, colour_model, white_balance, p.segmentation)
         self._arm_columns = {side: model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self._fitter, p.limbs)

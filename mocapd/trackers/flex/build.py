@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from mocapd.calibration.record import Calibration
+from mocapd.each import Each, in_turn
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.section import FlexSection
@@ -21,10 +22,11 @@ def build_flex_tracker(
     calibration: Calibration,
     section: FlexSection | None = None,
     tracking: TrackingStateParams | None = None,
+    each: Each = in_turn,
 ) -> FlexTracker:
     """The tracker as a user set it. Raises ConfigError naming what is missing."""
     rig, stature = known_rig(calibration), stature_m(calibration)
-    return FlexTracker(rig, stature, params_of(section), tracking, frontal_faces())
+    return FlexTracker(rig, stature, params_of(section), tracking, frontal_faces(), each)
 
 
 def params_of(section: FlexSection | None) -> Params:

@@ -81,7 +81,7 @@ class CameraViews:
     the frame set's [s], by its index."""
 
     def __init__(self, fitter: Fitter, params: Params) -> None:
-        self.fitter, self._params = fitter, params
+        self.fitter, self._params, self._each = fitter, params, fitter.each
         self.each = [
             CameraView(d.camera.name, d.camera.size_px, d.image_scale, params)
             for d in fitter.drawings
@@ -98,8 +98,7 @@ class CameraViews:
     def look(self, frames: FrameSet) -> None:
         """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
         mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
-        for i, frame in mine:
-            self.each[i].look(frame.pixels)
+        self._each(lambda one: self.each[one[0]].look(one[1].pixels), mine)
         self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
@@ -137,18 +136,20 @@ class CameraViews:
 
     def mark_body(self, state: MotionState | None) -> None:
         """Where somebody is expected, drawn into every present picture."""
-        for i, dt_s in self.present.items():
-            drawing = self.fitter.drawings[i]
+
+        def mark(i: int) -> None:
+            drawing, dt_s = self.fitter.drawings[i], self.present[i]
             roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
             if state is None or roi is None:
                 self.each[i].mark_body(None, None)
             else:
                 self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
 
+        self._each(mark, self.present)
+
     def stand_before(self, everywhere: bool = True) -> None:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
-        for i in self.present:
-            self.each[i].stand_before(everywhere)
+        self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
 
     def take_uncovered(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`."""
@@ -160,12 +161,13 @@ class CameraViews:
         """Every present picture by the regions of the body as predicted, which is drawn last into each; marked:
         `mark_body` did that, with this state and this fitter, and nothing was drawn since."""
         p = self._params
-        views = []
-        for i, dt_s in self.present.items():
-            drawing, camera = self.fitter.drawings[i], self.each[i]
+        soft = int(255 * p.soft)
+
+        def view(i: int) -> View | None:
+            drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
             roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)
             if roi is None:
-                continue
+                return None
             x0, y0, x1, y1 = roi
             before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
             drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
@@ -175,9 +177,9 @@ class CameraViews:
                 region_distances(drawn),
                 self._floors[i].near(state.root_m, roi),
             )
-            soft = int(255 * p.soft)
-            views.append(View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s))
-        return views
+            return View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s)
+
+        return [one for one in self._each(view, self.present) if one is not None]
 
     def silhouettes(self, state: MotionState) -> list[View]:
         """Every present picture by what stands before the background where somebody of unknown colours is expected."""
@@ -201,8 +203,9 @@ class CameraViews:
 
     def learn_appearance(self, state: MotionState, views: Sequence[View]) -> None:
         """Learn the colours of a body that agrees with what was classified."""
-        for view in views:
-            self._learn(view.index, state, view.dt_s, view.roi, view.ids)
+        self._each(
+            lambda view: self._learn(view.index, state, view.dt_s, view.roi, view.ids), views
+        )
 
     def _learn(
         self, index: int, state: MotionState, dt_s: float, roi: Roi, ids: Bytes | None
@@ -229,10 +232,13 @@ class CameraViews:
 
     def learn_background(self) -> None:
         """Follow each background where nobody is marked; not while somebody who may be a part of it is not found yet."""
-        for i in self.present:
+
+        def learn(i: int) -> None:
             camera = self.each[i]
             if not camera.may_hold_body:
                 camera.background.learn(camera.picture, camera.body)
+
+        self._each(learn, self.present)
 
     def outline_contrast(self) -> float:
         """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.regions import Band, Region, recoloured, regions
+from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.fit.leg_search import LegSearch
 from mocapd.fit.limb_search import ArmSearch
@@ -85,10 +86,11 @@ class DressedFitters:
         fit: FitParams,
         limbs: LimbSearchParams,
         legs: LegSearchParams,
+        each: Each = in_turn,
     ) -> None:
-        """body: a whole one, in any colours; image_scales: as `Fitter`."""
+        """body: a whole one, in any colours; image_scales, each: as `Fitter`."""
         self._body, self._cameras, self._scales = body, cameras, image_scales
-        self._fit, self._limbs, self._legs = fit, limbs, legs
+        self._fit, self._limbs, self._legs, self._each = fit, limbs, legs, each
         self._made: dict[Look, Dressed] = {}
 
     def of(self, look: Look) -> Dressed:
@@ -96,7 +98,8 @@ class DressedFitters:
         dressed = self._made.pop(look, None)
         if dressed is None:
             colour = np.array(look, np.uint8)[regions(self._body)]
-            fitter = Fitter(recoloured(self._body, colour), self._cameras, self._scales, self._fit)
+            worn = recoloured(self._body, colour)
+            fitter = Fitter(worn, self._cameras, self._scales, self._fit, self._each)
             dressed = Dressed(fitter, ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs))
         self._made[look] = dressed
         if len(self._made) > _KEPT:

@@ -16,7 +16,7 @@ from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
 from mocapd.trackers.flex.look import Dressed
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.turned import turned_round
-from mocapd.types import FrameSet
+from mocapd.types import Floats, FrameSet
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 WHOLE = "whole"  # as a part that changed: all of the body
@@ -72,13 +72,26 @@ class OtherPoses:
                 fit = round_
                 changed.append(WHOLE)
         probe("face")
-        fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms)
-        apart = self.legs_apart(dressed.fitter, fit, views, dt_s, turn, terms)
-        changed += [f"{side}_leg" for side in (legs if apart is fit else SIDES)]
+        fit, legs = self.other_legs(dressed, fit, views, dt_s, turn, terms)
         probe("legs")
-        return apart, tuple(changed)
+        return fit, (*changed, *legs)
 
-    def legs_apart(
+    def other_legs(
+        self,
+        dressed: Dressed,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        terms: Terms,
+        motion: Floats | None = None,
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """As `improve`, of the legs alone; motion: of every fit, as where an upper body leads."""
+        fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms, motion)
+        apart = self._legs_apart(dressed.fitter, fit, views, dt_s, turn, terms)
+        return apart, tuple(f"{side}_leg" for side in (legs if apart is fit else SIDES))
+
+    def _legs_apart(
         self,
         fitter: Fitter,
         fit: Fit,

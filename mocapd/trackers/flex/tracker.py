@@ -11,6 +11,7 @@ from mocapd.body.regions import Region, as_silhouette
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
+from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_prior import predicted_information
@@ -71,16 +72,17 @@ class FlexTracker:
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
         cascade: CascadeArrays | None = None,
+        each: Each = in_turn,
     ) -> None:
-        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing."""
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing. each: of the cameras."""
         self.params = p = params if params is not None else Params()
         self.rig = rig
         body = build_model(stature_m, full_body())
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs, p.legs)
+        self._fitters = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs, p.legs, each)
         self._dressed = self._fitters.of(ALL_DIFFER)
         self._fitter = self._dressed.fitter
-        self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit)
+        self._silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit, each)
         self._model = self._fitter.model
         self._skeleton = standard_skeleton(stature_m)
         self._floor = FloorTerm(self._model, p.floor)
@@ -283,19 +285,22 @@ class FlexTracker:
         )  # fmt: skip
         self.probe("fit")
         left = later(known.left) if known is not None and known.left is not None else None
+        changed: tuple[str, ...] = ()
         if not is_first:
-            before = fit
-            fit = self._others.legs_apart(fitter, fit, views, dt_s, self._turn, terms)
-            if fit is not before:
-                was = None if known is None else known.left
-                left = residual_of(fitter, predicted, fit.state, was, p.blend_m)
+            fit, changed = self._others.other_legs(
+                self._dressed, fit, views, dt_s, self._turn, terms, loose
+            )
+            self.probe("legs")
+        if changed:
+            was = None if known is None else known.left
+            left = residual_of(fitter, predicted, fit.state, was, p.blend_m)
         if is_first and fit.explained >= p.learn_explained:
             self._learn_first(fit.state)
         if not self._believed(fit):
             return known, views
         velocity = np.zeros(model.n_pose)
         if known is not None:
-            velocity = self._velocity(fit, last, dt_s, ())
+            velocity = self._velocity(fit, last, dt_s, changed)
         return _Memory(
             frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views), left
         ), views
