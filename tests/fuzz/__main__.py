@@ -30,12 +30,10 @@ def main() -> int:
         for row in ROWS:
             print(f"{row.name:24}{row.inputs:7}")
         return 0
-    scale = options.scale
-    if options.inputs is not None:
-        scale = options.inputs / sum(row.inputs for row in ROWS)
+    scales = _scales(options)
     rows = [row for row in ROWS if not options.only or row.name in options.only]
     if options.input is None:
-        chosen = [(row, range(_scaled(row.inputs, scale))) for row in rows]
+        chosen = [(row, range(_scaled(row.inputs, scales[row.is_slow]))) for row in rows]
     else:
         chosen = [(row, range(options.input, options.input + 1)) for row in rows]
     with tempfile.TemporaryDirectory(prefix="mocapd-fuzz-") as folder:
@@ -56,7 +54,7 @@ def _options() -> argparse.Namespace:
     many = parser.add_mutually_exclusive_group()
     many.add_argument("--scale", type=float, default=1.0, help="share of the inputs")
     many.add_argument(
-        "--inputs", type=int, help="so many, if all rows are run: 1000000 takes hours"
+        "--inputs", type=int, help="so many, if all rows are run: 1000000 takes an hour"
     )
     parser.add_argument(
         "--only", nargs="+", metavar="NAME", choices=[row.name for row in ROWS], help="these rows"
@@ -66,6 +64,16 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--cache", type=Path, help="keep here what takes long to make")
     parser.add_argument("--list", action="store_true", help="the rows and their inputs")
     return parser.parse_args()
+
+
+def _scales(options: argparse.Namespace) -> tuple[float, float]:
+    """Shares of a row's inputs: usual, of slow ones."""
+    if options.inputs is None:
+        return options.scale, options.scale
+    usual = sum(row.inputs for row in ROWS if not row.is_slow)
+    slow = sum(row.inputs for row in ROWS) - usual
+    scale_of_slow = min(1.0, options.inputs / (usual + slow))
+    return max(0.0, options.inputs - scale_of_slow * slow) / usual, scale_of_slow
 
 
 def _scaled(inputs: int, scale: float) -> int:

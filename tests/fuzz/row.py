@@ -41,11 +41,12 @@ class Place:
 @dataclass(frozen=True, slots=True)
 class Row:
     """`prepare` is called once in a process of its own, and hands a good input in to see that it is
-    taken; inputs: at scale 1."""
+    taken; inputs: at scale 1; is_slow: whether each takes so long that --inputs takes no more of them than that."""
 
     name: str
     inputs: int
     prepare: Callable[[Place], Attempt]
+    is_slow: bool = False
 
 
 def each_of(cases: Sequence[T], take: Callable[[T], bool]) -> Attempt:
