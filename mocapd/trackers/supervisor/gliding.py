@@ -78,6 +78,7 @@ class Glider:
         """As if this had been told a moment ago."""
         self._told = told if told is not None and told.pose is not None else None
         self._last: Sourced | None = None  # what was known then
+        self._moved_m: Floats | None = None  # each joint (J,3), since the frame before that
         self._away: Away | None = None
         self._speed_m_s = 0.0
 
@@ -92,20 +93,28 @@ class Glider:
         the frame before, None when nobody knows."""
         p, told, body = self._params, self._told, now.body
         gap_ns = 0 if told is None else body.t_ns - told.t_ns
+        is_new = self.is_new(now)
+        if is_new:
+            is_same = before is not None and before.source == now.source
+            last = before.body if is_same and before is not None else None
+        else:
+            assert self._last is not None
+            last = self._last.body
+        moved_m = None if last is None else _moved(last, body)
         if told is None or gap_ns > nanoseconds(p.glide_within_s):
             self._away = None
-        elif self._last is None or self._last.source != now.source:
+        elif is_new:
             # the motion since then is not to be mended
-            is_same = before is not None and before.source == now.source
-            self._begin(told, before.body if is_same and before is not None else body, skeleton)
-        elif self._away is not None and _jumps(self._last.body, body, p):
+            self._begin(told, body if last is None else last, skeleton)
+        elif self._away is not None and moved_m is not None and self._jumps(moved_m, gap_ns):
             self._begin(told, body, skeleton)  # who has just begun to speak settles
+            moved_m = None
         if self._away is not None and body.pose is not None:
             step_m = min(p.glide_m, max(self._speed_m_s * seconds(gap_ns), _LEAST_M))
             self._away = lessened(body.pose, self._away, skeleton, step_m)
         if self._away is not None:
             body = glided(body, self._away, skeleton)
-        self._told, self._last = body, now
+        self._told, self._last, self._moved_m = body, now, moved_m
         return body, self._away is not None
 
     def _begin(self, told: BodyState, known: BodyState, skeleton: Skeleton) -> None:
@@ -116,14 +125,19 @@ class Glider:
         farthest_m = float(np.linalg.norm(way_m, axis=1).max())
         self._speed_m_s = max(farthest_m / self._params.glide_s, self._params.glide_m_s)
 
+    def _jumps(self, moved_m: Floats, gap_ns: int) -> bool:
+        """Whether a joint went farther, or otherwise than a moment ago, than a person moves."""
+        p = self._params
+        if self._moved_m is None:
+            most_m = max(p.glide_m, p.jump_m_s * seconds(gap_ns))
+            return bool(np.linalg.norm(moved_m, axis=1).max() > most_m)
+        return bool(np.linalg.norm(moved_m - self._moved_m, axis=1).max() > p.jump_m)
 
-def _jumps(before: BodyState, now: BodyState, params: Params) -> bool:
-    """Whether a joint went farther than a person moves."""
+
+def _moved(before: BodyState, now: BodyState) -> Floats:
     assert before.joints_m is not None
     assert now.joints_m is not None
-    farthest_m = np.linalg.norm(now.joints_m - before.joints_m, axis=1).max()
-    gap_s = seconds(now.t_ns - before.t_ns)
-    return bool(farthest_m > params.jump_m_s * gap_s)
+    return now.joints_m - before.joints_m
 
 
 def glided(body: BodyState, away: Away, skeleton: Skeleton) -> BodyState:

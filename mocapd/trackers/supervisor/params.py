@@ -34,6 +34,7 @@ class Params:
     glide_s: float = 0.25
     glide_m_s: float = 1.5
     glide_m: float = 0.09
-    # on the way, too, who settles goes faster than that; a hand that is thrown then is told a little late
-    jump_m_s: float = 1.8
+    # who settles on the way goes faster than that, as hands do in a throw; or this much otherwise than a frame ago
+    jump_m_s: float = 3.0
+    jump_m: float = 0.05
     glide_within_s: float = 0.5  # after a longer gap nothing is left to glide from
