@@ -13,10 +13,10 @@ pytestmark = pytest.mark.long
 SHARE = "0.03"
 
 
-def fault(name: str, env: dict[str, str]) -> str:
+def fault(name: str, env: dict[str, str], share: str = SHARE) -> str:
     """What a row prints; the test fails with it when something was not as it should be."""
     ran = subprocess.run(
-        [sys.executable, "-m", "tests.faults", name, "--share", SHARE],
+        [sys.executable, "-m", "tests.faults", name, "--share", share],
         cwd=ROOT,
         env=env | {"PATH": os.environ["PATH"]},
         capture_output=True,
@@ -42,3 +42,7 @@ def test_daemons_told_to_end_at_any_moment(clean_env: dict[str, str]) -> None:
 
 def test_cameras_that_are_not_well(clean_env: dict[str, str]) -> None:
     assert "6 faults" in fault("ailing", clean_env)
+
+
+def test_a_daemon_that_goes_on_and_on(clean_env: dict[str, str]) -> None:
+    assert "+0 threads, +0 file descriptors" in fault("soaking", clean_env, "0.01")
