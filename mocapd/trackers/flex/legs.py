@@ -1,4 +1,4 @@
-"""Two legs look alike: when each has slipped onto the other, they are exchanged."""
+"""Two legs look alike: when each has slipped onto the other, they are exchanged, or the hips were left behind in a turn."""
 
 from dataclasses import replace
 
@@ -11,6 +11,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
+_OF_HIPS = [INDEX[name] for name in ("spine", "leftUpperLeg", "rightUpperLeg")]
 _CROSSED_M = 0.03  # by which the left ankle is to the right of the right one
 LEG_BONES = ("UpperLeg", "LowerLeg", "Foot")
 
@@ -22,6 +23,35 @@ def are_crossed(joints_m: Floats) -> bool:
     length = float(np.linalg.norm(across))
     ankles = joints_m[INDEX["leftFoot"]] - joints_m[INDEX["rightFoot"]]
     return length > 1e-3 and float(ankles @ across) / length < -_CROSSED_M
+
+
+def twist_rad(globals_xyzw: Floats) -> float:
+    """By how much the chest is turned against the hips, of global rotations (J,4), about the vertical, y."""
+    left = np.array([1.0, 0.0, 0.0])
+    hips, chest = (
+        rotations.rotate(globals_xyzw[INDEX[bone]], left) for bone in ("hips", "upperChest")
+    )
+    return float(np.angle(np.exp(1j * (_bearing_rad(chest) - _bearing_rad(hips)))))
+
+
+def with_hips_below_chest(fitter: Fitter, state: MotionState) -> MotionState:
+    """The hips turned as the chest is, each leg where it was, or the other one there if that crosses them no more."""
+    _, globals_ = fitter.joints(state)
+    half = 0.5 * twist_rad(globals_)
+    turned = rotations.multiply(
+        np.array([0.0, np.sin(half), 0.0, np.cos(half)]), globals_[INDEX["hips"]]
+    )
+    local = state.local_xyzw.copy()
+    local[INDEX["hips"]] = turned
+    for bone in _OF_HIPS:
+        local[bone] = rotations.multiply(rotations.inverse(turned), globals_[bone])
+    out = replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))
+    return with_legs_exchanged(fitter, out) if are_crossed(fitter.joints(out)[0]) else out
+
+
+def _bearing_rad(direction: Floats) -> float:
+    """Of a direction (3,), about the vertical."""
+    return float(np.arctan2(-direction[2], direction[0]))
 
 
 def with_legs_exchanged(fitter: Fitter, state: MotionState) -> MotionState:

@@ -12,7 +12,12 @@ from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe
 from mocapd.trackers.flex.face_watch import FaceWatch
-from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
+from mocapd.trackers.flex.legs import (
+    are_crossed,
+    twist_rad,
+    with_hips_below_chest,
+    with_legs_exchanged,
+)
 from mocapd.trackers.flex.look import Dressed
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.turned import turned_round
@@ -88,7 +93,8 @@ class OtherPoses:
     ) -> tuple[Fit, tuple[str, ...]]:
         """As `improve`, of the legs alone; motion: of every fit, as where an upper body leads."""
         fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms, motion)
-        apart = self._legs_apart(dressed.fitter, fit, views, dt_s, turn, terms)
+        hips_too = motion is None
+        apart = self._legs_apart(dressed.fitter, fit, views, dt_s, turn, terms, hips_too)
         return apart, tuple(f"{side}_leg" for side in (legs if apart is fit else SIDES))
 
     def _legs_apart(
@@ -99,20 +105,32 @@ class OtherPoses:
         dt_s: float,
         turn: int,
         terms: Terms,
+        hips_too: bool,
     ) -> Fit:
-        """The fit, or that with the legs exchanged: both look alike, and crossed ones are unusual."""
+        """The fit, or that with the legs exchanged: both look alike, and crossed ones are unusual. hips_too: or with the hips
+        turned as the chest is, as those of somebody who turned back may be left behind."""
         p = self._params
         if turn % p.crossed_turns:
             return fit
-        crossed = are_crossed(fitter.joints(fit.state)[0])
-        self._crossed_looks = self._crossed_looks + 1 if crossed else 0
+        joints_m, globals_xyzw = fitter.joints(fit.state)
+        twisted = hips_too and abs(twist_rad(globals_xyzw)) > p.twisted_rad
+        crossed = are_crossed(joints_m)
+        self._crossed_looks = self._crossed_looks + 1 if crossed or twisted else 0
         if self._crossed_looks < p.crossed_looks:
             return fit
         self._crossed_looks = 0
-        start = with_legs_exchanged(fitter, fit.state)
-        other = fitter.fit(start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms)
-        costs = [one.cost + unusual_legs(one.state.local_xyzw) for one in (fit, other)]
-        return other if costs[1] < costs[0] - p.crossed_gain else fit
+        starts = [with_legs_exchanged(fitter, fit.state)] if crossed else []
+        if twisted:
+            starts.append(with_hips_below_chest(fitter, fit.state))
+        best, least = fit, fit.cost + unusual_legs(fit.state.local_xyzw) - p.crossed_gain
+        for start in starts:
+            other = fitter.fit(
+                start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
+            )
+            cost = other.cost + unusual_legs(other.state.local_xyzw)
+            if cost < least:
+                best, least = other, cost
+        return best
 
     def _turned(
         self,

@@ -78,6 +78,7 @@ class Params:
 
     crossed_turns: int = 3  # from one look at crossed legs to the next
     crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment
+    twisted_rad: float = 0.7  # of the chest against the hips, above which these may be left behind
     crossed_iterations: int = 4
     crossed_gain: float = (
         10.0  # by how much the cost must fall to exchange them [disagreeing pixels]

@@ -15,7 +15,12 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
-from mocapd.trackers.flex.legs import are_crossed, with_legs_exchanged
+from mocapd.trackers.flex.legs import (
+    are_crossed,
+    twist_rad,
+    with_hips_below_chest,
+    with_legs_exchanged,
+)
 from tests.geometry.rigs import ring
 
 BODY = by_region(build_model(1.75, full_body()))
@@ -54,6 +59,25 @@ def test_crossed_legs_are_exchanged_where_they_are(yaw_rad: float, spread_rad: f
     hips_m = np.linalg.norm(joints[INDEX["leftUpperLeg"]] - joints[INDEX["rightUpperLeg"]])
     apart = np.linalg.norm(other[FEET] - joints[FEET[::-1]], axis=1)
     assert apart.max() < hips_m + 0.02
+
+
+@given(st.floats(-3.0, 3.0), st.floats(0.8, 2.5), st.sampled_from([-1.0, 1.0]))
+def test_hips_that_were_left_behind_come_below_the_chest_and_feet_stay(
+    yaw_rad: float, twist: float, way: float
+) -> None:
+    state = standing(yaw_rad, 0.2)
+    state.local_xyzw[INDEX["spine"]] = rotations.exp(np.array([0.0, way * twist, 0.0]))
+    joints, globals_ = FITTER.joints(state)
+    assert np.isclose(twist_rad(globals_), way * twist, atol=1e-6)
+    turned, globals_turned = FITTER.joints(with_hips_below_chest(FITTER, state))
+    assert np.isclose(twist_rad(globals_turned), 0.0, atol=1e-6)
+    assert not are_crossed(turned)
+    upper = [INDEX[bone] for bone in ("upperChest", "leftHand", "rightHand", "head")]
+    assert np.allclose(turned[upper], joints[upper], atol=0.05)
+    # a foot of either leg is where one was, but for the width of the hips
+    hips_m = np.linalg.norm(joints[INDEX["leftUpperLeg"]] - joints[INDEX["rightUpperLeg"]])
+    apart = np.linalg.norm(turned[FEET][:, None] - joints[FEET][None], axis=2)
+    assert apart.min(axis=1).max() < hips_m + 0.02
 
 
 def test_exchanging_twice_changes_nothing() -> None:
