@@ -29,13 +29,18 @@ def frame_errors_m(truth: Truth, track: RecordedTrack, joints: str = "upper") ->
     return errors
 
 
-def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M) -> float:
-    """Frames until the error is back under the limit for good, of errors_m (N,) from the change on.
+def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M, for_good: bool = False) -> float:
+    """Frames until the error is back under the limit, of errors_m (N,) from the change on.
 
     0 when it never left in the frames after the change that can be blamed on it, infinite when it
-    did not come back. Back means under the limit for three frames, or to the end of the recording.
+    did not come back. Back means under the limit for three frames, or to the end of the recording. for_good: to the end
+    alone, and 0 when it never left at all.
     """
     over = ~(errors_m < limit_m)
+    if for_good:
+        if len(over) and over[-1]:
+            return math.inf
+        return float(len(over) - over[::-1].argmax()) if over.any() else 0.0
     if not over[:_BLAMED_FRAMES].any():
         return 0.0
     left = int(over.argmax())
@@ -47,11 +52,12 @@ def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M) -> float:
 
 def recovery(truth: Truth, track: RecordedTrack, joints: str = "upper") -> float | None:
     """`recovery_frames` after the capture's change of light, or since nothing hides the person any more, whose
-    limit is 10 cm; None when its light is steady and nothing ever did."""
+    limit is 10 cm, and for good; None when its light is steady and nothing ever did."""
     since_s = truth.light_change_s if truth.clear_s is None else truth.clear_s
     if since_s is None:
         return None
     errors = frame_errors_m(truth, track, joints)
     after = np.isfinite(truth.times_s) & (truth.times_s >= since_s)
-    limit_m = LIMIT_M if truth.clear_s is None else CLEAR_LIMIT_M
-    return recovery_frames(errors[after & ~np.isnan(errors)], limit_m)
+    hid = truth.clear_s is not None
+    limit_m = CLEAR_LIMIT_M if hid else LIMIT_M
+    return recovery_frames(errors[after & ~np.isnan(errors)], limit_m, for_good=hid)

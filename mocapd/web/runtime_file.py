@@ -22,6 +22,7 @@ from msgspec import Meta
 from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_json
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError
+from mocapd.outputs.http_answer import read_body
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
 from mocapd.web.status import SetupAnswer, SetupRequest, Status
@@ -138,8 +139,8 @@ def _asked(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
         return _answer(url, path, timeout_s, body)
     except urllib.error.HTTPError as refused:
         try:
-            why = decode_json(refused.read(_LONGEST_ANSWER), SetupAnswer)
-        except (OSError, MalformedError):
+            why = decode_json(read_body(refused, _LONGEST_ANSWER), SetupAnswer)
+        except (OSError, HTTPException, MalformedError):
             why = SetupAnswer(f"it refuses: {refused.reason}")
         raise UnavailableError(why.what, why.where, why.fix) from refused
     except OSError as error:
@@ -155,10 +156,9 @@ def _answer(url: str, path: str, timeout_s: float, body: bytes | None = None) ->
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
     try:
         with opener.open(there, body, timeout=timeout_s) as answer:
-            data: bytes = answer.read(_LONGEST_ANSWER)
+            return read_body(answer, _LONGEST_ANSWER)
     except HTTPException as error:
         raise ConnectionError(f"{type(error).__name__}: {error}") from error
-    return data
 
 
 def _believed(path: Path) -> _Said | None:

@@ -32,6 +32,19 @@ def test_counting(errors_m: list[float], frames: float) -> None:
     assert recovery_frames(np.array(errors_m)) == frames
 
 
+@pytest.mark.parametrize(
+    ("errors_m", "frames"),
+    [
+        ([GOOD] * 20, 0),
+        ([BAD] * 4 + [GOOD] * 5 + [BAD] + [GOOD] * 10, 10),  # back once is not back for good
+        ([GOOD] * 12 + [BAD] * 3 + [GOOD] * 9, 15),
+        ([GOOD] * 19 + [BAD], math.inf),
+    ],
+)
+def test_counting_for_good(errors_m: list[float], frames: float) -> None:
+    assert recovery_frames(np.array(errors_m), for_good=True) == frames
+
+
 def test_a_steady_light_needs_no_recovery() -> None:
     truth = moving_truth()
     assert recovery(truth, track_of(truth, BAD)) is None

@@ -17,6 +17,7 @@ from msgspec import Meta
 
 from mocapd.boundary.messages import decode_json
 from mocapd.errors import MalformedError, UnavailableError
+from mocapd.outputs.http_answer import read_body
 
 PREFIX = "VRChat-Client-"  # of VRChat's name in the network
 ANSWER_S = 2.0  # how long all of an answer may take [s]
@@ -67,7 +68,7 @@ def _get(address: str, port: int, timeout_s: float) -> bytes:
             answer = connection.getresponse()
             if answer.status != 200:
                 raise MalformedError(f"HTTP status {answer.status}")
-            data = answer.read(_LONGEST_ANSWER + 1)
+            data = read_body(answer, _LONGEST_ANSWER + 1)
         finally:
             end.cancel()
     if len(data) > _LONGEST_ANSWER:

@@ -6,7 +6,6 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry.camera_model import centre
@@ -122,14 +121,13 @@ class OtherPoses:
         starts = [with_legs_exchanged(fitter, fit.state)] if crossed else []
         if twisted:
             starts.append(with_hips_below_chest(fitter, fit.state))
-        best, least = fit, fit.cost + unusual_legs(fit.state.local_xyzw) - p.crossed_gain
+        best, least = fit, fit.cost - p.crossed_gain
         for start in starts:
             other = fitter.fit(
                 start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
             )
-            cost = other.cost + unusual_legs(other.state.local_xyzw)
-            if cost < least:
-                best, least = other, cost
+            if other.cost < least:
+                best, least = other, other.cost
         return best
 
     def _turned(
