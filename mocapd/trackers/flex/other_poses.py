@@ -6,6 +6,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry.camera_model import centre
@@ -121,13 +122,17 @@ class OtherPoses:
         starts = [with_legs_exchanged(fitter, fit.state)] if crossed else []
         if twisted:
             starts.append(with_hips_below_chest(fitter, fit.state))
-        best, least = fit, fit.cost - p.crossed_gain
+        # below hips that may be wrong no leg is usual; below those that another tracker knows that counts, too
+        unusual = 0.0 if hips_too else 1.0
+        best = fit
+        least = fit.cost + unusual * unusual_legs(fit.state.local_xyzw) - p.crossed_gain
         for start in starts:
             other = fitter.fit(
                 start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
             )
-            if other.cost < least:
-                best, least = other, other.cost
+            cost = other.cost + unusual * unusual_legs(other.state.local_xyzw)
+            if cost < least:
+                best, least = other, cost
         return best
 
     def _turned(
