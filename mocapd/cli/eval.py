@@ -21,7 +21,7 @@ from mocapd.errors import ConfigError
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
     from mocapd.evaluate.capture_eval import BuildTracker, Case
-    from mocapd.evaluate.failures_page import FailureOutcome
+    from mocapd.evaluate.pages.failures_page import FailureOutcome
     from mocapd.evaluate.runs import EvaluationResults
     from mocapd.session.tracker_setup import Progress, ReadyTracker
 
@@ -129,11 +129,12 @@ def evaluate_captures(
 
     from mocapd.app.progress import ProgressBars
     from mocapd.calibration.record import Calibration
-    from mocapd.evaluate import failures_page, runs
+    from mocapd.evaluate import runs
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.compare import FULL
-    from mocapd.evaluate.failures_page import outcomes
-    from mocapd.evaluate.page import write_page
+    from mocapd.evaluate.pages import failures_page
+    from mocapd.evaluate.pages.evaluation_page import write_page
+    from mocapd.evaluate.pages.failures_page import outcomes
     from mocapd.evaluate.simulated import recorded_set
     from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 
@@ -195,9 +196,9 @@ def evaluate_captures(
 
 def _interruptions(config: "Config", as_json: bool, out: Path | None, progress: "Progress") -> None:
     from mocapd.calibration.from_origin import from_capture
-    from mocapd.evaluate import interruptions_page as page
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.interruptions import interruptions
+    from mocapd.evaluate.pages import interruptions_page as page
     from mocapd.evaluate.simulated import recorded_set
     from mocapd.session.tracker_setup import cached, ready_tracker
 
@@ -230,7 +231,8 @@ def _prediction(cases: "list[Case]", config: "Config", build: "BuildTracker") ->
 
 
 def _print(findings: "EvaluationResults", scenes: "list[FailureOutcome]", as_json: bool) -> None:
-    from mocapd.evaluate import failures_page, report
+    from mocapd.evaluate import report
+    from mocapd.evaluate.pages import failures_page
 
     if as_json:
         told: dict[str, Any] = {"tracker": findings.tracker, "joints": findings.joints}

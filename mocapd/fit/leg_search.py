@@ -11,17 +11,15 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.regions import Label
-from mocapd.body.skeleton import PARENTS
 from mocapd.fit.arm_samples import Arm, leg_of, placed
 from mocapd.fit.fit_params import LegSearchParams
 from mocapd.fit.limb_search import (
     PX_OF_M2,
     best_poses,
-    mirrored_bones,
+    candidates,
     part,
     score_in_view,
     spread,
-    turned_about,
     turned_rad2,
 )
 from mocapd.fit.motion_state import MotionState
@@ -104,22 +102,11 @@ class LegSearch:
     ) -> Floats:
         """Local rotations (N,3,4) of thigh, shank and foot to try; the first is the present pose."""
         p = self.params
-        joints, globals_ = self.fitter.joints(state)
-        thigh, shank, foot = leg.chain[:3]
-        present = state.local_xyzw[leg.chain[:3]]
-        out = [present]
-        hips = globals_[PARENTS[thigh]]
-        for view in views:
-            camera = self.fitter.drawings[view.index].camera
-            for q_thigh, q_shank in mirrored_bones(joints, globals_, (thigh, shank, foot), camera):
-                local = present.copy()
-                local[0] = rotations.multiply(rotations.inverse(hips), q_thigh)
-                local[1] = rotations.multiply(rotations.inverse(q_thigh), q_shank)
-                out.append(local)
-        cloud = part(self._cloud, turn, p.cloud)
-        turned = np.repeat(present[None], len(cloud), axis=0)
-        turned[:, :2] = turned_about(present[:2], cloud)
-        return np.concatenate([np.array(out), turned, part(self._library[side], turn, p.library)])
+        cloud, library = (
+            part(self._cloud, turn, p.cloud),
+            part(self._library[side], turn, p.library),
+        )
+        return candidates(self.fitter, state, leg, views, cloud, library, first=0)
 
     def _scores(
         self, state: MotionState, side: str, leg: Arm, views: Sequence[View], tries: Floats

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.pose_space import SIDES, PoseSpace
+from mocapd.body.skeleton import PARENTS
 from mocapd.fit.arm_samples import SKIN_ID, Arm, arm_of, placed
 from mocapd.fit.body_drawing import PartialRender
 from mocapd.fit.fit_params import LimbSearchParams
@@ -32,28 +33,30 @@ PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m
 def candidates(
     fitter: Fitter,
     state: MotionState,
-    arm: Arm,
+    limb: Arm,
     views: Sequence[View],
     cloud: Floats,
     library: Floats,
+    first: int = 1,
 ) -> Floats:
-    """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose.
+    """Local rotations (N,3,4) of a limb's first three bones to try; the first is the present pose.
 
-    cloud (C,6): rotation vectors to turn upper arm and forearm by; library (L,3,4): poses to try as they are.
+    cloud (C,6): rotation vectors to turn its two long bones by; library (L,3,4): poses to try as they are; first: which of
+    the three is the first long one, that of an arm after its collar.
     """
     joints, globals_ = fitter.joints(state)
-    collar, upper, lower, hand = arm.chain
-    present = state.local_xyzw[[collar, upper, lower]]
+    upper, lower, end = limb.chain[first : first + 3]
+    present = state.local_xyzw[limb.chain[:3]]
     out = [present]
     for view in views:
         camera = fitter.drawings[view.index].camera
-        for q_upper, q_lower in mirrored_bones(joints, globals_, (upper, lower, hand), camera):
+        for q_upper, q_lower in mirrored_bones(joints, globals_, (upper, lower, end), camera):
             local = present.copy()
-            local[1] = rotations.multiply(rotations.inverse(globals_[collar]), q_upper)
-            local[2] = rotations.multiply(rotations.inverse(q_upper), q_lower)
+            local[first] = rotations.multiply(rotations.inverse(globals_[PARENTS[upper]]), q_upper)
+            local[first + 1] = rotations.multiply(rotations.inverse(q_upper), q_lower)
             out.append(local)
     turned = np.repeat(present[None], len(cloud), axis=0)
-    turned[:, 1:] = turned_about(present[1:], cloud)
+    turned[:, first : first + 2] = turned_about(present[first : first + 2], cloud)
     return np.concatenate([np.array(out), turned, library])
 
 

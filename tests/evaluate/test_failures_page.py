@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.evaluate import failures_page as page
 from mocapd.evaluate.capture_eval import CaptureResult
+from mocapd.evaluate.pages import failures_page as page
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.simulated.failure_scenes import FAILURE_SCENES
 from mocapd.evaluate.simulated.recorded_set import failures

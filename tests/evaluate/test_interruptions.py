@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mocapd.calibration.from_origin import from_capture
-from mocapd.evaluate import interruptions_page as page
 from mocapd.evaluate.capture_eval import open_case
 from mocapd.evaluate.interruptions import Interruptions, Told, interruptions, switches
+from mocapd.evaluate.pages import interruptions_page as page
 from mocapd.evaluate.simulated.recorded_set import interrupted
 from mocapd.session.tracker_setup import cached, ready_tracker
 from mocapd.types import Floats

@@ -11,7 +11,7 @@ import pytest
 from mocapd.errors import CannotCreateError
 from mocapd.evaluate.capture_eval import CaptureResult
 from mocapd.evaluate.compare import shoulder_angles
-from mocapd.evaluate.page import page, write_page
+from mocapd.evaluate.pages.evaluation_page import page, write_page
 from mocapd.evaluate.report import (
     comparison_tables,
     roc_table,

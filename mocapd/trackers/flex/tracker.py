@@ -204,11 +204,7 @@ class FlexTracker:
         root, local = moved(self._model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
         self._cameras.mark_body(predicted)
-        looks_round = self._turn % p.uncovered_turns == 0
-        self._cameras.stand_before(everywhere=looks_round)
-        if looks_round:
-            self._cameras.take_uncovered()
-        self.probe("background")
+        self._stand_before()
         views = self._cameras.classified(predicted, marked=True)
         self.probe("classify")
         if not views:
@@ -255,11 +251,7 @@ class FlexTracker:
         cameras.mark_body(predicted)
         if cameras.are_new:
             cameras.seed_background()
-        looks_round = self._turn % p.uncovered_turns == 0
-        cameras.stand_before(everywhere=looks_round)
-        if looks_round:
-            cameras.take_uncovered()
-        self.probe("background")
+        self._stand_before()
         is_first = not cameras.know_appearance
         fitter = self._silhouettes if is_first else self._fitter
         if is_first:
@@ -304,6 +296,14 @@ class FlexTracker:
         return _Memory(
             frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views), left
         ), views
+
+    def _stand_before(self) -> None:
+        """Renew what stands before the backgrounds, now and then everywhere, where something may have been uncovered."""
+        looks_round = self._turn % self.params.uncovered_turns == 0
+        self._cameras.stand_before(everywhere=looks_round)
+        if looks_round:
+            self._cameras.take_uncovered()
+        self.probe("background")
 
     def _standing_below(self, upper: Pose, wearer: _Wearer) -> MotionState:
         """Somebody with this upper body whose legs hang straight down."""

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mocapd.errors import CannotCreateError
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.plots import recovery_plot, save
+from mocapd.evaluate.pages.plots import recovery_plot, save
+from mocapd.evaluate.pages.write_out import write_out
 from mocapd.evaluate.recovery import CLEAR_LIMIT_M, frame_errors_m
 from mocapd.evaluate.simulated.failure_scenes import FAILURE_SCENES
 from mocapd.evaluate.simulated.session_plan import PlannedSession
@@ -152,13 +152,7 @@ def write_page(
         limit_cm=100.0 * CLEAR_LIMIT_M,
         wanted_s=WANTED_S,
     )
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
-        ) from None
+    write_out(path, text.encode())
     panels: dict[str, list[tuple[str, Floats, Floats]]] = {}
     clear_s = {}
     for one in found:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from mocapd.errors import CannotCreateError
 from mocapd.evaluate.compare import BASELINE, FULL, ShoulderAngles
 from mocapd.evaluate.interruptions import Interruptions
+from mocapd.evaluate.pages.write_out import write_out
 from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability
 from mocapd.evaluate.roc import Roc
 from mocapd.types import Floats
@@ -140,10 +140,4 @@ def save(figure: Figure, path: Path) -> None:
     metadata: dict[str, Any] = {"Software": None}
     picture = io.BytesIO()
     figure.savefig(picture, format="png", dpi=_DPI, metadata=metadata)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(picture.getvalue())
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
-        ) from None
+    write_out(path, picture.getvalue())

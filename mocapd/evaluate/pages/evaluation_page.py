@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from mocapd.errors import CannotCreateError
 from mocapd.evaluate.compare import BASELINE
+from mocapd.evaluate.pages.write_out import write_out
 from mocapd.evaluate.reliability import reliability
 from mocapd.evaluate.report import comparison_tables, reliability_table, roc_table, score_table
 from mocapd.evaluate.runs import EvaluationResults
@@ -130,17 +130,11 @@ def write_page(directory: Path, findings: EvaluationResults, command: str) -> li
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.compare import shoulder_angles
-    from mocapd.evaluate.plots import reliability_plot, roc_plot, save, shoulder_plot
+    from mocapd.evaluate.pages.plots import reliability_plot, roc_plot, save, shoulder_plot
 
     path = directory / PAGE
     written = [path, directory / RELIABILITY_PLOT]
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        path.write_text(page(findings, command), encoding="utf-8")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
-        ) from None
+    write_out(path, page(findings, command).encode())
     save(reliability_plot(reliability(findings.results, findings.joints)), written[-1])
     if BASELINE in findings.comparison:
         written.append(directory / SHOULDER_PLOT)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mocapd.errors import CannotCreateError
 from mocapd.evaluate.interruptions import Interruptions
-from mocapd.evaluate.plots import Spans, save, speakers_plot
+from mocapd.evaluate.pages.plots import Spans, save, speakers_plot
+from mocapd.evaluate.pages.write_out import write_out
 from mocapd.evaluate.tables import number, table
 from mocapd.sim.scenario import Scenario
 
@@ -116,13 +116,7 @@ def write_page(
     text = _PAGE.format(
         command=command, plot=PLOT, figures=figures_table(of), switches=switches_table(of), errors=errors_table(of)
     )  # fmt: skip
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
-        ) from None
+    write_out(path, text.encode())
     save(speakers_plot(of, LIMIT_CM, spans), directory / PLOT)
     return [path, directory / PLOT]
 
