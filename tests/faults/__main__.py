@@ -2,7 +2,7 @@
 
     python -m tests.faults [NAME...] [--seed N] [--share S]
 
-A name that is the beginning of several does all of them; --share 0.03 is the short run of `make test`. Exit code 1
+A name that is the beginning of several does all of them; --share 0.025 is the short run of `make test`. Exit code 1
 when something was not as it should be. All of them take half an hour; everything stays on 127.0.0.1 and in temporary
 folders.
 """

@@ -163,7 +163,7 @@ class Hands:
 
 def run(extent: Extent) -> Came:
     """See FaultRow."""
-    actions = round(extent.of(ACTIONS, 30))
+    actions = round(extent.of(ACTIONS, SETTLE_EVERY))
     with tempfile.TemporaryDirectory() as folder:
         room = SocketedRoom(Path(folder))
         with faulty_daemon(Path(folder), *room.words, shows=room.shows) as daemon:

@@ -1,0 +1,19 @@
+"""Short runs of what befalls whole processes: they are killed, told to end, and go on for long."""
+
+import pytest
+
+from tests.faults.short_run import short_run
+
+pytestmark = pytest.mark.long
+
+
+def test_processes_killed_while_they_save(clean_env: dict[str, str]) -> None:
+    assert "8 kills" in short_run("killing", clean_env)
+
+
+def test_daemons_told_to_end_at_any_moment(clean_env: dict[str, str]) -> None:
+    assert "2 of 2 ended" in short_run("ending", clean_env)
+
+
+def test_a_daemon_that_goes_on_and_on(clean_env: dict[str, str]) -> None:
+    assert "+0 threads, +0 file descriptors" in short_run("soaking", clean_env, "0.01")
