@@ -7,6 +7,7 @@ somebody was there too often, and nothing is known; nor in what it encloses, the
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 
 import cv2
 import numpy as np
@@ -54,7 +55,8 @@ def _still(
         return np.zeros(shown.shape[1:3], dtype=bool)
     differ = np.zeros(shown.shape[1:3], np.uint8)
     for j in others:
-        apart = cv2.absdiff(shown[k], shown[j]).max(axis=-1)
+        # numpy's own maximum over a last axis of three takes thirty times as long
+        apart = reduce(np.maximum, cv2.split(cv2.absdiff(shown[k], shown[j])))
         tolerance = max(params.tolerance, params.noises * float(np.median(apart)))
         np.maximum(differ, (apart > tolerance).astype(np.uint8), out=differ)
     near = cv2.blur(differ.astype(np.float32), (_NEAR_PX, _NEAR_PX))
