@@ -1,4 +1,7 @@
-"""The setup of somebody who has no shirt, in a real browser, on simulated webcams."""
+"""The setup of somebody who has no shirt, in a real browser, on simulated webcams.
+
+It is not marked as long: begun beside `test_setup.py` it would compile and draw the same, and wait for its films.
+"""
 
 import tomllib
 from collections.abc import Iterator
@@ -8,8 +11,6 @@ from playwright.sync_api import Browser, expect
 
 from tests.browser.conftest import Served, problems_of
 from tests.browser.test_setup import STATURE_CM, STEP_MS, done, shown
-
-pytestmark = pytest.mark.long
 
 
 @pytest.fixture
