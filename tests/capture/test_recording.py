@@ -17,7 +17,7 @@ from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns
 from mocapd.errors import ConfigError, EndOfStream, InputError
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
-from mocapd.types import FrameSet, LabelledPicture
+from mocapd.types import FrameSet, LabelledPicture, Rig
 from tests.capture.films import number_of, write_capture
 from tests.capture.recorded_pictures import START_NS, recorded_capture
 from tests.geometry.rigs import ring
@@ -129,10 +129,20 @@ def test_what_is_missing_in_it_is_named(tmp_path: Path) -> None:
         sets_of(str(tmp_path / "none.mcap"))
 
 
+def test_a_camera_that_its_rig_does_not_know_is_named(tmp_path: Path) -> None:
+    """Else its pictures would be passed over in silence, and a person be tracked by fewer cameras than were recorded."""
+    rig = Rig(ring(2))
+    with RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0) as writer:
+        writer.attach(RecordedKnown(rig), START_NS)
+        for name in (*rig.names, "stranger"):
+            writer.picture(name, 0, START_NS, b"")
+    with pytest.raises(InputError, match="no camera 'stranger'"):
+        sets_of(str(tmp_path / "a.mcap"))
+
+
 def test_no_address_of_a_camera_is_in_it(tmp_path: Path) -> None:
     """Rig and pictures only: the fields of a rig file have no place for one."""
     from mocapd.capture.recording.recorded_known import attachments_of
-    from mocapd.types import Rig
 
     label = LabelledPicture(np.zeros((4, 4, 3), np.uint8), np.zeros((4, 4), np.uint8))
     known = RecordedKnown(Rig(ring(2)), 1.8, (label,), {"cam0": label})
