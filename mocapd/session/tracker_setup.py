@@ -10,6 +10,7 @@ from typing import Any
 
 from mocapd.body.shape import BodyShape
 from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.clock import monotonic_ns
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.session.side_by_side import each_camera
 from mocapd.trackers import registry
@@ -49,6 +50,8 @@ def ready_tracker(
     that live frames need not wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
     """
     shape = known_shape(calibration)
+    if rehearsal is not None:
+        resources = replace(resources, now_ns=monotonic_ns)
     with _pooled(resources) as pooled:
         tracker = watched(build(name, calibration, pooled))
     if rehearsal is not None:

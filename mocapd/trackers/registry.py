@@ -13,7 +13,7 @@ from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
-from mocapd.trackers.base import Tracker
+from mocapd.trackers.base import Tracker, no_time_passes
 from mocapd.trackers.canned.section import CannedSection
 from mocapd.trackers.colour.section import ColourSection
 from mocapd.trackers.colour_paper.section import ColourPaperSection
@@ -43,7 +43,9 @@ class Resources:
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
     that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
     must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
-    each tracker, by name, as usual where absent; each: of a tracker's cameras.
+    each tracker, by name, as usual where absent; each: of a tracker's cameras;
+    now_ns: a clock, by which work that would take too long at one frame set goes on at the next; for recordings it
+    stands still, as they wait as long as it takes.
     """
 
     cache_dir: Path = field(default_factory=Path)
@@ -53,6 +55,7 @@ class Resources:
     tracking: TrackingStateParams | None = None
     sections: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
+    now_ns: Callable[[], int] = no_time_passes
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +151,9 @@ def _colour_paper(
 def _flex(calibration: Calibration, section: FlexSection, resources: Resources) -> Tracker:
     from mocapd.trackers.flex.build import build_flex_tracker
 
-    return build_flex_tracker(calibration, section, resources.tracking, resources.each)
+    return build_flex_tracker(
+        calibration, section, resources.tracking, resources.each, resources.now_ns
+    )
 
 
 def _flex_paper(

@@ -1,10 +1,12 @@
 """Make the tracker without a shirt from what is known of rig and person."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from mocapd.calibration.record import Calibration
 from mocapd.each import Each, in_turn
 from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.trackers.base import no_time_passes
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.section import FlexSection
 from mocapd.trackers.flex.tracker import FlexTracker
@@ -23,10 +25,11 @@ def build_flex_tracker(
     section: FlexSection | None = None,
     tracking: TrackingStateParams | None = None,
     each: Each = in_turn,
+    now_ns: Callable[[], int] = no_time_passes,
 ) -> FlexTracker:
-    """The tracker as a user set it. Raises ConfigError naming what is missing."""
+    """The tracker as a user set it; now_ns: see `registry.Resources`. Raises ConfigError naming what is missing."""
     rig, stature = known_rig(calibration), stature_m(calibration)
-    return FlexTracker(rig, stature, params_of(section), tracking, frontal_faces(), each)
+    return FlexTracker(rig, stature, params_of(section), tracking, frontal_faces(), each, now_ns)
 
 
 def params_of(section: FlexSection | None) -> Params:

@@ -32,8 +32,10 @@ class StartParams:
         0.08  # of such agreement a person who is a metre farther away must have more
     )
     people: int = 2  # of whom the best is taken
+    longest_s: float = 0.5  # of a look at one frame set, before it goes on at the next
+    walked_m: float = 1.0  # by somebody meanwhile, at most
     pause_s: float = 0.2  # between attempts that failed
-    most_rest_s: float = 2.0  # after one that took longer than that, for as long as it took
+    most_rest_s: float = 2.0  # after a step that took longer than that, for as long as it took
 
 
 @dataclass(frozen=True, slots=True)

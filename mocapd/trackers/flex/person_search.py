@@ -1,6 +1,7 @@
 """Who stands before the background and is to be tracked: a person, and of several the nearest."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,12 +11,31 @@ from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.params import StartParams
-from mocapd.trackers.flex.stance import blobs_of, first_fit, is_standing, standing
+from mocapd.trackers.flex.stance import (
+    Standing,
+    blobs_of,
+    first_fit,
+    fit_to_blobs,
+    is_standing,
+    standing,
+)
 from mocapd.types import Camera, Floats
+
+Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """Somebody before the background, or likely so; shadows: with what may be one. offsets_s: each camera's own time after
+    the frame set's, by index."""
+
+    who: Standing
+    shadows: bool
+    offsets_s: Mapping[int, float]
 
 
 class LookTimes:
-    """When to look. Where a look takes long, others get as many pictures between two looks as it cost them."""
+    """When to look. Where a piece of a look takes long, others get as many pictures before the next as it cost them."""
 
     def __init__(self, params: StartParams) -> None:
         self._pause_ns = nanoseconds(params.pause_s)
@@ -24,7 +44,7 @@ class LookTimes:
         self._looked_ns: int | None = None  # until the frame set after it has come
 
     def came(self, t_ns: int) -> None:
-        """A frame set: the first after a look tells how long that took."""
+        """A frame set: the first after a piece tells how long that took."""
         if self._looked_ns is None:
             return
         took_ns, self._looked_ns = t_ns - self._looked_ns, None
@@ -32,15 +52,19 @@ class LookTimes:
             self._next_ns = t_ns + min(took_ns, self._most_ns)
 
     def is_due(self, t_ns: int) -> bool:
-        """Of a frame set that came, in which nobody is known; True: it is looked now."""
-        if t_ns < self._next_ns:
-            return False
-        self._next_ns, self._looked_ns = t_ns + self._pause_ns, t_ns
-        return True
+        """Of a frame set that came, in which nobody is known: whether it is time for a look, or for more of one."""
+        return t_ns >= self._next_ns
+
+    def looked(self, t_ns: int, to_the_end: bool) -> None:
+        """A piece was done at this frame set; after the last piece of a look there is a pause."""
+        self._looked_ns = t_ns
+        if to_the_end:
+            self._next_ns = t_ns + self._pause_ns
 
 
 class PersonSearch:
-    """Remembers when it may look again, and where somebody was likely at the last look."""
+    """Looks for somebody; on a slow machine a look goes on over some frame sets, as the webcams and the output cannot wait.
+    Remembers when it may look again, and where somebody was likely at the last look."""
 
     def __init__(
         self,
@@ -49,62 +73,116 @@ class PersonSearch:
         views: CameraViews,
         cameras: Sequence[Camera],
         params: StartParams,
+        now_ns: Callable[[], int],
     ) -> None:
-        """silhouettes: a fitter whose body is of one colour; cameras: those of the views."""
+        """silhouettes: a fitter whose body is of one colour; cameras: those of the views; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
-        self._cameras, self._params = cameras, params
+        self._cameras, self._params, self._clock_ns = cameras, params, now_ns
         self.reset()
 
     def reset(self) -> None:
         """Look at once, and remember nobody."""
         self.times = LookTimes(self._params)
         self._likely_m: list[Floats] = []
+        self._began_ns = self._now_ns = 0
+        self.give_up()
 
-    def look(
-        self, factors: Floats, information: Floats, t_ns: int
-    ) -> tuple[Fit, tuple[str, ...]] | None:
-        """Somebody of these proportions, and the cameras that show them; None: nobody, or it is not time to look."""
-        p, views = self._params, self._views
-        if views.are_new or not self.times.is_due(t_ns):
+    def give_up(self) -> None:
+        """The look under way is of no use any more."""
+        self._under_way: Generator[None, None, Found | None] | None = None
+
+    def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
+        """Somebody of these proportions as the newest pictures show them, and the cameras that do; None: nobody, or not
+        known yet, or it is not time to look."""
+        if self._views.are_new:
+            self.give_up()
             return None
-        views.mark_body(None)
-        views.stand_before()
-        views.take_uncovered()
-        fits = [
-            one
-            for shadows in (False, True)
-            for one in self._standing(factors, information, shadows)
-        ]
-        likely = [
-            one
-            for one in fits
-            if one[0].explained >= p.likely_explained and is_standing(self._silhouettes, one[0])
-        ]
+        if not self.times.is_due(t_ns):
+            return None
+        if self._under_way is None:
+            self._under_way = self._look(factors, information)
+            self._began_ns = t_ns
+        self._now_ns = t_ns
+        until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
+        try:
+            next(self._under_way)
+            while self._clock_ns() < until_ns:
+                next(self._under_way)
+        except StopIteration as end:
+            self.give_up()
+            self.times.looked(t_ns, to_the_end=True)
+            found: Found | None = end.value
+            return found
+        self.times.looked(t_ns, to_the_end=False)
+        return None
+
+    def _look(self, factors: Floats, information: Floats) -> Generator[None, None, Found | None]:
+        """A whole look; it may be left after each fit, and gone on with at another frame set."""
+        p = self._params
+        self._see()
+        fits = []
+        for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
+            fit = yield from first_fit(
+                self._silhouettes, seen.who, seen.offsets_s, factors, information, (self._floor,), p
+            )
+            fits.append((fit, seen))
+        likely = [one for one in fits if self._is_likely(one[0])]
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             return None
         # who is nearer wants to be tracked: a passer-by is seldom in front
-        fit, names = max(
+        fit, seen = max(
             likely, key=lambda one: one[0].explained - p.farther_per_m * self._away_m(one[0])
         )
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
-        return None if fit.explained < p.accept_explained and not again else (fit, names)
+        if fit.explained < p.accept_explained and not again:
+            return None
+        if self._now_ns == self._began_ns:
+            return fit, self._names(seen)
+        return self._as_now(fit, seen)
 
-    def _standing(
-        self, factors: Floats, information: Floats, shadows: bool
-    ) -> list[tuple[Fit, tuple[str, ...]]]:
-        """People before the background, and the cameras that show them; shadows: with what may be one."""
+    def _as_now(self, fit: Fit, then: _Seen) -> Found | None:
+        """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
+        p = self._params
+        self._see()
+        away_m, now = min(
+            (
+                (float(np.linalg.norm(one.who.place_m - then.who.place_m)), one)
+                for one in self._standing(then.shadows)
+            ),
+            key=lambda one: one[0],
+            default=(np.inf, then),
+        )
+        if away_m > p.walked_m:
+            return None
+        went = replace(fit.state, root_m=fit.state.root_m + now.who.place_m - then.who.place_m)
+        fit = fit_to_blobs(
+            self._silhouettes, now.who, now.offsets_s, went, p.iterations, (self._floor,), p
+        )
+        return (fit, self._names(now)) if self._is_likely(fit) else None
+
+    def _see(self) -> None:
+        """Everything that stands before the background."""
+        self._views.mark_body(None)
+        self._views.stand_before()
+        self._views.take_uncovered()
+
+    def _standing(self, shadows: bool) -> list[_Seen]:
+        """The likeliest people before the background; shadows: with what may be one."""
         p, views = self._params, self._views
         blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in views.present}
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
-        return [
-            (
-                first_fit(self._silhouettes, who, views.present, factors, information, (self._floor,), p),
-                tuple(views.each[i].name for i in who.blobs),
-            )
-            for who in standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
-        ]  # fmt: skip
+        people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
+        return [_Seen(who, shadows, dict(views.present)) for who in people]
+
+    def _is_likely(self, fit: Fit) -> bool:
+        return fit.explained >= self._params.likely_explained and is_standing(
+            self._silhouettes, fit
+        )
+
+    def _names(self, seen: _Seen) -> tuple[str, ...]:
+        return tuple(self._views.each[i].name for i in seen.who.blobs)
 
     def _away_m(self, fit: Fit) -> float:
         """From the cameras, on average."""

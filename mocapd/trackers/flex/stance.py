@@ -1,6 +1,6 @@
 """The first pose: a silhouette before the known background, as somebody who faces the cameras and stands on the floor."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -149,34 +149,46 @@ def first_fit(
     information: Floats,
     terms: Sequence[PoseTerm],
     params: StartParams,
-) -> Fit:
-    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette.
+) -> Generator[None, None, Fit]:
+    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each
+    fit. offsets_s: each camera's own time after the frame set's, by index."""
+    rest = fitter.shaper(factors).rest
+    roughly: list[Fit] = []
+    for yaw in _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs]):
+        for arm in params.arms_rad:
+            state = MotionState(
+                rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
+            )  # fmt: skip
+            roughly.append(
+                fit_to_blobs(fitter, who, offsets_s, state, params.rough_iterations, terms, params)
+            )
+            yield
+    roughly.sort(key=lambda fit: fit.cost)
+    best: Fit | None = None
+    for one in roughly[: params.refined]:
+        fit = fit_to_blobs(fitter, who, offsets_s, one.state, params.iterations, terms, params)
+        yield
+        if best is None or fit.cost < best.cost:
+            best = fit
+    assert best is not None  # some stances are always tried
+    return best
 
-    offsets_s: each camera's own time after the frame set's, by index.
-    """
+
+def fit_to_blobs(
+    fitter: Fitter,
+    who: Standing,
+    offsets_s: Mapping[int, float],
+    state: MotionState,
+    iterations: int,
+    terms: Sequence[PoseTerm],
+    params: StartParams,
+) -> Fit:
+    """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
     views = [
         View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
         for i, blob in who.blobs.items()
     ]  # fmt: skip
-    rest = fitter.shaper(factors).rest
-    begins = [
-        MotionState(
-            rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
-        )
-        for yaw in _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
-        for arm in params.arms_rad
-    ]  # fmt: skip
-
-    def fitted(state: MotionState, iterations: int) -> Fit:
-        return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
-
-    roughly = sorted(
-        (fitted(state, params.rough_iterations) for state in begins), key=lambda fit: fit.cost
-    )
-    return min(
-        (fitted(fit.state, params.iterations) for fit in roughly[: params.refined]),
-        key=lambda fit: fit.cost,
-    )
+    return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
 
 
 def _ways(who: Standing, eyes_m: Sequence[Floats]) -> list[float]:

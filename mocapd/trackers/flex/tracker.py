@@ -1,6 +1,6 @@
 """The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
-from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
 from mocapd.trackers.blending import Residual, later, residual_of
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
@@ -73,8 +73,10 @@ class FlexTracker:
         tracking: TrackingStateParams | None = None,
         cascade: CascadeArrays | None = None,
         each: Each = in_turn,
+        now_ns: Callable[[], int] = no_time_passes,
     ) -> None:
-        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing. each: of the cameras."""
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing. each: of the cameras.
+        now_ns: see `registry.Resources`."""
         self.params = p = params if params is not None else Params()
         self.rig = rig
         body = build_model(stature_m, full_body())
@@ -89,7 +91,7 @@ class FlexTracker:
         self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
         self._cameras = CameraViews(self._fitter, p)
         self._find = PersonSearch(
-            self._silhouettes, self._floor, self._cameras, rig.cameras, p.start
+            self._silhouettes, self._floor, self._cameras, rig.cameras, p.start, now_ns
         )
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
         self._tracking = TrackingState(tracking)
@@ -160,6 +162,7 @@ class FlexTracker:
             raise ValueError("a guide that knows no pose")
         wearer, known = self._begin(frames, shape)
         self._near = None
+        self._find.give_up()
         views: list[View] = []
         if self._cameras.present:
             known, views = self._follow_guide(known, upper.pose, wearer, frames)

@@ -1,6 +1,7 @@
 """The tracker without a shirt as its users notice it: it starts by itself, follows, goes when they go, and can be led."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -52,6 +53,19 @@ def test_somebody_who_walks_in_is_followed_from_head_to_foot(
     assert np.median(away[:, ARMS]) < 0.10
     assert tracks[-1].quality > 0.6
     assert np.median(tracks[-1].body.confidence[LEGS]) > 0.3
+
+
+def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> None:
+    slow = Stepping(
+        build_flex_tracker(film.known, now_ns=count(step=1_000_000_000).__next__),
+        known_shape(film.known),
+    )
+    tracks = run(slow, film.frames)
+    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    assert live[0] - N_EMPTY < 40  # one fit at each
+    assert live == list(range(live[0], len(tracks)))
+    away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
+    assert np.median(away) < 0.08
 
 
 def test_who_leaves_is_lost_and_nothing_stays_behind(film: PlainFilm, tracker: Stepping) -> None:

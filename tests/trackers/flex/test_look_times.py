@@ -6,11 +6,13 @@ from mocapd.trackers.flex.person_search import LookTimes
 
 
 def looks(seconds: float, look_s: float) -> list[bool]:
-    """Of the frame sets that come at 25 Hz, those that are looked at; a look takes so long."""
+    """Of the frame sets that come at 25 Hz, those that are looked at; each is a look, which takes so long."""
     times, t_s, found = LookTimes(StartParams()), 1.0, []
     while t_s < seconds:
         times.came(nanoseconds(t_s))
         found.append(times.is_due(nanoseconds(t_s)))
+        if found[-1]:
+            times.looked(nanoseconds(t_s), to_the_end=True)
         t_s += max(0.04, look_s) if found[-1] else 0.04
     return found
 
@@ -26,6 +28,14 @@ def test_on_a_slow_machine_others_see_pictures_one_after_the_other_between_two_l
     between = "".join("x" if one else "." for one in found).strip(".").split("x")
     assert all(len(one) >= 40 for one in between if one)
     assert len([one for one in between if one]) >= sum(found) - 1
+
+
+def test_a_look_under_way_goes_on_with_every_frame_set() -> None:
+    times = LookTimes(StartParams())
+    for t_s in (1.0, 1.04, 1.08):
+        times.came(nanoseconds(t_s))
+        assert times.is_due(nanoseconds(t_s))
+        times.looked(nanoseconds(t_s), to_the_end=False)
 
 
 def test_the_first_frame_set_is_looked_at() -> None:
