@@ -36,13 +36,14 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.app.progress import ProgressBars
     from mocapd.app.running import INTERNAL_ERROR, Signals, end_despite_work
     from mocapd.app.status_line import StatusLine
+    from mocapd.app.supervised.notifier import Notifier
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
     from mocapd.node.imperfections import parse_imperfections
     from mocapd.outputs.registry import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs, common_origin
 
-    signals = Signals()
+    signals, notifier = Signals(), Notifier.of_environment()
     origin = common_origin(config.camera)
     with ProgressBars() as progress:
         opened = open_origin(origin, config.cache_dir, progress) if origin else None
@@ -55,8 +56,13 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     try:
         with node, StatusLine() as shown:
             print("\n".join(_how_to(node)), flush=True)
+            notifier.ready(how_cameras_fare(node))
             while not node.wait(SHOW_EVERY_S):
                 shown.say(lambda: state_text(node))
+                notifier.status(how_cameras_fare(node))
+                if notifier.wants_life:
+                    notifier.alive()
+            notifier.stopping()
     except NodeThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR
@@ -67,6 +73,11 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
 def _how_to(node: "CameraNode") -> list[str]:
     sources = [f'    source = "{address}"' for address in node.addresses()]
     return ["in the daemon's configuration, one [[camera]] for each of:", *sources]
+
+
+def how_cameras_fare(node: "CameraNode") -> str:
+    """In a word each; it changes only when something happens."""
+    return ", ".join(f"{one.name} {one.state.state}" for one in node.cameras)
 
 
 def state_text(node: "CameraNode") -> str:

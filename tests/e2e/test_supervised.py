@@ -97,6 +97,25 @@ def test_a_life_as_the_service_manager_sees_it(
     assert len({*lines}) == len(lines)
 
 
+def test_a_camera_node_is_a_service_too(
+    clean_env: dict[str, str], manager: Manager, tmp_path: Path
+) -> None:
+    film = write_film(tmp_path / "a.avi", MINUTE)
+    words = ("camera-node", f"--camera=a={film}", "--set", f"zenoh.port={free_port()}")
+    with supervised(clean_env, manager, *COMMAND, *words) as node:
+        began = manager.until("READY", "1")
+        assert began[0]["READY"] == "1"
+        if began[0]["STATUS"] != "a live":
+            manager.until("STATUS", "a live")
+        for _ in range(SIGNS):
+            manager.until("WATCHDOG", "1")
+        node.send_signal(signal.SIGTERM)
+        manager.until("STOPPING", "1")
+        _, journal = end_within(node, 2.0)
+    assert node.returncode == 0, journal
+    assert len(journal.splitlines()) <= MOST_LINES, journal
+
+
 def test_ready_waits_for_no_compiler(
     clean_env: dict[str, str], manager: Manager, tmp_path: Path, simulated: str
 ) -> None:

@@ -92,9 +92,14 @@ def test_it_names_nobody_as_its_maintainer_unless_told(
 
 def test_the_units_start_what_is_in_the_package(unpacked: Path) -> None:
     python = unpacked / "usr/lib/mocapd/bin/python"
-    for unit in ("system/mocapd.service", "system/mocapd@.service", "user/mocapd.service"):
-        text = (unpacked / "usr/lib/systemd" / unit).read_text()
-        assert f"ExecStart=/{python.relative_to(unpacked)} -P -m mocapd.cli.main run" in text
+    start = f"ExecStart=/{python.relative_to(unpacked)} -P -m mocapd.cli.main"
+    for unit, command in (
+        ("system/mocapd.service", "run"),
+        ("system/mocapd@.service", "run"),
+        ("system/mocapd-camera-node.service", "camera-node"),
+        ("user/mocapd.service", "run"),
+    ):
+        assert f"{start} {command}\n" in (unpacked / "usr/lib/systemd" / unit).read_text()
     assert python.is_symlink()
     assert python.resolve() == DEBIANS.resolve()
     assert (unpacked / "usr/bin/mocapd").resolve() == unpacked / "usr/lib/mocapd/bin/mocapd"

@@ -6,7 +6,7 @@ import mocapd
 from mocapd.errors import ConfigError
 
 FOLDER = Path(mocapd.__file__).parent / "systemd"
-UNITS = ("mocapd.service", "mocapd@.service")
+UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
 USER_UNIT = "mocapd-user.service"
 EXAMPLE = "network.conf"
 SYSUSERS = "mocapd.sysusers"

@@ -13,7 +13,7 @@ from mocapd.app.service_files.installing import Target, install
 from mocapd.config.effective import load_config
 
 TIGHT_ENOUGH = "20"  # in tenths: 2.0 of 10, "OK"
-UNITS = ("mocapd.service", "mocapd@.service")
+UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,9 @@ def said(*words: str | Path, env: dict[str, str] | None = None) -> tuple[int, st
     return done.returncode, done.stdout
 
 
-@pytest.mark.parametrize("unit", ["mocapd.service", "mocapd@hall.service"])
+@pytest.mark.parametrize(
+    "unit", ["mocapd.service", "mocapd@hall.service", "mocapd-camera-node.service"]
+)
 def test_systemd_has_nothing_to_complain_of(analyze: str, package: Path, unit: str) -> None:
     path = package / "usr/lib/systemd/system" / unit
     assert said(analyze, "verify", "--man=no", path) == (0, "")
@@ -89,7 +91,8 @@ def test_the_user_is_made_in_the_group_of_the_webcams(package: Path) -> None:
 def test_the_units_start_the_mocapd_that_installed_them(package: Path) -> None:
     for path in package.glob("usr/lib/systemd/*/mocapd*.service"):
         (started,) = re.findall(r"^ExecStart=(.*)$", path.read_text(), re.MULTILINE)
-        assert started == f"{sys.executable} -P -m mocapd.cli.main run"
+        command = "camera-node" if "camera-node" in path.name else "run"
+        assert started == f"{sys.executable} -P -m mocapd.cli.main {command}"
         shown = said(*started.split()[:-1], "version")
         assert shown[0] == 0, shown[1]
 
