@@ -3,7 +3,7 @@
 import shutil
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.boundary.messages import decode_json
+from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.identity import parse_identity
 from mocapd.capture.webcam.listing import CameraInfo
@@ -25,6 +26,8 @@ from mocapd.web.links.wizard_link import PageCommand
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
 from mocapd.wizard.check.check_settings import CheckSettings
+from mocapd.wizard.check.check_step import CheckStep
+from mocapd.wizard.check.check_tracking import CheckTracker
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Json, Tell
@@ -52,8 +55,8 @@ class CountingWizard(Wizard):
 
 
 class SetupBench:
-    """One setup, from its beginning to `close`. Every step is done in its draft but Colour, so nothing heavy
-    is begun. The cameras show grey, and a new picture before every command. Its files are in a folder of its
+    """One setup, from its beginning to `close`. Every step is done in its draft but Colour, and no tracker can be loaded, so
+    nothing heavy is begun. The cameras show grey, and a new picture before every command. Its files are in a folder of its
     own within `folder`."""
 
     def __init__(self, folder: Path, step: StepName = StepName.CAMERAS) -> None:
@@ -72,6 +75,13 @@ class SetupBench:
         settings = CheckSettings(TrackerSection())
         steps = dict(all_steps(cameras, settings, NewestBody(), self.deaths.append))
         steps[StepName.COLOUR] = partial(ColourStep, load=_no_database)
+        steps[StepName.CHECK] = partial(
+            CheckStep,
+            settings=settings,
+            shown=NewestBody(),
+            died=self.deaths.append,
+            load=_no_tracker,
+        )
         self.wizard = CountingWizard(
             self.hub,
             steps,
@@ -139,6 +149,13 @@ class SetupBench:
 
 def _no_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
     """It takes a minute to make."""
+    raise CannotCreateError("the cache cannot be written", str(cache_dir), "make room")
+
+
+def _no_tracker(
+    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
+) -> CheckTracker:
+    """It takes seconds and much memory, in a thread."""
     raise CannotCreateError("the cache cannot be written", str(cache_dir), "make room")
 
 

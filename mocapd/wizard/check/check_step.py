@@ -18,7 +18,7 @@ from mocapd.pipeline.loop import OnDeath
 from mocapd.types import Tracking
 from mocapd.wizard.check.check_measure import Measure
 from mocapd.wizard.check.check_settings import CheckSettings
-from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, prepare
+from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
 from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
 from mocapd.wizard.check.check_verdict import (
     CameraVerdict,
@@ -77,9 +77,14 @@ class CheckStep:
     verbs = CHECK
 
     def __init__(
-        self, context: Context, settings: CheckSettings, shown: NewestBody, died: OnDeath
+        self,
+        context: Context,
+        settings: CheckSettings,
+        shown: NewestBody,
+        died: OnDeath,
+        load: LoadTracker = prepare,
     ) -> None:
-        self._context, self._settings = context, settings
+        self._context, self._settings, self._load = context, settings, load
         self._shown, self._died = shown, died
         self._tracking: CheckTracking | None = None
         self._prepared: CheckTracker | None = None  # until the room is empty
@@ -101,7 +106,8 @@ class CheckStep:
             self._phase = Phase.MISSING
             return
         known, settings, cache_dir = calibration_of(draft), self._settings, self._context.cache_dir
-        self._context.start_job(lambda tell: prepare(known, settings, cache_dir, tell), self._run)
+        load = self._load
+        self._context.start_job(lambda tell: load(known, settings, cache_dir, tell), self._run)
 
     def tick(self, now_ns: int) -> None:
         """See Step."""

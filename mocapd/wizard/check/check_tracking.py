@@ -36,6 +36,11 @@ class CheckTracker:
     measures: TrackingMeasures
 
 
+LoadTracker = Callable[
+    [Calibration, CheckSettings, Path, Callable[[str, float], None]], CheckTracker
+]
+
+
 def prepare(
     known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
 ) -> CheckTracker:
