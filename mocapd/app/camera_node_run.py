@@ -56,10 +56,10 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     try:
         with node, StatusLine() as shown:
             print("\n".join(_how_to(node)), flush=True)
-            notifier.ready(how_cameras_fare(node))
+            notifier.ready(_how_cameras_fare(node))
             while not node.wait(SHOW_EVERY_S):
                 shown.say(lambda: state_text(node))
-                notifier.status(how_cameras_fare(node))
+                notifier.status(_how_cameras_fare(node))
                 if notifier.wants_life:
                     notifier.alive()
             notifier.stopping()
@@ -75,7 +75,7 @@ def _how_to(node: "CameraNode") -> list[str]:
     return ["in the daemon's configuration, one [[camera]] for each of:", *sources]
 
 
-def how_cameras_fare(node: "CameraNode") -> str:
+def _how_cameras_fare(node: "CameraNode") -> str:
     """In a word each; it changes only when something happens."""
     return ", ".join(f"{one.name} {one.state.state}" for one in node.cameras)
 

@@ -102,10 +102,8 @@ class LegSearch:
     ) -> Floats:
         """Local rotations (N,3,4) of thigh, shank and foot to try; the first is the present pose."""
         p = self.params
-        cloud, library = (
-            part(self._cloud, turn, p.cloud),
-            part(self._library[side], turn, p.library),
-        )
+        cloud = part(self._cloud, turn, p.cloud)
+        library = part(self._library[side], turn, p.library)
         return candidates(self.fitter, state, leg, views, cloud, library, first=0)
 
     def _scores(

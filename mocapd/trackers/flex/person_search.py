@@ -1,12 +1,12 @@
 """Who stands before the background and is to be tracked: a person, and of several the nearest."""
 
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.clock import nanoseconds
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.flex.camera_views import CameraViews
@@ -18,6 +18,7 @@ from mocapd.trackers.flex.stance import (
     fit_to_blobs,
     is_standing,
     standing,
+    views_of,
 )
 from mocapd.types import Camera, Floats
 
@@ -26,12 +27,14 @@ Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
-    """Somebody before the background, or likely so; shadows: with what may be one. offsets_s: each camera's own time after
-    the frame set's, by index."""
+    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one."""
 
     who: Standing
     shadows: bool
-    offsets_s: Mapping[int, float]
+    views: tuple[View, ...]
+
+
+_Likely = tuple[Fit, _Seen]
 
 
 class LookTimes:
@@ -84,12 +87,11 @@ class PersonSearch:
         """Look at once, and remember nobody."""
         self.times = LookTimes(self._params)
         self._likely_m: list[Floats] = []
-        self._began_ns = self._now_ns = 0
         self.give_up()
 
     def give_up(self) -> None:
         """The look under way is of no use any more."""
-        self._under_way: Generator[None, None, Found | None] | None = None
+        self._under_way: Generator[None, None, _Likely | None] | None = None
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
         """Somebody of these proportions as the newest pictures show them, and the cameras that do; None: nobody, or not
@@ -99,10 +101,9 @@ class PersonSearch:
             return None
         if not self.times.is_due(t_ns):
             return None
+        begins = self._under_way is None
         if self._under_way is None:
             self._under_way = self._look(factors, information)
-            self._began_ns = t_ns
-        self._now_ns = t_ns
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
             next(self._under_way)
@@ -111,19 +112,21 @@ class PersonSearch:
         except StopIteration as end:
             self.give_up()
             self.times.looked(t_ns, to_the_end=True)
-            found: Found | None = end.value
-            return found
+            likeliest: _Likely | None = end.value
+            if likeliest is not None and not begins:
+                likeliest = self._as_now(*likeliest)
+            return None if likeliest is None else (likeliest[0], self._names(likeliest[1]))
         self.times.looked(t_ns, to_the_end=False)
         return None
 
-    def _look(self, factors: Floats, information: Floats) -> Generator[None, None, Found | None]:
-        """A whole look; it may be left after each fit, and gone on with at another frame set."""
+    def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
+        """A whole look at the newest pictures; it may be left after each fit, and gone on with at another frame set."""
         p = self._params
         self._see()
         fits = []
         for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
             fit = yield from first_fit(
-                self._silhouettes, seen.who, seen.offsets_s, factors, information, (self._floor,), p
+                self._silhouettes, seen.who, seen.views, factors, information, (self._floor,), p
             )
             fits.append((fit, seen))
         likely = [one for one in fits if self._is_likely(one[0])]
@@ -137,11 +140,9 @@ class PersonSearch:
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
         if fit.explained < p.accept_explained and not again:
             return None
-        if self._now_ns == self._began_ns:
-            return fit, self._names(seen)
-        return self._as_now(fit, seen)
+        return fit, seen
 
-    def _as_now(self, fit: Fit, then: _Seen) -> Found | None:
+    def _as_now(self, fit: Fit, then: _Seen) -> _Likely | None:
         """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
         p = self._params
         self._see()
@@ -156,10 +157,8 @@ class PersonSearch:
         if away_m > p.walked_m:
             return None
         went = replace(fit.state, root_m=fit.state.root_m + now.who.place_m - then.who.place_m)
-        fit = fit_to_blobs(
-            self._silhouettes, now.who, now.offsets_s, went, p.iterations, (self._floor,), p
-        )
-        return (fit, self._names(now)) if self._is_likely(fit) else None
+        fit = fit_to_blobs(self._silhouettes, now.views, went, p.iterations, (self._floor,), p)
+        return (fit, now) if self._is_likely(fit) else None
 
     def _see(self) -> None:
         """Everything that stands before the background."""
@@ -174,7 +173,7 @@ class PersonSearch:
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
         people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
-        return [_Seen(who, shadows, dict(views.present)) for who in people]
+        return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
 
     def _is_likely(self, fit: Fit) -> bool:
         return fit.explained >= self._params.likely_explained and is_standing(

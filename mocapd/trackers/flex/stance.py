@@ -141,17 +141,25 @@ def is_standing(fitter: Fitter, fit: Fit) -> bool:
     )
 
 
+def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
+    """Somebody's blobs as what a fit of silhouettes looks at; offsets_s: each camera's own time after the frame set's, by
+    index."""
+    return tuple(
+        View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
+        for i, blob in who.blobs.items()
+    )
+
+
 def first_fit(
     fitter: Fitter,
     who: Standing,
-    offsets_s: Mapping[int, float],
+    views: Sequence[View],
     factors: Floats,
     information: Floats,
     terms: Sequence[PoseTerm],
     params: StartParams,
 ) -> Generator[None, None, Fit]:
-    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each
-    fit. offsets_s: each camera's own time after the frame set's, by index."""
+    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
     rest = fitter.shaper(factors).rest
     roughly: list[Fit] = []
     for yaw in _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs]):
@@ -160,34 +168,26 @@ def first_fit(
                 rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
             )  # fmt: skip
             roughly.append(
-                fit_to_blobs(fitter, who, offsets_s, state, params.rough_iterations, terms, params)
+                fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
             )
             yield
     roughly.sort(key=lambda fit: fit.cost)
-    best: Fit | None = None
+    refined: list[Fit] = []
     for one in roughly[: params.refined]:
-        fit = fit_to_blobs(fitter, who, offsets_s, one.state, params.iterations, terms, params)
+        refined.append(fit_to_blobs(fitter, views, one.state, params.iterations, terms, params))
         yield
-        if best is None or fit.cost < best.cost:
-            best = fit
-    assert best is not None  # some stances are always tried
-    return best
+    return min(refined, key=lambda fit: fit.cost)
 
 
 def fit_to_blobs(
     fitter: Fitter,
-    who: Standing,
-    offsets_s: Mapping[int, float],
+    views: Sequence[View],
     state: MotionState,
     iterations: int,
     terms: Sequence[PoseTerm],
     params: StartParams,
 ) -> Fit:
     """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
-    views = [
-        View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
-        for i, blob in who.blobs.items()
-    ]  # fmt: skip
     return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from enum import StrEnum
+from functools import partial
 
 from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.clock import NS_PER_S, seconds
@@ -105,9 +106,8 @@ class CheckStep:
         if self._problems:
             self._phase = Phase.MISSING
             return
-        known, settings, cache_dir = calibration_of(draft), self._settings, self._context.cache_dir
-        load = self._load
-        self._context.start_job(lambda tell: load(known, settings, cache_dir, tell), self._run)
+        known, cache_dir = calibration_of(draft), self._context.cache_dir
+        self._context.start_job(partial(self._load, known, self._settings, cache_dir), self._run)
 
     def tick(self, now_ns: int) -> None:
         """See Step."""

@@ -22,6 +22,7 @@ from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.only_cameras import OnlyCameras
+from mocapd.wizard.step import Tell
 
 _BUILDING = 0.8  # share of the preparation that is not the rehearsal
 
@@ -36,13 +37,11 @@ class CheckTracker:
     measures: TrackingMeasures
 
 
-LoadTracker = Callable[
-    [Calibration, CheckSettings, Path, Callable[[str, float], None]], CheckTracker
-]
+LoadTracker = Callable[[Calibration, CheckSettings, Path, Tell], CheckTracker]
 
 
 def prepare(
-    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
+    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Tell
 ) -> CheckTracker:
     """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
     section = settings.tracker
