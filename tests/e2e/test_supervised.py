@@ -69,6 +69,17 @@ def daemon(
         process.kill()
 
 
+def journal_of_an_orderly_end(process: subprocess.Popen[str], manager: Manager) -> str:
+    """Of one that goes on giving signs of life until it is told to end."""
+    for _ in range(SIGNS):
+        manager.until("WATCHDOG", "1")
+    process.send_signal(signal.SIGTERM)
+    manager.until("STOPPING", "1")
+    _, journal = end_within(process, 2.0)
+    assert process.returncode == 0, journal
+    return journal
+
+
 def test_a_life_as_the_service_manager_sees_it(
     daemon: subprocess.Popen[str], manager: Manager
 ) -> None:
@@ -81,12 +92,7 @@ def test_a_life_as_the_service_manager_sees_it(
     (reloading,) = manager.until("RELOADING", "1")[-1:]
     assert int(reloading["MONOTONIC_USEC"]) > 0
     manager.until("READY", "1")
-    for _ in range(SIGNS):
-        manager.until("WATCHDOG", "1")
-    daemon.send_signal(signal.SIGTERM)
-    manager.until("STOPPING", "1")
-    _, journal = end_within(daemon, 2.0)
-    assert daemon.returncode == 0, journal
+    journal = journal_of_an_orderly_end(daemon, manager)
     assert manager.waiting() == []  # a word after the end would be a word of another
 
     lines = journal.splitlines()
@@ -107,12 +113,7 @@ def test_a_camera_node_is_a_service_too(
         assert began[0]["READY"] == "1"
         if began[0]["STATUS"] != "a live":
             manager.until("STATUS", "a live")
-        for _ in range(SIGNS):
-            manager.until("WATCHDOG", "1")
-        node.send_signal(signal.SIGTERM)
-        manager.until("STOPPING", "1")
-        _, journal = end_within(node, 2.0)
-    assert node.returncode == 0, journal
+        journal = journal_of_an_orderly_end(node, manager)
     assert len(journal.splitlines()) <= MOST_LINES, journal
 
 

@@ -109,7 +109,7 @@ def _is_caught(pid: int) -> bool:
 
 def run(extent: Extent) -> Came:
     """See FaultRow."""
-    count = round(extent.of(MOMENTS, 2))
+    count = round(extent.of(MOMENTS, 3))
     with tempfile.TemporaryDirectory() as folder:
         ender = Ender(Path(folder), random.Random(extent.seed))
         for number in range(count):

@@ -14,9 +14,10 @@ def test_processes_killed_while_they_save(clean_env: dict[str, str]) -> None:
 
 
 def test_daemons_told_to_end_at_any_moment(clean_env: dict[str, str]) -> None:
-    assert "2 of 2 ended" in short_run("ending", clean_env)
+    assert "3 of 3 ended" in short_run("ending", clean_env)
 
 
 def test_a_daemon_that_goes_on_and_on(clean_env: dict[str, str]) -> None:
     row = short_run("soaking", clean_env, "0.01")
-    assert re.search(r"(\+0|-\d+) threads, (\+0|-\d+) file descriptors", row), row
+    # a thread of the start may end late on a busy machine; the row says whether any came
+    assert re.search(r"(\+0|-\d+) threads, \+0 file descriptors", row), row

@@ -3,7 +3,7 @@
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -72,13 +72,13 @@ class SetupBench:
             self._locks,
             (PortChange("cam1", source_of("cam1", "1-9"), source_of("cam1", PORTS["cam1"])),),
         )
-        settings = CheckSettings(TrackerSection())
-        steps = dict(all_steps(cameras, settings, NewestBody(), self.deaths.append))
+        settings, shown = CheckSettings(TrackerSection()), NewestBody()
+        steps = dict(all_steps(cameras, settings, shown, self.deaths.append))
         steps[StepName.COLOUR] = partial(ColourStep, load=_no_database)
         steps[StepName.CHECK] = partial(
             CheckStep,
             settings=settings,
-            shown=NewestBody(),
+            shown=shown,
             died=self.deaths.append,
             load=_no_tracker,
         )
@@ -153,7 +153,7 @@ def _no_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
 
 
 def _no_tracker(
-    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Callable[[str, float], None]
+    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Tell
 ) -> CheckTracker:
     """It takes seconds and much memory, in a thread."""
     raise CannotCreateError("the cache cannot be written", str(cache_dir), "make room")
