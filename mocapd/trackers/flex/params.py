@@ -7,6 +7,7 @@ from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.trackers.flex.appearance import AppearanceParams
 from mocapd.trackers.flex.face_watch import FaceWatchParams
+from mocapd.trackers.steadying import SteadyingParams
 from mocapd.vision.room_background import BackgroundParams
 
 
@@ -54,6 +55,7 @@ class Params:
     start: StartParams = field(default_factory=StartParams)
     floor: FloorParams = field(default_factory=FloorParams)
     facing: FaceWatchParams = field(default_factory=FaceWatchParams)
+    steadying: SteadyingParams = field(default_factory=SteadyingParams)
     distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]

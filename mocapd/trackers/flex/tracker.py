@@ -8,8 +8,8 @@ import numpy as np
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.body.regions import Region, as_silhouette
-from mocapd.body.shape import BodyShape
-from mocapd.body.skeleton import N_JOINTS, local_from_global, standard_skeleton
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.body.skeleton import N_JOINTS, joint_positions, local_from_global, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
@@ -28,6 +28,7 @@ from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
 from mocapd.trackers.flex.other_poses import WHOLE, OtherPoses
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.person_search import PersonSearch
+from mocapd.trackers.steadying import Told, behind, steadied
 from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
@@ -132,6 +133,7 @@ class FlexTracker:
         self._dress(ALL_DIFFER)
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._known: _Memory | None = None
+        self._told: Told | None = None
         self._near = near
         self._find.reset()
         self._others.reset()
@@ -428,22 +430,25 @@ class FlexTracker:
     ) -> Track:
         known = self._known
         if tracking is Tracking.LOST or known is None:
+            self._told = None
             return Track(lost_body(frames.t_ns, self.name), shape)
         away_s = seconds(frames.t_ns - known.t_ns)
         told = told_pose(
             self._fitter, known.state, known.fit, known.left, away_s, self.params.prediction_damping
         )
-        uncertainty_m = told.uncertainty_m
+        confidence = joint_confidence(known.fit, len(known.cameras), told.uncertainty_m, away_s)
+        self._told = steadied(told.pose, confidence, frames.t_ns, self._told, self.params.steadying)
+        joints_m = joint_positions(skeleton_of(shape), self._told.pose)
         evidence, roi_px = self._cameras.evidence(views)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
             tracker=self.name,
-            pose=told.pose,
-            joints_m=told.joints_m,
-            confidence=joint_confidence(known.fit, len(known.cameras), uncertainty_m, away_s),
+            pose=self._told.pose,
+            joints_m=joints_m,
+            confidence=confidence,
             cameras=known.cameras if away_s == 0.0 else (),
-            uncertainty_m=grown(uncertainty_m, away_s),
+            uncertainty_m=behind(grown(told.uncertainty_m, away_s), joints_m, told.joints_m),
         )
         return Track(body, shape, known.fit.explained * faded(away_s), evidence, roi_px)
 

@@ -1,0 +1,84 @@
+"""What is told follows what was found, the more slowly the less the pictures confirm it.
+
+A limb that the pictures hardly confirm is often wrong, and what is wrong moves as no limb does: from one pose that looks
+right to the next. What is well confirmed is told as it was found.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX
+from mocapd.clock import seconds
+from mocapd.fit.fit_params import TICK_S
+from mocapd.geometry import rotations
+from mocapd.types import Floats, Ints, Pose
+
+_LEADS_TO = {
+    "Shoulder": "UpperArm", "UpperArm": "LowerArm", "LowerArm": "Hand",
+    "UpperLeg": "LowerLeg", "LowerLeg": "Foot", "neck": "head",
+}  # fmt: skip
+_ANEW_S = 0.5  # after a longer gap nothing is left to follow from
+_SHORTEST_TICKS = 0.1  # frames of one time are told apart a little
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyingParams:
+    """How much of the way to what was found is gone in a usual frame, and how fast a bone turns at most."""
+
+    sure: float = 1.0  # confidence from which on it is all of the way
+    doubtful: float = 0.3  # confidence up to which it is the least
+    least: float = 0.25
+    trust_s: float = 0.7  # who was not confirmed at all is fully believed no sooner
+    sure_rad_s: float = 15.0
+    doubtful_rad_s: float = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Told:
+    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1."""
+
+    t_ns: int
+    pose: Pose
+    trust: Floats
+
+
+def _end_of_bones() -> Ints:
+    """(J,) the joint that each bone leads to, whose confidence tells how well the bone's direction is known."""
+    ends = []
+    for name in NAMES:
+        side = next((s for s in ("left", "right") if name.startswith(s)), "")
+        bone = name.removeprefix(side)
+        ends.append(INDEX[side + _LEADS_TO.get(bone, bone)])
+    return np.array(ends)
+
+
+_END_OF_BONE = _end_of_bones()
+
+
+def steadied(
+    found: Pose, confidence: Floats, t_ns: int, last: Told | None, params: SteadyingParams
+) -> Told:
+    """What to tell of a pose that was found with this confidence of its joints (J,), after what was told last."""
+    p, trust = params, confidence[_END_OF_BONE]
+    gap_s = _ANEW_S if last is None else seconds(t_ns - last.t_ns)
+    if last is None or gap_s >= _ANEW_S:
+        return Told(t_ns, found, trust)
+    gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
+    trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
+    sure = np.clip((trust - p.doubtful) / (p.sure - p.doubtful), 0.0, 1.0)
+    follows = 1.0 - ((1.0 - p.least) * (1.0 - sure)) ** (gap_s / TICK_S)
+    way = rotations.multiply(found.quats_xyzw, rotations.inverse(last.pose.quats_xyzw))
+    turn = follows[:, None] * rotations.log(way)
+    most_rad = gap_s * (p.doubtful_rad_s + (p.sure_rad_s - p.doubtful_rad_s) * sure)
+    turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
+    root_m = last.pose.root_m + follows[0] * (found.root_m - last.pose.root_m)
+    turned = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
+    return Told(t_ns, Pose(root_m, rotations.canonical(turned)), trust)
+
+
+def behind(uncertainty_m: Floats, told_m: Floats, found_m: Floats) -> Floats:
+    """How uncertain joints (J,) are, along an axis, that are told beside where they were found (J,3)."""
+    out: Floats = np.hypot(uncertainty_m, np.linalg.norm(told_m - found_m, axis=1) / np.sqrt(3.0))
+    return out
