@@ -2,8 +2,9 @@
 
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor, wait
-from functools import cache
+from functools import cache, partial
+from queue import SimpleQueue
+from threading import Thread
 from typing import TypeVar
 
 from mocapd.each import Each, in_turn
@@ -23,15 +24,36 @@ def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
     if len(things) < 2:
         return in_turn(work, things)
     half = (len(things) + 1) // 2
-    job = _other().submit(in_turn, work, things[half:])
+    done: SimpleQueue[list[R] | BaseException] = SimpleQueue()
+    _other().put(partial(_do, work, things[half:], done))
     try:
         mine = in_turn(work, things[:half])
     finally:
-        wait((job,))
-    return mine + job.result()
+        others = done.get()
+    if isinstance(others, BaseException):
+        raise others
+    return mine + others
+
+
+def _do(
+    work: Callable[[T], R], of: Iterable[T], done: "SimpleQueue[list[R] | BaseException]"
+) -> None:
+    """Tell what came of it, or what was raised."""
+    try:
+        done.put(in_turn(work, of))
+    except BaseException as error:
+        done.put(error)
 
 
 @cache
-def _other() -> ThreadPoolExecutor:
-    """One thread for all trackers of the process: a pipeline steps one at a time."""
-    return ThreadPoolExecutor(1, thread_name_prefix="cameras")
+def _other() -> "SimpleQueue[Callable[[], None]]":
+    """What one thread does for all trackers of the process: a pipeline steps one at a time. Bare queues, as twenty halves in a
+    frame set would wait half a millisecond for an executor's futures."""
+    jobs: SimpleQueue[Callable[[], None]] = SimpleQueue()
+    Thread(target=_serve, args=(jobs,), name="cameras", daemon=True).start()
+    return jobs
+
+
+def _serve(jobs: "SimpleQueue[Callable[[], None]]") -> None:
+    while True:
+        jobs.get()()
