@@ -41,14 +41,14 @@ def _do(
     """Tell what came of it, or what was raised."""
     try:
         done.put(in_turn(work, of))
-    except BaseException as error:
+    except BaseException as error:  # noqa: BLE001 - raised where it was asked for
         done.put(error)
 
 
 @cache
 def _other() -> "SimpleQueue[Callable[[], None]]":
-    """What one thread does for all trackers of the process: a pipeline steps one at a time. Bare queues, as twenty halves in a
-    frame set would wait half a millisecond for an executor's futures."""
+    """What one thread does for all trackers of the process: a pipeline steps one at a time. Bare queues, as the twenty halves
+    of a frame set would wait half a millisecond for an executor's futures."""
     jobs: SimpleQueue[Callable[[], None]] = SimpleQueue()
     Thread(target=_serve, args=(jobs,), name="cameras", daemon=True).start()
     return jobs

@@ -20,6 +20,7 @@ from mocapd.trackers.flex.appearance_kernels import (
     count_colours,
     log_table,
 )
+from mocapd.trackers.flex.region_distance_kernels import LANES, chamfer_distances
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW
 
@@ -141,12 +142,8 @@ class Appearance:
 
 
 def region_distances(drawn: Bytes) -> Singles:
-    """Distances (7,h,w) [px] from each pixel to where each region is drawn (h,w); large where it is not."""
-    out = np.empty((len(Region), *drawn.shape), np.float32)
-    for region in Region:
-        away = (drawn != region).astype(np.uint8)
-        if away.all():
-            out[region - 1] = 1e3
-        else:
-            out[region - 1] = cv2.distanceTransform(away, cv2.DIST_L2, cv2.DIST_MASK_3)
-    return out
+    """Distances (h,w,8) [px] from each pixel to where each region 1.. is drawn (h,w); large where it is not."""
+    h, w = drawn.shape
+    out = np.empty((h + 2, w + 2, LANES), np.float32)
+    chamfer_distances(drawn, out)
+    return out[1:-1, 1:-1]

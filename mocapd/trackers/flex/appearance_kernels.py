@@ -94,7 +94,7 @@ def classify_regions(
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
 
-    before (h,w): as of `stands_before`; distance_px (7,h,w): of `region_distances`; table (8,4096): `log_table`. A
+    before (h,w): as of `stands_before`; distance_px (h,w,8): of `region_distances`; table (8,4096): `log_table`. A
     region pays per_px for each pixel of distance, up to longest_px. What is no region pays other_cost, and other_per_px for
     each pixel that it is away from the body, up to other_px: limbs move there. What may be a shadow pays at most shadow_costs
     (a sure one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px; where
@@ -110,7 +110,7 @@ def classify_regions(
             nearest = np.float32(1e9)
             best, found = np.float32(1e9), 0
             for k in range(1, N_CLASSES):
-                d = distance_px[k - 1, y, x]
+                d = distance_px[y, x, k - 1]
                 nearest = min(nearest, d)
                 cost = table[k, i] + np.float32(per_px) * min(d, np.float32(longest_px))
                 if cost < best:
