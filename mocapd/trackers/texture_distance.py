@@ -38,6 +38,14 @@ def texture_distances(
     if only:
         ids = np.where(np.isin(ids, list(only)), ids, np.uint8(0))
     measured = measured_distances(
-        drawing, (ids, triangles), body, other.camera, (first, second), turn, roi[:2], params
+        drawing,
+        (ids, triangles),
+        body,
+        other.camera,
+        (first, second),
+        turn,
+        roi[:2],
+        params,
+        fitter.each,
     )
     return (DistanceTerm(fitter.model, measured),)

@@ -7,39 +7,83 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+_TOGETHER = 4  # patches whose sums are added up side by side: each waits for its last addition
+
+
 @njit(cache=True, nogil=True)
-def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -> float:
-    """Fill out ((2 half + 1)^2,) with the patch about x, y, less its mean; its length, 0 where it leaves the picture."""
+def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -> bool:
+    """Fill out ((2 half + 1)^2,) with the patch about x, y; False where it leaves the picture."""
     h, w = grey.shape
-    if x < half or y < half or x >= w - 1 - half or y >= h - 1 - half:
-        return 0.0
+    if not (x >= half and y >= half and x < w - 1 - half and y < h - 1 - half):
+        return False
     # pixels of a patch lie alike between those of the picture: the weights of `grey_at` are the same for all
     left, top = int(x) - half, int(y) - half
     a, b = x - int(x), y - int(y)
     upper_left, upper_right = (1.0 - b) * (1.0 - a), (1.0 - b) * a
     lower_left, lower_right = b * (1.0 - a), b * a
     side = 2 * half + 1
-    total = 0.0
     for j in range(side):
-        row, below = grey[top + j], grey[top + j + 1]
+        row, below = grey[top + j, left : left + side], grey[top + j + 1, left : left + side]
+        row_right = grey[top + j, left + 1 : left + 1 + side]
+        below_right = grey[top + j + 1, left + 1 : left + 1 + side]
         line = out[j * side : (j + 1) * side]
         for i in range(side):
-            value = (
-                upper_left * row[left + i]
-                + upper_right * row[left + i + 1]
-                + lower_left * below[left + i]
-                + lower_right * below[left + i + 1]
+            line[i] = (
+                upper_left * row[i]
+                + upper_right * row_right[i]
+                + lower_left * below[i]
+                + lower_right * below_right[i]
             )
-            line[i] = value
-            total += value
-    n = side * side
-    total /= n
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _centred(patch: Array) -> float:
+    """Take its mean from a patch (S,); its length then."""
+    total = 0.0
+    for k in range(patch.shape[0]):
+        total += patch[k]
+    total /= patch.shape[0]
     squares = 0.0
-    for k in range(n):
-        out[k] -= total
-        squares += out[k] * out[k]
+    for k in range(patch.shape[0]):
+        patch[k] -= total
+        squares += patch[k] * patch[k]
     length: float = np.sqrt(squares)
     return length
+
+
+@njit(cache=True, nogil=True)
+def _compared(mine: Array, its: Array, products: Array, lengths: Array) -> None:
+    """Products (4,) of a centred patch (S,) with others (4,S), each less its mean, and lengths (4,) of those."""
+    n = mine.shape[0]
+    one, two, three, four = its[0], its[1], its[2], its[3]
+    a = b = c = d = 0.0
+    for i in range(n):
+        a += one[i]
+        b += two[i]
+        c += three[i]
+        d += four[i]
+    a, b, c, d = a / n, b / n, c / n, d / n
+    a2 = b2 = c2 = d2 = 0.0
+    ma = mb = mc = md = 0.0
+    for i in range(n):
+        m = mine[i]
+        u, v, w, z = one[i] - a, two[i] - b, three[i] - c, four[i] - d
+        a2 += u * u
+        b2 += v * v
+        c2 += w * w
+        d2 += z * z
+        ma += m * u
+        mb += m * v
+        mc += m * w
+        md += m * z
+    products[0], products[1], products[2], products[3] = ma, mb, mc, md
+    lengths[0], lengths[1], lengths[2], lengths[3] = (
+        np.sqrt(a2),
+        np.sqrt(b2),
+        np.sqrt(c2),
+        np.sqrt(d2),
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -60,28 +104,32 @@ def match_along_rays(
     is -1 where the patch has less contrast (standard deviation, grey values) or the best place is at an end.
     """
     size = (2 * half + 1) ** 2
-    mine, its = np.empty(size), np.empty(size)
+    mine, its = np.empty(size), np.zeros((_TOGETHER, size))
+    products, lengths = np.empty(_TOGETHER), np.empty(_TOGETHER)
+    within = np.empty(_TOGETHER, np.bool_)
     n_places = there_px.shape[1]
     scores = np.empty(n_places)
     for n in range(at_px.shape[0]):
         place[n], alike[n] = 0.0, -1.0
-        length = _patch(grey, at_px[n, 0], at_px[n, 1], half, mine)
+        if not _patch(grey, at_px[n, 0], at_px[n, 1], half, mine):
+            continue
+        length = _centred(mine)
         if length < least_contrast * np.sqrt(float(size)):
             continue
         best = 0
-        for k in range(n_places):
-            scores[k] = -1.0
-            x, y = there_px[n, k, 0], there_px[n, k, 1]
-            if not (np.isfinite(x) and np.isfinite(y)):
-                continue
-            other_length = _patch(other, x, y, half, its)
-            if other_length > 0.0:
-                product = 0.0
-                for i in range(size):
-                    product += mine[i] * its[i]
-                scores[k] = product / (length * other_length)
-            if scores[k] > scores[best]:
-                best = k
+        for first in range(0, n_places, _TOGETHER):
+            together = min(_TOGETHER, n_places - first)
+            for c in range(together):
+                x, y = there_px[n, first + c, 0], there_px[n, first + c, 1]
+                within[c] = _patch(other, x, y, half, its[c])
+            _compared(mine, its, products, lengths)
+            for c in range(together):
+                k = first + c
+                scores[k] = -1.0
+                if within[c] and lengths[c] > 0.0:
+                    scores[k] = products[c] / (length * lengths[c])
+                if scores[k] > scores[best]:
+                    best = k
         if best == 0 or best == n_places - 1:
             continue
         bend = scores[best - 1] - 2.0 * scores[best] + scores[best + 1]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.shaping import Shaped
+from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.geometry.camera_model import project, rays
@@ -37,12 +38,13 @@ def measured_distances(
     turn: int,
     corner: tuple[int, int] = (0, 0),
     params: MeasuringParams | None = None,
+    each: Each = in_turn,
 ) -> MeasuredDistances:
     """Look for points of the body as expected in one camera (drawn: its ids and triangles (h,w) over the whole work
     picture, or a region of it that begins at `corner`, posed by `drawing`) in the other camera's picture.
 
-    greys: both pictures as delivered; turn: a running number, by which other points are taken. What has no
-    texture, or does not look alike, is left out.
+    greys: both pictures as delivered; turn: a running number, by which other points are taken; each: of the halves of
+    the points. What has no texture, or does not look alike, is left out.
     """
     p = params if params is not None else MeasuringParams()
     y, x = _samples(drawn, drawing.model.part, p.points, turn)
@@ -56,7 +58,14 @@ def measured_distances(
     points = origin + (expected_m[:, None] + offsets_m)[..., None] * along[:, None]
     there = project(other, points.reshape(-1, 3)).reshape(len(y), p.places, 2)
     place, alike = np.empty(len(y)), np.empty(len(y))
-    match_along_rays(*greys, pixels, there, p.half_px, p.least_contrast, place, alike)
+
+    def match(mine: slice) -> None:
+        match_along_rays(
+            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, place[mine], alike[mine]
+        )
+
+    half = len(y) // 2
+    each(match, (slice(0, half), slice(half, None)))
     good = alike >= p.least_alike
     found_m = expected_m + (place / (p.places - 1) * 2.0 - 1.0) * p.reach_m
     return MeasuredDistances(
