@@ -1,6 +1,7 @@
 """Body shapes: stature plus a few proportions, each a factor on the mean body of that stature."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -80,6 +81,13 @@ def measured_shape(stature_m: float, factors: Floats) -> BodyShape:
 
 def skeleton_of(shape: BodyShape) -> Skeleton:
     """The T-pose skeleton of a body shape, feet on the floor; longer legs raise all that is above."""
+    return Skeleton(NAMES, PARENTS, _rest_m(shape.stature_m, tuple(shape.factors.tolist())).copy())
+
+
+@lru_cache(maxsize=8)  # several ask in each frame, and a shape seldom changes
+def _rest_m(stature_m: float, factors: tuple[float, ...]) -> Floats:
+    """(J,3) joints in the T-pose."""
+    shape = BodyShape(stature_m, np.array(factors))
     torso, shoulders, upper_arm, forearm = shape.factors[:4]
     rest = mean_proportions() * shape.stature_m
     hips_y = rest[0, 1]
@@ -106,7 +114,7 @@ def skeleton_of(shape: BodyShape) -> Skeleton:
         out[[foot, toes]] += lower
         out[[hip, knee, foot, toes], 0] += (shape.factor("hip_width") - 1.0) * rest[hip, 0]
     out[:, 1] -= longer[1] + lower[1]
-    return Skeleton(NAMES, PARENTS, out)
+    return out
 
 
 def _descendants(root: str) -> list[int]:

@@ -86,7 +86,14 @@ def _shortest(a: Floats, b: Floats) -> Floats:
     if w < 1e-6:
         axis = np.cross(a, [1.0, 0.0, 0.0] if abs(a[0]) < 0.9 else [0.0, 1.0, 0.0])
         return np.append(axis / np.linalg.norm(axis), 0.0)
-    return rotations.canonical(np.append(np.cross(a, b), w))
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    q = (
+        ay * bz - az * by,
+        az * bx - ax * bz,
+        ax * by - ay * bx,
+        w,
+    )  # np.cross takes twenty times as long
+    return rotations.canonical(np.array(q))
 
 
 def score_arm_poses(

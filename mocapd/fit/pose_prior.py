@@ -6,6 +6,7 @@ their views: there a body's shape and cloth mislead more than people's habits do
 """
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -122,9 +123,15 @@ def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:
     """Squared Mahalanobis distances (N,) of poses (N,3,4) of an arm from where it usually is."""
     away = rotations.log(rotations.multiply(poses_xyzw, rotations.inverse(arm.mean_xyzw)))
     away = away.reshape(len(poses_xyzw), -1)
-    information = np.linalg.inv(arm.covariance_rad2)
+    information = _information(arm)
     squared: Floats = np.einsum("ni,ij,nj->n", away, information, away)
     return squared
+
+
+@cache
+def _information(arm: ArmMotion) -> Floats:
+    """(9,9) of its pose."""
+    return np.asarray(np.linalg.inv(arm.covariance_rad2), dtype=np.float64)
 
 
 def _priors(

@@ -134,6 +134,7 @@ class Fitter:
         self.drawings = [
             IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, image_scales, strict=True)
         ]
+        self._from_eyes_m = [c.R.T @ c.t_m for c in cameras]
         self._rows = [CameraRows(model) for _ in cameras]
         self.arms = arm_chains(model)
         self._plain_arms = plain(self.arms)
@@ -256,8 +257,7 @@ class Fitter:
         """Whether all cameras see the body from about the same side."""
         if not views:
             return False
-        cameras = [self.drawings[view.index].camera for view in views]
-        rays = np.array([state.root_m + c.R.T @ c.t_m for c in cameras])
+        rays = np.array([state.root_m + self._from_eyes_m[view.index] for view in views])
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
         return bool((rays @ rays.T).min() > np.cos(self.params.narrow_rad))
 

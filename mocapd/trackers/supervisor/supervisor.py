@@ -79,6 +79,12 @@ class Supervisor:
         self.params = params if params is not None else Params()
         self.probe: Probe = unprobed
         self.candidates = tuple(candidates)
+        # asked once: whether a class keeps a protocol takes a while
+        self._guided = {
+            one.name: one.tracker
+            for one in self.candidates
+            if isinstance(one.tracker, GuidedTracker)
+        }
         self._glider = Glider(self.params)
         for one in self.candidates:
             one.tracker.probe = partial(self._heard, one.name)
@@ -142,9 +148,10 @@ class Supervisor:
         known, tracker = self._known[one.name], one.tracker
         # who was offered a body looks for it whole, once
         upper = None if known.has_offer else self._guide(one)
-        known.guided = upper is not None and isinstance(tracker, GuidedTracker)
-        if upper is not None and isinstance(tracker, GuidedTracker):
-            track = tracker.step_guided(frames, shape, upper)
+        guided = self._guided.get(one.name)
+        known.guided = upper is not None and guided is not None
+        if upper is not None and guided is not None:
+            track = guided.step_guided(frames, shape, upper)
         else:
             track = tracker.step(frames, shape)
         known.track, known.now, known.has_offer = track, True, False
