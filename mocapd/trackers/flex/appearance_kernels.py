@@ -43,35 +43,42 @@ def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> 
     """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
     in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
     n = 1 << BITS
+    never = -np.log(np.float32(0.0) + np.float32(least))
     for k in range(len(counts)):
+        if not counts[k].any():
+            out[k] = never
+            continue
         total = np.float32(1e-3)
         for i in range(N_BINS):
             total += counts[k, i]
         old, new = counts[k].reshape(n, n, n), out[k].reshape(n, n, n)
-        quarter, half = np.float32(0.25), np.float32(0.5)
         for b in range(n):
             for g in range(n):
-                for r in range(n):
-                    below, above = max(r - 1, 0), min(r + 1, n - 1)
-                    new[b, g, r] = (
-                        quarter * (old[b, g, below] + old[b, g, above]) + half * old[b, g, r]
-                    )
+                row = old[b, g]
+                _smooth(row[:-2], row[1:-1], row[2:], new[b, g, 1:-1])
+                _smooth(row[:1], row[:1], row[1:2], new[b, g, :1])
+                _smooth(row[-2:-1], row[-1:], row[-1:], new[b, g, -1:])
         for b in range(n):
             for g in range(n):
                 below, above = max(g - 1, 0), min(g + 1, n - 1)
-                for r in range(n):
-                    scratch[b, g, r] = (
-                        quarter * (new[b, below, r] + new[b, above, r]) + half * new[b, g, r]
-                    )
+                _smooth(new[b, below], new[b, g], new[b, above], scratch[b, g])
+        layers = scratch.reshape(n, n * n)
         for b in range(n):
             below, above = max(b - 1, 0), min(b + 1, n - 1)
-            for g in range(n):
-                for r in range(n):
-                    smooth = (
-                        quarter * (scratch[below, g, r] + scratch[above, g, r])
-                        + half * scratch[b, g, r]
-                    )
-                    new[b, g, r] = -np.log(smooth / total + np.float32(least))
+            smooth = out[k, b * n * n : (b + 1) * n * n]
+            _smooth(layers[below], layers[b], layers[above], smooth)
+            for i in range(n * n):
+                # most colours are seen nowhere, and a logarithm takes a while
+                share = smooth[i] / total + np.float32(least)
+                smooth[i] = never if smooth[i] == 0.0 else -np.log(share)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _smooth(before: Singles, here: Singles, after: Singles, out: Singles) -> None:
+    """out (n,): a half of what is here and a quarter of either neighbour."""
+    quarter, half = np.float32(0.25), np.float32(0.5)
+    for i in range(out.shape[0]):
+        out[i] = quarter * (before[i] + after[i]) + half * here[i]
 
 
 @njit(cache=True, nogil=True)

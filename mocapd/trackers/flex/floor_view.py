@@ -22,11 +22,12 @@ class FloorView:
         down = np.minimum(along[:, 1], -1e-6)
         met = eye + along * (-eye[1] / down)[:, None]
         met[along[:, 1] > -1e-3] = _FAR_M
-        self._met = met[:, [0, 2]].reshape(h, w, 2).astype(np.float32)
+        self._met_x, self._met_z = (met[:, i].reshape(h, w).astype(np.float32) for i in (0, 2))
 
     def near(self, root_m: Floats, roi: Roi) -> Bytes:
         """(h,w) of the region: 1 where the floor about a body with this root (3,) is seen, if nothing stands before it."""
         x0, y0, x1, y1 = roi
-        away = self._met[y0:y1, x0:x1] - np.asarray(root_m[[0, 2]], np.float32)
-        near: Bytes = (np.einsum("hwc,hwc->hw", away, away) < _REACH_M**2).astype(np.uint8)
+        x, z = np.float32(root_m[0]), np.float32(root_m[2])
+        across, along = self._met_x[y0:y1, x0:x1] - x, self._met_z[y0:y1, x0:x1] - z
+        near: Bytes = (across * across + along * along < _REACH_M**2).astype(np.uint8)
         return near
