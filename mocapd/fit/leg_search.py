@@ -15,10 +15,10 @@ from mocapd.fit.arm_samples import Arm, leg_of, placed
 from mocapd.fit.fit_params import LegSearchParams
 from mocapd.fit.limb_search import (
     PX_OF_M2,
+    added_in_views,
     best_poses,
     candidates,
     part,
-    score_in_view,
     spread,
     turned_rad2,
 )
@@ -112,14 +112,8 @@ class LegSearch:
         """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
         p = self.params
         samples = placed(self.fitter.shaper(state.factors), leg, leg.sleeve)
-        scores = np.zeros(len(tries))
-        for view in views:
-            base = self.fitter.drawings[view.index].render_parts(
-                state, view.dt_s, view.roi, leg.others
-            )
-            score_in_view(
-                self.fitter, view, base, base.ids, view.ids, samples, tries, p.empty, scores
-            )
+        none = np.zeros(len(tries))
+        scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
         unusual = p.unusual_px * unusual_leg(tries, side)
         out: Floats = PX_OF_M2 * scores - unusual - p.farther_px * away_rad2

@@ -121,9 +121,7 @@ def score_arm_poses(
         fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
-    for view in views:
-        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
-        score_in_view(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, scores)
+    scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores)
     seen_px: Floats = PX_OF_M2 * scores
     return seen_px
 
@@ -149,6 +147,28 @@ def score_hand_places(
         score_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
     seen_px: Floats = PX_OF_M2 * scores
     return seen_px
+
+
+def added_in_views(
+    fitter: Fitter,
+    state: MotionState,
+    limb: Arm,
+    views: Sequence[View],
+    samples: ArmSamples,
+    hypotheses: Floats,
+    empty: float,
+    scores: Floats,
+) -> Floats:
+    """scores (N,) and what each camera says of a limb in front of the rest of the body [m^2]."""
+
+    def seen_in(view: View) -> Floats:
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
+        mine = np.zeros(len(hypotheses))
+        score_in_view(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, mine)
+        return mine
+
+    # added up in the order of the views, whichever thread was first
+    return sum(fitter.each(seen_in, views), scores)
 
 
 def score_in_view(
