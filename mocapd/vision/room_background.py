@@ -95,12 +95,14 @@ class RoomBackground:
         for k in range(1, n):
             if stats[k, cv2.CC_STAT_AREA] < self._params.least_uncovered_px:
                 continue
-            mask = (numbered == k).astype(np.uint8)
+            x, y, w, h = stats[k, : cv2.CC_STAT_AREA].tolist()
+            about = np.s_[max(y - 1, 0) : y + h + 1, max(x - 1, 0) : x + w + 1]
+            mask = (numbered[about] == k).astype(np.uint8)
             outline = cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0
-            if now[outline].sum() < known[outline].sum():
+            if now[about][outline].sum() < known[about][outline].sum():
                 there = mask > 0
-                self._mean[there] = picture[there]
-                before[there] = BACKGROUND
+                self._mean[about][there] = picture[about][there]
+                before[about][there] = BACKGROUND
 
     def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
         """By how much each channel (3,) became brighter when a lamp went on or off, whose light the background then takes;

@@ -63,8 +63,10 @@ class CameraView:
         self.near = roi
         if drawn is not None and roi is not None:
             x0, y0, x1, y1 = roi
-            self.drawn[y0:y1, x0:x1] = drawn > 0
-            cv2.dilate(self.drawn, self.beside, dst=self.body)
+            here = (drawn > 0).astype(np.uint8)
+            self.drawn[y0:y1, x0:x1] = here
+            # the region has a wider margin than that
+            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
 
     def stand_before(self, everywhere: bool = True) -> None:
         """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
@@ -153,9 +155,12 @@ class CameraViews:
 
     def take_uncovered(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`."""
-        for i in self.present:
+
+        def take(i: int) -> None:
             camera = self.each[i]
             camera.background.take_uncovered(camera.picture, camera.before, camera.drawn)
+
+        self._each(take, self.present)
 
     def classified(self, state: MotionState, marked: bool = False) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each; marked:
