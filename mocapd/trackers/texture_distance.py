@@ -10,7 +10,7 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import MeasuringParams, measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm
 from mocapd.fit.terms.pose_term import PoseTerm
-from mocapd.types import FrameSet
+from mocapd.types import Bytes, Camera, FrameSet
 
 
 def texture_distances(
@@ -29,10 +29,12 @@ def texture_distances(
     if len(views) != 2 or not fitter.is_narrow(predicted, views):
         return ()
     drawing, other = (fitter.drawings[view.index] for view in views)
-    first, second = (
-        np.asarray(cv2.cvtColor(frames.frames[camera.name].pixels, cv2.COLOR_BGR2GRAY), np.uint8)
-        for camera in (drawing.camera, other.camera)
-    )
+
+    def grey(camera: Camera) -> Bytes:
+        pixels = frames.frames[camera.name].pixels
+        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+
+    first, second = fitter.each(grey, (drawing.camera, other.camera))
     body, roi = fitter.shaper(predicted.factors), views[0].roi
     ids, triangles = drawing.last(roi)
     if only:
