@@ -104,6 +104,11 @@ class IdMapRenderer:
         h, w = roi[3] - roi[1], roi[2] - roi[0]
         return self._ids[: h * w].reshape(h, w), self._triangle_at[: h * w].reshape(h, w)
 
+    def last_depth_m(self, roi: Roi) -> NDArray[np.float32]:
+        """Depths (h,w) of what was drawn last in this region, along the camera's axis; far away where nothing was."""
+        h, w = roi[3] - roi[1], roi[2] - roi[0]
+        return self._zbuffer[: h * w].reshape(h, w)
+
     def outline(self) -> Outline:
         """Of what `draw` drew last."""
         return Outline(self.xy, self.model.triangles, self.model.colour, self.model.sleeves)

@@ -38,6 +38,10 @@ class FitParams:
     narrow_rad: float = 0.26  # between the views, under which cameras count as one
     tilt_sd_rad: float = 0.25  # of the hips, before such cameras
 
+    depth_off_m: float = 0.10  # of what is drawn from what is seen: it is another thing
+    depth_cost: float = 0.5  # of a pixel that is, beside one that disagrees
+    depth_least_px: int = 16  # compared, for a patch to be judged by it
+
     @property
     def collision_information(self) -> float:
         """Of a depth in the trunk [1/m^2]."""
@@ -61,6 +65,7 @@ class LimbSearchParams:
     uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
     arm_cloud: int = 64  # tries about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
+    arm_reaches: int = 48  # hands tried where something is seen before the body
     arm_fits: int = 2  # of which so many are fitted
     farther_px: float = (
         5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]

@@ -133,7 +133,7 @@ def confirmed(side: str, fit: Fit) -> float:
     asked = float(fit.visible[mine].sum() + fit.unexplained[mine].sum())
     if asked < _IN_SIGHT * float(fit.visible.sum()):
         return 1.0
-    return float(fit.matched[mine].sum()) / (asked + 1.0)
+    return float((fit.matched * fit.in_depth)[mine].sum()) / (asked + 1.0)
 
 
 def _library(u: Floats, side: str) -> Floats:

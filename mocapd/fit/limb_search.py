@@ -20,12 +20,14 @@ from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import arm_motions, unusualness
+from mocapd.fit.reaching import reaching_poses
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.types import Camera, Floats
 
 _LIBRARY = 2048
+_NO_DEPTHS = np.empty((0, 0), np.float32)
 _ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
 PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
 
@@ -72,14 +74,14 @@ def mirrored_bones(
     a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
     return [
         (
-            rotations.multiply(_shortest(a, new_a), globals_[upper]),
-            rotations.multiply(_shortest(b, new_b), globals_[lower]),
+            rotations.multiply(shortest_turn(a, new_a), globals_[upper]),
+            rotations.multiply(shortest_turn(b, new_b), globals_[lower]),
         )
         for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip))
     ]
 
 
-def _shortest(a: Floats, b: Floats) -> Floats:
+def shortest_turn(a: Floats, b: Floats) -> Floats:
     """The smallest rotation (4,) that turns direction a into direction b."""
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     w = 1.0 + a @ b
@@ -121,7 +123,9 @@ def score_arm_poses(
         fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
-    scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores)
+    # an arm before a trunk that looks like it is told by depths
+    covered = 0.0 if any(view.depth_m is not None for view in views) else 1.0
+    scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
     seen_px: Floats = PX_OF_M2 * scores
     return seen_px
 
@@ -158,13 +162,16 @@ def added_in_views(
     hypotheses: Floats,
     empty: float,
     scores: Floats,
+    covered: float = 1.0,
 ) -> Floats:
-    """scores (N,) and what each camera says of a limb in front of the rest of the body [m^2]."""
+    """scores (N,) and what each camera says of a limb in front of the rest of the body [m^2]; covered: see `score_arms`."""
 
     def seen_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
         mine = np.zeros(len(hypotheses))
-        score_in_view(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, mine)
+        score_in_view(
+            fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, mine, covered
+        )
         return mine
 
     # added up in the order of the views, whichever thread was first
@@ -181,14 +188,17 @@ def score_in_view(
     hypotheses: Floats,
     empty: float,
     scores: Floats,
+    covered: float = 1.0,
 ) -> None:
-    """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]."""
+    """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]; covered: see
+    `score_arms`."""
     drawing = fitter.drawings[view.index]
     image_scale = drawing.image_scale
     score_arms(
         hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
         np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
-        base.zbuffer, drawn, seen, view.pixel_weight, empty, scores,
+        base.zbuffer, drawn, seen, view.pixel_weight, empty, covered,
+        _NO_DEPTHS if view.depth_m is None else view.depth_m, fitter.params.depth_off_m, scores,
     )  # fmt: skip
 
 
@@ -283,6 +293,8 @@ class ArmSearch:
                 self.fitter, fit.state, arm, views,
                 part(self._cloud, turn, p.arm_cloud), part(self._library[side], turn, p.arm_library),
             )  # fmt: skip
+            reaching = reaching_poses(self.fitter, fit.state, arm, views, p.arm_reaches, turn)
+            tries = np.concatenate([tries, reaching])
             scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px, empty)
             scores -= p.unusual_px * unusualness(tries, self._usual[side])
             scores += p.hand_px * score_hand_places(

@@ -128,6 +128,9 @@ def score_arms(
     image_ids: NDArray[np.uint8],
     pixel_weight: NDArray[np.uint8],
     empty: float,
+    covered: float,
+    depth_m: NDArray[np.float32],
+    depth_off_m: float,
     scores: Array,
 ) -> None:
     """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2], and
@@ -135,7 +138,9 @@ def score_arms(
 
     hypotheses (N,3,4): local rotations of collar, upper arm and forearm; the hand keeps straight.
     posed: the body, of which the collar's parent is used. A sample counts when it faces the camera
-    and base_z, the depth of the body without this arm, does not hide it.
+    and base_z, the depth of the body without this arm, does not hide it. covered: share of what lies where the rest of
+    the body is seen that contradicts; depth_m (h,w): of what is seen, NaN where unknown, or (0,0): a sample that is farther
+    than depth_off_m from it is denied, one that is not, well before the rest of the body, is seen.
     """
     chain, points, normals, area, colour, link, weights = samples
     rest, R, joints, quats = posed
@@ -148,6 +153,7 @@ def score_arms(
     A = np.empty((n_chain, 3, 4))
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
     k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
+    knows_depths = depth_m.shape[0] > 0
     near_base = colours_beside(base_ids, _EDGE_PX)
     for n in range(hypotheses.shape[0]):
         pose_arm(hypotheses[n], chain, parents, rest, R, joints, quats, G, J, M)
@@ -195,12 +201,22 @@ def score_arms(
                 continue
             seen = image_ids[t, u]
             size = area[v] * facing / np.sqrt(X * X + Y * Y + Z * Z)
+            if knows_depths:
+                away = abs(depth_m[t, u] - Z)
+                if away > depth_off_m:
+                    score -= size
+                    continue
+                if away <= depth_off_m and base_z[t, u] - Z > 2.0 * depth_off_m:
+                    score += size  # before the rest of the body, whatever their colours are
+                    continue
             if seen == colour[v]:
                 # where the rest of the body has that colour, or all but, it is not the arm that is seen
                 if not near_base[t, u] >> seen & 1:
                     score += size
             elif seen > 0 and seen == base_ids[t, u]:
-                score -= size  # the rest of the body is seen there, so the arm is not before it
+                score -= (
+                    covered * size
+                )  # the rest of the body is seen there, so the arm is not before it
             elif seen > 0:
                 score -= 0.5 * size
             else:

@@ -5,7 +5,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -21,6 +21,7 @@ from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
 from mocapd.fit.collision_kernels import TorsoSlices, push_arms_out
 from mocapd.fit.collision_term import TorsoHull, arm_chains
+from mocapd.fit.depth_agreement_kernels import compare_depths
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
@@ -38,7 +39,8 @@ _NO_PIXELS = np.zeros(N_LABELS)
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
     """One camera's evidence: ids and pixel_weight (h,w) over `roi`, taken dt_s after the asked instant; bare (h,w):
-    where skin may be, when that was looked for."""
+    where skin may be, when that was looked for; depth_m (h,w): of what is seen, along the camera's axis [m], NaN where
+    that is not known."""
 
     index: int
     roi: Roi
@@ -46,12 +48,14 @@ class View:
     pixel_weight: NDArray[np.uint8]
     dt_s: float
     bare: NDArray[np.bool_] | None = None
+    depth_m: NDArray[np.float32] | None = None
 
 
 @dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__
 class Fit:
     """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
-    information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before."""
+    information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before;
+    in_depth (21,): share of a patch's pixels that are where depths are seen, 1 where none are."""
 
     state: MotionState
     visible: Floats
@@ -60,6 +64,7 @@ class Fit:
     H: Floats
     cost: float
     information: Floats
+    in_depth: Floats = field(default_factory=partial(np.ones, N_LABELS))
 
     @cached_property
     def covariance(self) -> Floats:
@@ -83,7 +88,9 @@ class Fit:
         confirmed = {}
         for side, p in SLEEVE_PATCHES.items():
             asked = self.visible[p].sum() + self.unexplained[p].sum()
-            confirmed[side] = float(self.matched[p].sum() / (max(asked, in_sight) + 1.0))
+            confirmed[side] = float(
+                (self.matched * self.in_depth)[p].sum() / (max(asked, in_sight) + 1.0)
+            )
         return confirmed
 
     def confirmed_colours(self) -> int:
@@ -243,15 +250,30 @@ class Fitter:
                 factors = np.clip(factors + step[m.n_pose :], 0.6, 1.6)
             state = replace(state, root_m=root, local_xyzw=local, factors=factors)
         rows = [self._rows[view.index] for view in views]
+        misplaced, in_depth = self._compare_depths(views)
         return Fit(
             state,
             sum((r.visible for r in rows), _NO_PIXELS),
             sum((r.matched for r in rows), _NO_PIXELS),
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
-            sum(r.cost for r in rows) + crowded,
+            sum(r.cost for r in rows) + crowded + misplaced,
             held[: m.n_pose, : m.n_pose] + motion,
+            in_depth,
         )
+
+    def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats]:
+        """The cost of what was drawn last nearer or farther than it is seen, and by patch the share that is not (21,)."""
+        p, cost, asked, off = self.params, 0.0, np.zeros(N_LABELS), np.zeros(N_LABELS)
+        for view in views:
+            if view.depth_m is not None:
+                drawing = self.drawings[view.index]
+                triangle_at = drawing.last(view.roi)[1]
+                cost += p.depth_cost * compare_depths(
+                    drawing.last_depth_m(view.roi), triangle_at, self.model.patch, view.depth_m, p.depth_off_m,
+                    asked, off,
+                )  # fmt: skip
+        return cost, np.where(asked >= p.depth_least_px, 1.0 - off / np.maximum(asked, 1.0), 1.0)
 
     def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""

@@ -237,13 +237,16 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             compared_with={
                 "paper": ("flex_paper", FlexPaperSection()),
                 "no texture": ("flex", FlexSection(texture=False)),
+                "no depths": ("flex", FlexSection(depths=False)),
                 "no floor": ("flex", FlexSection(floor=False)),
                 "no arm search": ("flex", FlexSection(arm_search=False)),
                 "no shadows": ("flex", FlexSection(shadows=False)),
                 "no leg search": ("flex", FlexSection(leg_search=False)),
                 "no faces": ("flex", FlexSection(faces=False)),
+                "no turns": ("flex", FlexSection(turns=False)),
                 "no look-alikes": ("flex", FlexSection(look_alikes=False)),
                 "no limits": ("flex", FlexSection(limits=False)),
+                "not steady": ("flex", FlexSection(steady=False)),
             },
         ),
         "flex_paper": TrackerEntry(

@@ -4,6 +4,7 @@ A limb that the pictures hardly confirm is often wrong, and what is wrong moves 
 right to the next. What is well confirmed is told as it was found.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,13 +59,20 @@ _END_OF_BONE = _end_of_bones()
 
 
 def steadied(
-    found: Pose, confidence: Floats, t_ns: int, last: Told | None, params: SteadyingParams
+    found: Pose,
+    confidence: Floats,
+    t_ns: int,
+    last: Told | None,
+    params: SteadyingParams,
+    jumped: Collection[int] = (),
 ) -> Told:
-    """What to tell of a pose that was found with this confidence of its joints (J,), after what was told last."""
+    """What to tell of a pose that was found with this confidence of its joints (J,), after what was told last; jumped: bones
+    that did not move to where they are, but were found to be there."""
     p, trust = params, confidence[_END_OF_BONE]
     gap_s = _ANEW_S if last is None else seconds(t_ns - last.t_ns)
     if last is None or gap_s >= _ANEW_S:
         return Told(t_ns, found, trust)
+    trust[list(jumped)] = 0.0
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
     sure = np.clip((trust - p.doubtful) / (p.sure - p.doubtful), 0.0, 1.0)

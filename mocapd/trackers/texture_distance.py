@@ -10,7 +10,17 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import MeasuringParams, measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm
 from mocapd.fit.terms.pose_term import PoseTerm
-from mocapd.types import Bytes, Camera, FrameSet
+from mocapd.types import Bytes, FrameSet
+
+
+def greys_of(fitter: Fitter, views: Sequence[View], frames: FrameSet) -> list[Bytes]:
+    """The pictures of these views in grey, as delivered."""
+
+    def grey(view: View) -> Bytes:
+        pixels = frames.frames[fitter.drawings[view.index].camera.name].pixels
+        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+
+    return list(fitter.each(grey, views))
 
 
 def texture_distances(
@@ -29,12 +39,7 @@ def texture_distances(
     if len(views) != 2 or not fitter.is_narrow(predicted, views):
         return ()
     drawing, other = (fitter.drawings[view.index] for view in views)
-
-    def grey(camera: Camera) -> Bytes:
-        pixels = frames.frames[camera.name].pixels
-        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
-
-    first, second = fitter.each(grey, (drawing.camera, other.camera))
+    first, second = greys_of(fitter, views, frames)
     body, roi = fitter.shaper(predicted.factors), views[0].roi
     ids, triangles = drawing.last(roi)
     if only:

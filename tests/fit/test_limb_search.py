@@ -33,6 +33,7 @@ from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
 
 pytestmark = pytest.mark.kernels
 
+NO_DEPTHS = np.empty((0, 0), np.float32)
 EMPTY = 0.25  # share of an arm before background that denies it
 NO_CLOUD, NO_LIBRARY = np.empty((0, 6)), np.empty((0, 3, 4))
 BONES = ("Shoulder", "UpperArm", "LowerArm")
@@ -173,7 +174,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
         placed(by.shaper(state.factors), arm, arm.sleeve),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
-        base.zbuffer, base.ids, view.ids, view.pixel_weight, EMPTY, out,
+        base.zbuffer, base.ids, view.ids, view.pixel_weight, EMPTY, 1.0, NO_DEPTHS, 0.1, out,
     )  # fmt: skip
     return out
 

@@ -44,6 +44,8 @@ def params_of(section: FlexSection | None) -> Params:
     if not section.texture:
         nothing = replace(usual.distances, least_alike=_MORE_THAN_SAME)
         params = replace(params, distances=nothing)
+    if not section.depths:
+        params = replace(params, depths=replace(usual.depths, least_alike=_MORE_THAN_SAME))
     if not section.floor:
         soft = FloorParams(under_sd_m=_SOFT_M, standing_sd_m=_SOFT_M)
         params = replace(params, floor=soft)
@@ -54,6 +56,8 @@ def params_of(section: FlexSection | None) -> Params:
         params = replace(params, legs=never, crossed_looks=_FOR_EVER)
     if not section.faces:
         params = replace(params, facing=replace(usual.facing, sure=float("inf")))
+    if not section.turns:
+        params = replace(params, turning=replace(usual.turning, sure=float("inf")))
     if not section.shadows:
         all_before = replace(usual.background, likely_shadow=(1.0, 0.0))
         params = replace(params, background=all_before)
@@ -62,4 +66,11 @@ def params_of(section: FlexSection | None) -> Params:
     if not section.limits:
         soft_joints = replace(usual.fit, limit_sd_rad=_SOFT_RAD, collision_sd_m=_SOFT_M)
         params = replace(params, fit=soft_joints)
+    if not section.steady:
+        params = replace(
+            params,
+            steadying=replace(
+                usual.steadying, least=1.0, doubtful_rad_s=_SOFT_RAD, sure_rad_s=_SOFT_RAD
+            ),
+        )
     return params

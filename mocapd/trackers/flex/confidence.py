@@ -51,7 +51,7 @@ def joint_confidence(
     there is no evidence. uncertainty_m (J,): one standard deviation of each place; away_s: since the last evidence [s]."""
     if fit is None:
         return np.zeros(N_JOINTS)
-    matched = _LABELS @ fit.matched
+    matched = _LABELS @ (fit.matched * fit.in_depth)
     asked = _LABELS @ (fit.visible + fit.unexplained)
     share = matched / np.maximum(asked, 1.0)
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)

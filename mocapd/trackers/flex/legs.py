@@ -6,6 +6,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
+from mocapd.fit.limb_search import shortest_turn
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
@@ -55,11 +56,14 @@ def _bearing_rad(direction: Floats) -> float:
 
 
 def with_legs_exchanged(fitter: Fitter, state: MotionState) -> MotionState:
-    """Each leg pointed where the other one points, so that the ankles change places but for the width of the hips."""
-    _, globals_ = fitter.joints(state)
+    """Each leg bent as the other one is, and turned so that its ankle is where the other's was."""
+    joints_m, globals_ = fitter.joints(state)
     local = state.local_xyzw.copy()
     for side, other in (SIDES, SIDES[::-1]):
-        for bone in LEG_BONES:
-            i, j = INDEX[side + bone], INDEX[other + bone]
-            local[i] = rotations.multiply(rotations.inverse(globals_[PARENTS[j]]), globals_[j])
+        mine, its = ([INDEX[one + bone] for bone in LEG_BONES] for one in (side, other))
+        ankle_m = joints_m[its[-1]]
+        to_mine = shortest_turn(ankle_m - joints_m[its[0]], ankle_m - joints_m[mine[0]])
+        turned = rotations.multiply(to_mine, globals_[its])
+        parents = np.concatenate([globals_[PARENTS[mine[:1]]], turned[:-1]])
+        local[mine] = rotations.multiply(rotations.inverse(parents), turned)
     return replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))

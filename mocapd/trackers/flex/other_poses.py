@@ -20,7 +20,8 @@ from mocapd.trackers.flex.legs import (
 )
 from mocapd.trackers.flex.look import Dressed
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex.turned import turned_round
+from mocapd.trackers.flex.turn_watch import TurnWatch
+from mocapd.trackers.flex.turned import MIRRORED, UNDER_LIMBS, turned_round
 from mocapd.types import Floats, FrameSet
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -36,6 +37,7 @@ class OtherPoses:
     def __init__(self, params: Params, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
         self._params = params
+        self._turning = TurnWatch(params.turning)
         self._facing = FaceWatch(cascade, stature_m, params.facing)
         self.reset()
 
@@ -43,6 +45,7 @@ class OtherPoses:
         """Nothing was seen of anybody."""
         self._facing.reset()
         self._crossed_looks = 0
+        self._turning.reset()
 
     def rehearse(self, dressed: Dressed, state: MotionState, views: Sequence[View]) -> None:
         """Do everything once for nothing: what ordinary frames do not reach must not wait for its kernels."""
@@ -75,6 +78,12 @@ class OtherPoses:
             round_ = self._turned(dressed.fitter, fit, views, measured)
             if round_ is not None:
                 fit = round_
+                changed.append(WHOLE)
+        elif self._turning.is_due(turn):
+            other = self._fitted_turned(dressed.fitter, fit, views, measured, UNDER_LIMBS)
+            if self._turning.is_turned(fit, other):
+                self._turning.reset()
+                fit = other
                 changed.append(WHOLE)
         probe("face")
         fit, legs = self.other_legs(dressed, fit, views, dt_s, turn, terms)
@@ -143,13 +152,25 @@ class OtherPoses:
         measured: Callable[[MotionState], Terms],
     ) -> Fit | None:
         """The body facing the other way, if the pictures bear it."""
-        p = self._params
-        eye = np.mean([centre(fitter.drawings[view.index].camera) for view in views], axis=0)
-        fits = []
-        for start in turned_round(fitter, fit.state, fit.state.root_m - eye):
-            for view in views:
-                fitter.drawings[view.index].render(start, view.dt_s, view.roi)
-            terms = measured(start)
-            fits.append(fitter.fit(start, views, _TURNS_S, p.start.iterations, learn_shape=False, terms=terms))  # fmt: skip
+        fits = [
+            self._fitted_turned(fitter, fit, views, measured, way)
+            for way in (MIRRORED, UNDER_LIMBS)
+        ]
         best = min(fits, key=lambda one: one.cost)
-        return best if best.explained > fit.explained - p.turned_loss else None
+        return best if best.explained > fit.explained - self._params.turned_loss else None
+
+    def _fitted_turned(
+        self,
+        fitter: Fitter,
+        fit: Fit,
+        views: Sequence[View],
+        measured: Callable[[MotionState], Terms],
+        way: int,
+    ) -> Fit:
+        """The body facing the other way, in one of the two ways of `turned_round`."""
+        eye = np.mean([centre(fitter.drawings[view.index].camera) for view in views], axis=0)
+        start = turned_round(fitter, fit.state, fit.state.root_m - eye)[way]
+        for view in views:
+            fitter.drawings[view.index].render(start, view.dt_s, view.roi)
+        iterations, terms = self._params.start.iterations, measured(start)
+        return fitter.fit(start, views, _TURNS_S, iterations, learn_shape=False, terms=terms)

@@ -3,10 +3,12 @@
 from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.trackers.flex.appearance import AppearanceParams
 from mocapd.trackers.flex.face_watch import FaceWatchParams
+from mocapd.trackers.flex.turn_watch import TurnWatchParams
 from mocapd.trackers.steadying import SteadyingParams
 from mocapd.vision.room_background import BackgroundParams
 
@@ -47,7 +49,7 @@ class Params:
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0)
+        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0, arm_fits=3)
     )
     legs: LegSearchParams = field(default_factory=LegSearchParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
@@ -55,6 +57,8 @@ class Params:
     start: StartParams = field(default_factory=StartParams)
     floor: FloorParams = field(default_factory=FloorParams)
     facing: FaceWatchParams = field(default_factory=FaceWatchParams)
+    turning: TurnWatchParams = field(default_factory=TurnWatchParams)
+    depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     steadying: SteadyingParams = field(default_factory=SteadyingParams)
     distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
 
@@ -74,11 +78,6 @@ class Params:
     hidden_arm_glide: float = (
         0.7  # share of its velocity that such an arm keeps from frame to frame
     )
-
-    jump_m: float = (
-        0.08  # of a joint from where it was predicted, beyond which the pose is told bit by bit
-    )
-    blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 
     crossed_turns: int = 3  # from one look at crossed legs to the next
     crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment

@@ -9,7 +9,13 @@ from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.body.regions import Region, as_silhouette
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.skeleton import N_JOINTS, joint_positions, local_from_global, standard_skeleton
+from mocapd.body.skeleton import (
+    INDEX,
+    N_JOINTS,
+    joint_positions,
+    local_from_global,
+    standard_skeleton,
+)
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
@@ -21,7 +27,7 @@ from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
-from mocapd.trackers.blending import Residual, later, residual_of
+from mocapd.trackers.depth_views import with_depths
 from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.confidence import joint_confidence
 from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
@@ -50,7 +56,7 @@ class _Memory:
     state: MotionState
     fit: Fit
     cameras: tuple[str, ...]
-    left: Residual | None = None  # of what was shown wrongly before
+    changed: tuple[str, ...] = ()  # parts of the body that were found elsewhere
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -214,6 +220,8 @@ class FlexTracker:
         self.probe("classify")
         if not views:
             return known, views
+        views = with_depths(fitter, predicted, views, frames, p.depths)
+        self.probe("depths")
         confirmed = known.fit.confirmed_arms
         motion = predicted_information(
             known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
@@ -233,12 +241,8 @@ class FlexTracker:
             return known, views
         state = fit.state
         velocity = self._velocity(fit, last, dt_s, changed)
-        left = later(known.left) if known.left is not None else None
-        off_m = np.linalg.norm(fitter.joints(predicted)[0] - fitter.joints(state)[0], axis=1).max()
-        if changed or off_m > p.jump_m:
-            left = residual_of(fitter, predicted, state, known.left, p.blend_m)
         return _Memory(
-            frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), left
+            frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), tuple(changed)
         ), views
 
     def _follow_guide(
@@ -281,16 +285,12 @@ class FlexTracker:
             terms=terms,
         )  # fmt: skip
         self.probe("fit")
-        left = later(known.left) if known is not None and known.left is not None else None
         changed: tuple[str, ...] = ()
         if not is_first:
             fit, changed = self._others.other_legs(
                 self._dressed, fit, views, dt_s, self._turn, terms, loose
             )
             self.probe("legs")
-        if changed:
-            was = None if known is None else known.left
-            left = residual_of(fitter, predicted, fit.state, was, p.blend_m)
         if is_first and fit.explained >= p.learn_explained:
             self._learn_first(fit.state)
         if not self._believed(fit):
@@ -299,7 +299,11 @@ class FlexTracker:
         if known is not None:
             velocity = self._velocity(fit, last, dt_s, changed)
         return _Memory(
-            frames.t_ns, replace(fit.state, velocity=velocity), fit, self._names(views), left
+            frames.t_ns,
+            replace(fit.state, velocity=velocity),
+            fit,
+            self._names(views),
+            tuple(changed),
         ), views
 
     def _stand_before(self) -> None:
@@ -420,6 +424,11 @@ class FlexTracker:
         self._fitter = self._dressed.fitter
         self._cameras.fitter = self._fitter
 
+    def _bones(self, parts: Sequence[str]) -> tuple[int, ...]:
+        if WHOLE in parts:
+            return tuple(range(N_JOINTS))
+        return tuple(INDEX[bone] for part in parts for bone in self._model.space.parts[part].joints)
+
     def _names(self, views: Sequence[View]) -> tuple[str, ...]:
         return tuple(self._cameras.each[v.index].name for v in views)
 
@@ -434,10 +443,13 @@ class FlexTracker:
             return Track(lost_body(frames.t_ns, self.name), shape)
         away_s = seconds(frames.t_ns - known.t_ns)
         told = told_pose(
-            self._fitter, known.state, known.fit, known.left, away_s, self.params.prediction_damping
+            self._fitter, known.state, known.fit, None, away_s, self.params.prediction_damping
         )
         confidence = joint_confidence(known.fit, len(known.cameras), told.uncertainty_m, away_s)
-        self._told = steadied(told.pose, confidence, frames.t_ns, self._told, self.params.steadying)
+        jumped = self._bones(known.changed) if away_s == 0.0 else ()
+        self._told = steadied(
+            told.pose, confidence, frames.t_ns, self._told, self.params.steadying, jumped
+        )
         joints_m = joint_positions(skeleton_of(shape), self._told.pose)
         evidence, roi_px = self._cameras.evidence(views)
         body = BodyState(

@@ -13,6 +13,7 @@ from mocapd.types import Floats
 
 _LEFT_TO_RIGHT = np.diag([-1.0, 1.0, 1.0])
 _ROUND = np.diag([-1.0, 1.0, -1.0])
+MIRRORED, UNDER_LIMBS = 0, 1  # the two of `turned_round`
 _ACROSS = np.array([
     NAMES.index({"left": "right" + name[4:], "righ": "left" + name[5:]}.get(name[:4], name)) for name in NAMES
 ])  # fmt: skip

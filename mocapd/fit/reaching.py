@@ -1,0 +1,109 @@
+"""Poses of an arm whose hand is where something is seen before the rest of the body.
+
+Of a cloud of poses few come near a hand that is stretched out to the cameras; what is seen there says where it is, and the
+elbow is somewhere on a circle.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.body.skeleton import PARENTS
+from mocapd.fit.arm_samples import Arm
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.seen_depth import GRID_PX, work_rays
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+# Of the elbow about the line from shoulder to hand, from below it outwards
+_SWIVELS_RAD = np.radians([0.0, 50.0, 100.0, -50.0])
+_SKIN_M = 0.03  # a hand's middle is behind its skin
+_BEFORE_M = 0.12  # the rest of the body, at least
+_FOLDED = 0.3  # of an arm's length: nearer to the shoulder no hand is
+_STRETCHED = 1.05
+_LEAST = 1e-6
+
+
+def reaching_poses(
+    fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hands: int, turn: int
+) -> Floats:
+    """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none where no camera
+    sees depths. turn: a running number, by which other hands are taken."""
+    present = state.local_xyzw[arm.chain[:3]]
+    view = next((view for view in views if view.depth_m is not None), None)
+    if view is None:
+        return np.empty((0, 3, 4))
+    joints, globals_ = fitter.joints(state)
+    hands_m = _seen_before(fitter, state, arm, view, joints)
+    step = max(len(hands_m) // hands, 1)
+    hands_m = hands_m[turn % step :: step][:hands]
+    return poses_to(hands_m, joints, globals_, arm, present)
+
+
+def _seen_before(
+    fitter: Fitter, state: MotionState, arm: Arm, view: View, joints_m: Floats
+) -> Floats:
+    """Places (N,3) in the arm's reach that are seen before the rest of the body."""
+    assert view.depth_m is not None
+    drawing = fitter.drawings[view.index]
+    base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
+    depth_m = view.depth_m[::GRID_PX, ::GRID_PX]
+    y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _BEFORE_M)
+    if not len(y):
+        return np.empty((0, 3))
+    work_px: Floats = np.stack([x, y], axis=1) * GRID_PX + 0.5 * (GRID_PX - 1) + view.roi[:2]
+    _, origin, along = work_rays(drawing.camera, work_px, drawing.image_scale)
+    z_m = depth_m[y, x] + _SKIN_M
+    points: Floats = origin + along * (z_m / (along @ drawing.camera.R[2]))[:, None]
+    shoulder, elbow, hand = joints_m[arm.chain[1:4]]
+    length_m = np.linalg.norm(elbow - shoulder) + np.linalg.norm(hand - elbow)
+    away_m = np.linalg.norm(points - shoulder, axis=1)
+    near: Floats = points[(away_m > _FOLDED * length_m) & (away_m < _STRETCHED * length_m)]
+    return near
+
+
+def poses_to(
+    hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm, present_xyzw: Floats
+) -> Floats:
+    """Local rotations (N,3,4) that bring the hand's joint of an arm to each of hands_m (T,3), or as near as it reaches.
+
+    joints_m (J,3), globals_xyzw (J,4): of the body; present_xyzw (3,4): the arm's own, of which the collar stays. The
+    forearm bends about its hinge, in the plane of shoulder, elbow and hand.
+    """
+    shoulder, elbow, hand = joints_m[arm.chain[1:4]]
+    upper_m, lower_m = np.linalg.norm(elbow - shoulder), np.linalg.norm(hand - elbow)
+    outwards = (
+        1.0 if arm.side == "left" else -1.0
+    )  # of the body's own x, along which an arm lies in the T-pose
+    trunk = globals_xyzw[PARENTS[arm.chain[0]]]
+    collar = rotations.multiply(trunk, present_xyzw[0])
+    way = hands_m - shoulder
+    far_m = np.linalg.norm(way, axis=1)
+    towards = way / np.maximum(far_m, _LEAST)[:, None]
+    far_m = np.clip(far_m, abs(upper_m - lower_m) + 0.02, upper_m + lower_m - 0.005)
+    middle_m = (upper_m**2 - lower_m**2 + far_m**2) / (2.0 * far_m)
+    radius_m = np.sqrt(np.maximum(upper_m**2 - middle_m**2, 0.0))
+    below = _unit(towards * towards[:, 1:2] - [0.0, 1.0, 0.0])
+    beside = np.cross(towards, below)
+    out_of_body = outwards * rotations.to_matrix(trunk)[:, 0]
+    beside *= np.where(beside @ out_of_body > 0.0, 1.0, -1.0)[:, None]
+    poses = []
+    for swivel in _SWIVELS_RAD:
+        off_line = np.cos(swivel) * below + np.sin(swivel) * beside
+        upper = middle_m[:, None] * towards + radius_m[:, None] * off_line
+        lower = far_m[:, None] * towards - upper
+        x = outwards / upper_m * upper
+        z = _unit(lower - (lower * x).sum(axis=1, keepdims=True) * x)
+        bend_rad = np.arctan2((lower * z).sum(axis=1), outwards * (lower * x).sum(axis=1))
+        frame = rotations.from_matrix(np.stack([x, np.cross(z, x), z], axis=2))
+        pose = np.repeat(present_xyzw[None], len(hands_m), axis=0)
+        pose[:, 1] = rotations.multiply(rotations.inverse(collar), frame)
+        pose[:, 2] = rotations.exp(bend_rad[:, None] * [0.0, -outwards, 0.0])
+        poses.append(pose)
+    return np.concatenate(poses)
+
+
+def _unit(v: Floats) -> Floats:
+    out: Floats = v / np.maximum(np.linalg.norm(v, axis=1, keepdims=True), _LEAST)
+    return out

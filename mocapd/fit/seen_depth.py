@@ -1,0 +1,101 @@
+"""How far away everything is that one camera sees of a person, where another one beside it sees the same texture.
+
+Cameras side by side tell little by outlines and colours of what is before what; hands before a shirt of the arm's own colour
+are found by this alone.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.each import Each, in_turn
+from mocapd.fit.body_drawing import Roi
+from mocapd.geometry.camera_model import centre, project, rays
+from mocapd.types import Bytes, Camera, Floats
+from mocapd.vision.ray_matching_kernels import match_along_rays
+
+GRID_PX = 2  # one of so many work pixels each way is looked for
+_NEAREST_M = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class SeenDepthParams:
+    """Where a point of a person is looked for, and when it is believed."""
+
+    nearer_m: float = 0.9  # than the hips: an arm and half a trunk
+    farther_m: float = 0.5
+    place_px: float = 1.0  # from one place along a ray to the next, in the other camera
+    half_px: int = 4  # of a patch, in the pictures as delivered
+    least_contrast: float = 4.0  # standard deviation of a patch, in grey values
+    least_alike: float = 0.85
+    # what is seen beside the body, and so much farther than its hips, is not of it; as far is that looked for
+    behind_m: float = 0.7
+    room_m: float = 4.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StereoPair:
+    """A camera and the one beside it, with their pictures in grey as delivered; image_scale: by how much the camera's are
+    averaged down to work pictures."""
+
+    camera: Camera
+    other: Camera
+    greys: tuple[Bytes, Bytes]
+    image_scale: int
+
+
+def work_rays(camera: Camera, work_px: Floats, image_scale: int) -> tuple[Floats, Floats, Floats]:
+    """Pixels as delivered (N,2) of work pixels (N,2), the camera's centre (3,), and unit directions (N,3) in the world."""
+    pixels = (work_px + 0.5) * image_scale - 0.5
+    return (pixels, *rays(camera, pixels))
+
+
+def seen_depth_m(
+    wanted: NDArray[np.bool_],
+    roi: Roi,
+    pair: StereoPair,
+    root_m: Floats,
+    farther_m: float,
+    params: SeenDepthParams,
+    each: Each = in_turn,
+) -> NDArray[np.float32]:
+    """Along the camera's axis (h,w) [m], of where it is wanted (h,w) and near root_m (3,), no more than farther_m
+    behind it; NaN elsewhere, and where no texture tells.
+
+    roi: of what is wanted, in work pixels. Alike over squares of GRID_PX. each: of the halves of the points.
+    """
+    p, camera = params, pair.camera
+    depth_m = np.full(wanted.shape, np.nan, np.float32)
+    y, x = np.nonzero(wanted[::GRID_PX, ::GRID_PX])
+    if not len(y):
+        return depth_m
+    work_px: Floats = np.stack([x, y], axis=1) * GRID_PX + 0.5 * (GRID_PX - 1) + np.array(roi[:2])
+    pixels, origin, along = work_rays(camera, work_px, pair.image_scale)
+    away_m = float(np.linalg.norm(root_m - centre(camera)))
+    near_m, far_m = max(away_m - p.nearer_m, _NEAREST_M), away_m + farther_m
+    nearest, farthest = (project(pair.other, origin + r * along) for r in (near_m, far_m))
+    length_px = np.linalg.norm(nearest - farthest, axis=1).max(
+        initial=0.0, where=~np.isnan(nearest[:, 0])
+    )
+    places = int(length_px / p.place_px) + 3
+    there = (
+        farthest[:, None] + np.linspace(0.0, 1.0, places)[:, None] * (nearest - farthest)[:, None]
+    )
+    place, alike = np.empty(len(y)), np.empty(len(y))
+
+    def match(mine: slice) -> None:
+        match_along_rays(
+            *pair.greys, pixels[mine], there[mine], p.half_px, p.least_contrast, place[mine], alike[mine]
+        )  # fmt: skip
+
+    each(match, (slice(0, len(y) // 2), slice(len(y) // 2, None)))
+    # places that are even in the picture are so in the inverse of the distance
+    share = place / (places - 1)
+    found_m = 1.0 / ((1.0 - share) / far_m + share / near_m)
+    found_m = np.where(alike >= p.least_alike, found_m * (along @ camera.R[2]), np.nan)
+    coarse = np.full(wanted[::GRID_PX, ::GRID_PX].shape, np.nan, np.float32)
+    coarse[y, x] = found_m
+    h, w = wanted.shape
+    depth_m[:] = coarse.repeat(GRID_PX, axis=0).repeat(GRID_PX, axis=1)[:h, :w]
+    return depth_m

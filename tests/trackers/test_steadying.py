@@ -1,0 +1,95 @@
+"""What is told follows what was found: at once where the pictures confirm it, slowly where they hardly do."""
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.geometry import rotations
+from mocapd.trackers.steadying import SteadyingParams, Told, behind, steadied
+from mocapd.types import Floats, Pose
+
+ARM, FOREARM, ELBOW = INDEX["leftUpperArm"], INDEX["leftLowerArm"], INDEX["leftLowerArm"]
+FRAME_NS = 33_333_333
+PARAMS = SteadyingParams()
+SURE, DOUBTFUL = np.ones(N_JOINTS), np.zeros(N_JOINTS)
+
+
+def turned(rad: float, bone: int = ARM, root_m: float = 0.0) -> Pose:
+    quats = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    quats[bone] = rotations.exp(np.array([0.0, 0.0, rad]))
+    return Pose(np.array([root_m, 1.0, 0.0]), quats)
+
+
+def rad(told: Told, bone: int = ARM) -> float:
+    return float(rotations.angle_rad(told.pose.quats_xyzw[bone], rotations.IDENTITY_XYZW))
+
+
+def followed(found: Pose, confidence: Floats, times: int, fps: float = 30.0) -> list[Told]:
+    """Somebody who was told to be at rest, then is found otherwise."""
+    told, out = steadied(turned(0.0), confidence, 0, None, PARAMS), []
+    for n in range(1, times + 1):
+        told = steadied(found, confidence, round(1e9 * n / fps), told, PARAMS)
+        out.append(told)
+    return out
+
+
+def test_what_is_confirmed_is_told_as_it_was_found() -> None:
+    (told,) = followed(turned(0.4, root_m=0.2), SURE, 1)
+    assert rad(told) == pytest.approx(0.4)
+    np.testing.assert_allclose(told.pose.root_m, [0.2, 1.0, 0.0])
+
+
+def test_what_is_hardly_confirmed_follows_slowly_and_gets_there() -> None:
+    path = [rad(told) for told in followed(turned(1.0), DOUBTFUL, 60)]
+    steps = np.diff([0.0, *path])
+    assert (steps > 0.0).all()
+    assert steps.max() <= PARAMS.doubtful_rad_s / 30.0 + 1e-6
+    assert path[-1] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_each_bone_by_the_joint_that_it_leads_to() -> None:
+    elbow_hidden = SURE.copy()
+    elbow_hidden[ELBOW] = 0.0
+    (told,) = followed(turned(0.4), elbow_hidden, 1)
+    assert rad(told) < 0.11
+    (told,) = followed(turned(0.4, FOREARM), elbow_hidden, 1)
+    assert rad(told, FOREARM) == pytest.approx(0.4)
+
+
+def test_no_bone_turns_faster_than_people_turn() -> None:
+    (told,) = followed(turned(2.0), SURE, 1)
+    assert rad(told) == pytest.approx(PARAMS.sure_rad_s / 30.0, rel=1e-3)
+
+
+def test_twice_the_frames_follow_as_fast() -> None:
+    at_30 = followed(turned(0.2), DOUBTFUL, 5, fps=30.0)[-1]
+    at_60 = followed(turned(0.2), DOUBTFUL, 10, fps=60.0)[-1]
+    assert rad(at_60) == pytest.approx(rad(at_30), rel=1e-6)
+
+
+def test_trust_comes_back_bit_by_bit() -> None:
+    told = steadied(turned(0.0), DOUBTFUL, 0, None, PARAMS)
+    told = steadied(turned(0.0), SURE, FRAME_NS, told, PARAMS)
+    assert 0.0 < told.trust[ARM] < 0.1
+    for n in range(2, 30):
+        told = steadied(turned(0.0), SURE, n * FRAME_NS, told, PARAMS)
+    assert told.trust[ARM] == 1.0
+
+
+def test_a_bone_that_was_found_elsewhere_glides_there() -> None:
+    told = steadied(turned(0.0), SURE, 0, None, PARAMS)
+    jumped = steadied(turned(1.0), SURE, FRAME_NS, told, PARAMS, [ARM])
+    assert 0.0 < rad(jumped) <= PARAMS.doubtful_rad_s / 30.0 + 1e-3
+
+
+def test_after_a_gap_it_begins_anew() -> None:
+    told = steadied(turned(0.0), DOUBTFUL, 0, None, PARAMS)
+    assert rad(steadied(turned(1.0), DOUBTFUL, 600_000_000, told, PARAMS)) == pytest.approx(1.0)
+
+
+def test_a_joint_that_is_told_beside_where_it_was_found_is_less_certain() -> None:
+    found = np.zeros((2, 3))
+    told = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]])
+    np.testing.assert_allclose(
+        behind(np.array([0.02, 0.02]), told, found), [0.02, np.hypot(0.02, 0.3 / np.sqrt(3.0))]
+    )
