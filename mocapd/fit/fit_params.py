@@ -40,6 +40,8 @@ class FitParams:
 
     depth_off_m: float = 0.10  # of what is drawn from what is seen: it is another thing
     depth_cost: float = 0.5  # of a pixel that is, beside one that disagrees
+    # what may be off of a patch that is where it is seen: the outlines of a limb have the depth of what is behind it
+    depth_usual: float = 1.6  # so many times its share that is not off confirms it
     depth_least_px: int = 16  # compared, for a patch to be judged by it
 
     @property

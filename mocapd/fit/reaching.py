@@ -11,9 +11,10 @@ import numpy as np
 from mocapd.body.skeleton import PARENTS
 from mocapd.fit.arm_samples import Arm
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import GRID_PX, work_rays
+from mocapd.fit.seen_depth import GRID_PX, grid_rays
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats
 
 # Of the elbow about the line from shoulder to hand, from below it outwards
@@ -52,8 +53,8 @@ def _seen_before(
     y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _BEFORE_M)
     if not len(y):
         return np.empty((0, 3))
-    work_px: Floats = np.stack([x, y], axis=1) * GRID_PX + 0.5 * (GRID_PX - 1) + view.roi[:2]
-    _, origin, along = work_rays(drawing.camera, work_px, drawing.image_scale)
+    origin = centre(drawing.camera)
+    _, along = grid_rays(drawing.camera, drawing.image_scale, view.roi, y, x)
     z_m = depth_m[y, x] + _SKIN_M
     points: Floats = origin + along * (z_m / (along @ drawing.camera.R[2]))[:, None]
     shoulder, elbow, hand = joints_m[arm.chain[1:4]]

@@ -5,17 +5,19 @@ are found by this alone.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import Roi
-from mocapd.geometry.camera_model import centre, project, rays
-from mocapd.types import Bytes, Camera, Floats
+from mocapd.geometry.camera_model import centre, normalised, project
+from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays
 
-GRID_PX = 2  # one of so many work pixels each way is looked for
+GRID_PX = 3  # the middle one of so many work pixels each way is looked for
+_KEPT = 16  # of cameras and sizes of work pictures
 _NEAREST_M = 0.3
 
 
@@ -45,10 +47,27 @@ class StereoPair:
     image_scale: int
 
 
-def work_rays(camera: Camera, work_px: Floats, image_scale: int) -> tuple[Floats, Floats, Floats]:
-    """Pixels as delivered (N,2) of work pixels (N,2), the camera's centre (3,), and unit directions (N,3) in the world."""
-    pixels = (work_px + 0.5) * image_scale - 0.5
-    return (pixels, *rays(camera, pixels))
+def grid_rays(
+    camera: Camera, image_scale: int, roi: Roi, y: Ints, x: Ints
+) -> tuple[Floats, Floats]:
+    """Pixels as delivered (N,2), and unit directions (N,3) in the world, of places (N,) in the grid over a region."""
+    y, x = (n * GRID_PX + GRID_PX // 2 + corner for n, corner in ((y, roi[1]), (x, roi[0])))
+    pixels = np.asarray((np.stack([x, y], axis=1) + 0.5) * image_scale - 0.5, np.float64)
+    directions: Floats = _directions(camera, image_scale)[y, x]
+    return pixels, directions
+
+
+@lru_cache(_KEPT)
+def _directions(camera: Camera, image_scale: int) -> Floats:
+    """Of every work pixel (h,w,3), unit vectors in the world: lenses are undone once, not in every frame."""
+    w, h = (
+        side // image_scale + GRID_PX for side in camera.size_px
+    )  # a grid's last place may lie beyond the picture
+    pixels = np.stack(np.meshgrid(np.arange(w), np.arange(h)), axis=2)
+    xy = normalised(camera, np.asarray((pixels + 0.5) * image_scale - 0.5, np.float64))
+    d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=2)
+    out: Floats = d / np.linalg.norm(d, axis=2, keepdims=True) @ camera.R
+    return out
 
 
 def seen_depth_m(
@@ -67,12 +86,13 @@ def seen_depth_m(
     """
     p, camera = params, pair.camera
     depth_m = np.full(wanted.shape, np.nan, np.float32)
-    y, x = np.nonzero(wanted[::GRID_PX, ::GRID_PX])
+    on_grid = wanted[::GRID_PX, ::GRID_PX]
+    y, x = np.nonzero(on_grid)
     if not len(y):
         return depth_m
-    work_px: Floats = np.stack([x, y], axis=1) * GRID_PX + 0.5 * (GRID_PX - 1) + np.array(roi[:2])
-    pixels, origin, along = work_rays(camera, work_px, pair.image_scale)
-    away_m = float(np.linalg.norm(root_m - centre(camera)))
+    pixels, along = grid_rays(camera, pair.image_scale, roi, y, x)
+    origin = centre(camera)
+    away_m = float(np.linalg.norm(root_m - origin))
     near_m, far_m = max(away_m - p.nearer_m, _NEAREST_M), away_m + farther_m
     nearest, farthest = (project(pair.other, origin + r * along) for r in (near_m, far_m))
     length_px = np.linalg.norm(nearest - farthest, axis=1).max(
@@ -94,7 +114,7 @@ def seen_depth_m(
     share = place / (places - 1)
     found_m = 1.0 / ((1.0 - share) / far_m + share / near_m)
     found_m = np.where(alike >= p.least_alike, found_m * (along @ camera.R[2]), np.nan)
-    coarse = np.full(wanted[::GRID_PX, ::GRID_PX].shape, np.nan, np.float32)
+    coarse = np.full(on_grid.shape, np.nan, np.float32)
     coarse[y, x] = found_m
     h, w = wanted.shape
     depth_m[:] = coarse.repeat(GRID_PX, axis=0).repeat(GRID_PX, axis=1)[:h, :w]

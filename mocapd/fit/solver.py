@@ -263,7 +263,7 @@ class Fitter:
         )
 
     def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats]:
-        """The cost of what was drawn last nearer or farther than it is seen, and by patch the share that is not (21,)."""
+        """The cost of what was drawn last nearer or farther than it is seen, and by patch whether it is there (21,)."""
         p, cost, asked, off = self.params, 0.0, np.zeros(N_LABELS), np.zeros(N_LABELS)
         for view in views:
             if view.depth_m is not None:
@@ -273,7 +273,8 @@ class Fitter:
                     drawing.last_depth_m(view.roi), triangle_at, self.model.patch, view.depth_m, p.depth_off_m,
                     asked, off,
                 )  # fmt: skip
-        return cost, np.where(asked >= p.depth_least_px, 1.0 - off / np.maximum(asked, 1.0), 1.0)
+        share = np.minimum(p.depth_usual * (1.0 - off / np.maximum(asked, 1.0)), 1.0)
+        return cost, np.where(asked >= p.depth_least_px, share, 1.0)
 
     def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""

@@ -94,7 +94,7 @@ def test_an_arm_stretched_out_to_the_cameras_is_found_by_its_depth(side: str) ->
     assert best > 0
     off_m = np.linalg.norm(hands(by, arm, tries[best : best + 1])[0] - hand)
     was_m = np.linalg.norm(hands(by, arm, tries[:1])[0] - hand)
-    assert off_m < 0.5 * was_m
+    assert off_m < 0.6 * was_m
 
 
 def test_nothing_is_tried_where_no_camera_sees_depths() -> None:

@@ -62,6 +62,7 @@ class Params:
     steadying: SteadyingParams = field(default_factory=SteadyingParams)
     distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
 
+    depth_turns: int = 2  # from one look for depths to the next
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
     uncovered_turns: int = 10  # from one look for what was uncovered to the next

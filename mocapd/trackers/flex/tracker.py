@@ -126,6 +126,9 @@ class FlexTracker:
         views = cameras.classified(somebody)
         if not views:
             return  # nobody at the origin is in any picture
+        views = with_depths(
+            self._fitter, somebody, views, FrameSet(0, black, 0), self.params.depths
+        )
         terms = self._terms(somebody, views, FrameSet(0, black, 0))
         fit = self._fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
         still, usual_sd = somebody.velocity, self._fitter.prediction_sd
@@ -220,7 +223,8 @@ class FlexTracker:
         self.probe("classify")
         if not views:
             return known, views
-        views = with_depths(fitter, predicted, views, frames, p.depths)
+        if self._turn % p.depth_turns == 0:
+            views = with_depths(fitter, predicted, views, frames, p.depths)
         self.probe("depths")
         confirmed = known.fit.confirmed_arms
         motion = predicted_information(

@@ -12,7 +12,7 @@ from mocapd.fit.solver import Fit
 class TurnWatchParams:
     """When to look, and what a look tells."""
 
-    every: int = 10  # turns from one look to the next
+    every: int = 10  # turns from one look to the next, at an odd one: depths are seen at even ones
     explained: float = 0.03  # so much more that is explained speaks as loud as ...
     cost: float = 100.0  # ... a cost that is so much less
     sure: float = 2.2  # of what spoke for the other way, and was not taken back, in these measures
@@ -32,7 +32,7 @@ class TurnWatch:
 
     def is_due(self, turn: int) -> bool:
         """Whether to look at this running number of a turn."""
-        return turn % self.params.every == 0
+        return turn % self.params.every == self.params.every // 2
 
     def is_turned(self, fit: Fit, other: Fit) -> bool:
         """Whether to go on from the other fit, of the body turned round."""

@@ -21,7 +21,7 @@ def fit(explained: float, cost: float) -> Fit:
 
 def test_it_is_looked_for_now_and_then() -> None:
     watch = TurnWatch(PARAMS)
-    assert [turn for turn in range(40) if watch.is_due(turn)] == [0, 10, 20, 30]
+    assert [turn for turn in range(40) if watch.is_due(turn)] == [5, 15, 25, 35]
 
 
 def test_once_is_chance_and_again_and_again_is_not() -> None:
