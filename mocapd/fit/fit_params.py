@@ -39,7 +39,10 @@ class FitParams:
     tilt_sd_rad: float = 0.25  # of the hips, before such cameras
 
     depth_off_m: float = 0.10  # of what is drawn from what is seen: it is another thing
-    depth_cost: float = 0.5  # of a pixel that is, beside one that disagrees
+    depth_around_px: int = (
+        2  # within which that is which has the depth seen in a pixel: a patch's half [work px]
+    )
+    depth_cost: float = 1.0  # of a pixel that is, beside one that disagrees
     # what may be off of a patch that is where it is seen: the outlines of a limb have the depth of what is behind it
     depth_usual: float = 1.6  # so many times its share that is not off confirms it
     depth_least_px: int = 16  # compared, for a patch to be judged by it
@@ -65,6 +68,7 @@ class LimbSearchParams:
     """When other poses of an arm are tried, and how many."""
 
     uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
+    nearer_px: float = 100.0  # where something is seen well before the body, above which both are
     arm_cloud: int = 64  # tries about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
     arm_reaches: int = 48  # hands tried where something is seen before the body
@@ -88,7 +92,9 @@ class LimbSearchParams:
 class LegSearchParams:
     """When other poses of a leg are tried, and how many."""
 
-    uncertain: float = 0.6  # share of a leg's pixels confirmed, below which others are tried
+    uncertain: float = (
+        0.5  # share of its worse part's pixels confirmed, below which others are tried
+    )
     cloud: int = 48  # tries about the present pose
     library: int = 96  # tries over the range of legs, another part each frame
     fits: int = 2  # of which so many are fitted

@@ -75,7 +75,7 @@ class LegSearch:
             tries = self._candidates(fit.state, side, leg, views, turn)
             scores = self._scores(fit.state, side, leg, views, tries)
             here = tries[0]
-            best, least = fit, fit.cost + self._price(side, here, here) - p.gain
+            best, least = fit, fit.cost_for_any_pose + self._price(side, here, here) - p.gain
             for n in best_poses(tries[:, :2], scores, p.fits):
                 local = fit.state.local_xyzw.copy()
                 local[leg.chain[:3]] = tries[n]
@@ -89,7 +89,8 @@ class LegSearch:
                     motion=motion,
                     terms=terms,
                 )
-                cost = other.cost + self._price(side, other.state.local_xyzw[leg.chain[:3]], here)
+                cost = self._price(side, other.state.local_xyzw[leg.chain[:3]], here)
+                cost += other.cost_for_any_pose
                 if cost < least:
                     best, least = other, cost
             if best is not fit:
@@ -128,12 +129,12 @@ class LegSearch:
 
 
 def confirmed(side: str, fit: Fit) -> float:
-    """0..1: share of a leg's pixels that the pictures confirm; 1 for one that is hardly in sight."""
+    """0..1: share of its pixels that the pictures confirm, of the worse of thigh and shank; 1 for what is hardly in sight."""
     mine = _LABELS[side]
-    asked = float(fit.visible[mine].sum() + fit.unexplained[mine].sum())
-    if asked < _IN_SIGHT * float(fit.visible.sum()):
-        return 1.0
-    return float((fit.matched * fit.in_depth)[mine].sum()) / (asked + 1.0)
+    asked = fit.visible[mine] + fit.unexplained[mine]
+    shares = (fit.matched * fit.in_depth)[mine] / (asked + 1.0)
+    in_sight = asked >= _IN_SIGHT * fit.visible.sum()
+    return float(shares.min(initial=1.0, where=in_sight))
 
 
 def _library(u: Floats, side: str) -> Floats:

@@ -301,22 +301,27 @@ class ArmSearch:
                 self.fitter, fit.state, arm, views, tries, empty
             )
             here = tries[0]
-            seen_px = self._hand_px(arm, fit, views, empty)
-            best, least = fit, fit.cost + self._price(side, here, here) - seen_px - p.arm_gain
+            best, least = fit, self._cost(arm, fit, here, views, empty) - p.arm_gain
             for n in best_poses(tries[:, 1:], scores, p.arm_fits):
                 local = fit.state.local_xyzw.copy()
                 local[arm.chain[:3]] = tries[n]
                 state = replace(fit.state, local_xyzw=local)
                 other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1, terms=terms)
-                there = other.state.local_xyzw[arm.chain[:3]]
-                cost = other.cost + self._price(side, there, here)
-                cost -= self._hand_px(arm, other, views, empty)
+                cost = self._cost(arm, other, here, views, empty)
                 if cost < least:
                     best, least = other, cost
             if best is not fit:
                 fit = best
                 changed.append(side)
         return fit, tuple(changed)
+
+    def _cost(
+        self, arm: Arm, fit: Fit, here_xyzw: Floats, views: Sequence[View], empty: float
+    ) -> float:
+        """Of a fit, with what its pose of an arm (3,4) costs beside what the pictures say, and its hand."""
+        there = fit.state.local_xyzw[arm.chain[:3]]
+        price = self._price(arm.side, there, here_xyzw)
+        return fit.cost_for_any_pose + price - self._hand_px(arm, fit, views, empty)
 
     def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
         """How much of the hand is seen where this fit has it, in the measure of its cost."""
@@ -335,8 +340,8 @@ class ArmSearch:
 
 
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
-    """Whether too little of an arm is confirmed by the pictures."""
-    return fit.confirmed_arms[side] < params.uncertain_arm
+    """Whether too little of an arm is confirmed by the pictures, or they show what only an arm can be."""
+    return fit.confirmed_arms[side] < params.uncertain_arm or fit.nearer_px > params.nearer_px
 
 
 def part(rows: Floats, turn: int, size: int) -> Floats:

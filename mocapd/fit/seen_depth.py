@@ -19,6 +19,7 @@ from mocapd.vision.ray_matching_kernels import match_along_rays
 GRID_PX = 3  # the middle one of so many work pixels each way is looked for
 _KEPT = 16  # of cameras and sizes of work pictures
 _NEAREST_M = 0.3
+_APART = 2  # places: as near to the best one all are nearly as good
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +29,10 @@ class SeenDepthParams:
     nearer_m: float = 0.9  # than the hips: an arm and half a trunk
     farther_m: float = 0.5
     place_px: float = 1.0  # from one place along a ray to the next, in the other camera
-    half_px: int = 4  # of a patch, in the pictures as delivered
+    half_px: int = 5  # of a patch, in the pictures as delivered
     least_contrast: float = 4.0  # standard deviation of a patch, in grey values
     least_alike: float = 0.85
+    least_ahead: float = 0.03  # of all other places: stripes along a ray are alike everywhere
     # what is seen beside the body, and so much farther than its hips, is not of it; as far is that looked for
     behind_m: float = 0.7
     room_m: float = 4.0
@@ -106,7 +108,8 @@ def seen_depth_m(
 
     def match(mine: slice) -> None:
         match_along_rays(
-            *pair.greys, pixels[mine], there[mine], p.half_px, p.least_contrast, place[mine], alike[mine]
+            *pair.greys, pixels[mine], there[mine], p.half_px, p.least_contrast, _APART, p.least_ahead,
+            place[mine], alike[mine],
         )  # fmt: skip
 
     each(match, (slice(0, len(y) // 2), slice(len(y) // 2, None)))

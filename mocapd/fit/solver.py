@@ -27,6 +27,7 @@ from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.seen_depth import GRID_PX
 from mocapd.fit.step_kernels import gauss_newton_step
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.types import Camera, Floats, Ints
@@ -55,7 +56,8 @@ class View:
 class Fit:
     """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
     information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before;
-    in_depth (21,): share of a patch's pixels that are where depths are seen, 1 where none are."""
+    in_depth (21,): share of a patch's pixels that are where depths are seen, 1 where none are; nearer_px: where something is
+    seen well before all that is drawn; measured_cost: what the cost has of terms that were measured for another pose."""
 
     state: MotionState
     visible: Floats
@@ -65,6 +67,8 @@ class Fit:
     cost: float
     information: Floats
     in_depth: Floats = field(default_factory=partial(np.ones, N_LABELS))
+    nearer_px: float = 0.0
+    measured_cost: float = 0.0
 
     @cached_property
     def covariance(self) -> Floats:
@@ -80,6 +84,11 @@ class Fit:
     def explained(self) -> float:
         """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
         return float(self.matched.sum() / max(self.visible.sum() + self.unexplained.sum(), 1.0))
+
+    @property
+    def cost_for_any_pose(self) -> float:
+        """Its cost where poses far from each other are compared."""
+        return self.cost - self.measured_cost
 
     @cached_property
     def confirmed_arms(self) -> dict[str, float]:
@@ -197,7 +206,7 @@ class Fitter:
         the prediction; None for the usual, loose one. terms: what else holds or pulls the pose.
         """
         p, m = self.params, self.model
-        state, crowded = prediction, 0.0
+        state, crowded, measured = prediction, 0.0, 0.0
         n_shape = m.n_shape if learn_shape else 0
         P = m.n_pose + n_shape
         if motion is None:
@@ -239,7 +248,11 @@ class Fitter:
                 held,
                 pull,
             )
-            crowded += sum(term.add(posed, one.body, held, pull) for term in terms)
+            measured = 0.0
+            for term in terms:
+                cost = term.add(posed, one.body, held, pull)
+                crowded += cost
+                measured += cost if term.is_measured else 0.0
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 motion, priors, prediction.factors - state.factors, prediction.information,
@@ -250,7 +263,7 @@ class Fitter:
                 factors = np.clip(factors + step[m.n_pose :], 0.6, 1.6)
             state = replace(state, root_m=root, local_xyzw=local, factors=factors)
         rows = [self._rows[view.index] for view in views]
-        misplaced, in_depth = self._compare_depths(views)
+        misplaced, in_depth, nearer_px = self._compare_depths(views)
         return Fit(
             state,
             sum((r.visible for r in rows), _NO_PIXELS),
@@ -260,21 +273,26 @@ class Fitter:
             sum(r.cost for r in rows) + crowded + misplaced,
             held[: m.n_pose, : m.n_pose] + motion,
             in_depth,
+            nearer_px,
+            measured,
         )
 
-    def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats]:
-        """The cost of what was drawn last nearer or farther than it is seen, and by patch whether it is there (21,)."""
-        p, cost, asked, off = self.params, 0.0, np.zeros(N_LABELS), np.zeros(N_LABELS)
+    def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats, float]:
+        """The cost of what was drawn last nearer or farther than it is seen; by patch whether it is there (21,); and the
+        pixels in which something is seen well before what was drawn."""
+        p, cost, nearer_px = self.params, 0.0, 0.0
+        asked, off = np.zeros(N_LABELS), np.zeros(N_LABELS)
         for view in views:
             if view.depth_m is not None:
                 drawing = self.drawings[view.index]
-                triangle_at = drawing.last(view.roi)[1]
-                cost += p.depth_cost * compare_depths(
-                    drawing.last_depth_m(view.roi), triangle_at, self.model.patch, view.depth_m, p.depth_off_m,
-                    asked, off,
+                away, nearer = compare_depths(
+                    drawing.last_depth_m(view.roi), drawing.last(view.roi)[1], self.model.patch, view.depth_m,
+                    GRID_PX, p.depth_around_px, p.depth_off_m, asked, off,
                 )  # fmt: skip
+                cost += p.depth_cost * away
+                nearer_px += nearer
         share = np.minimum(p.depth_usual * (1.0 - off / np.maximum(asked, 1.0)), 1.0)
-        return cost, np.where(asked >= p.depth_least_px, share, 1.0)
+        return cost, np.where(asked >= p.depth_least_px, share, 1.0), nearer_px
 
     def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""

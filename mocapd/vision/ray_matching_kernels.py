@@ -94,6 +94,8 @@ def match_along_rays(
     there_px: Array,
     half: int,
     least_contrast: float,
+    apart: int,
+    least_ahead: float,
     place: Array,
     alike: Array,
 ) -> None:
@@ -101,7 +103,8 @@ def match_along_rays(
 
     grey, other (h,w); at_px (N,2): the rays' pixels in the first; there_px (N,K,2): where K places along each ray show
     in the other, NaN for none. Fills place (N,), 0..K-1 between places, and alike (N,), the correlation there; alike
-    is -1 where the patch has less contrast (standard deviation, grey values) or the best place is at an end.
+    is -1 where the patch has less contrast (standard deviation, grey values), the best place is at an end, or it is
+    not ahead by least_ahead of all places that are `apart` or more from it.
     """
     size = (2 * half + 1) ** 2
     mine, its = np.empty(size), np.zeros((_TOGETHER, size))
@@ -131,6 +134,12 @@ def match_along_rays(
                 if scores[k] > scores[best]:
                     best = k
         if best == 0 or best == n_places - 1:
+            continue
+        rival = -1.0
+        for k in range(n_places):
+            if abs(k - best) >= apart:
+                rival = max(rival, scores[k])
+        if rival > scores[best] - least_ahead:
             continue
         bend = scores[best - 1] - 2.0 * scores[best] + scores[best + 1]
         beside = 0.5 * (scores[best - 1] - scores[best + 1]) / bend if bend < -1e-6 else 0.0

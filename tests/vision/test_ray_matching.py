@@ -15,6 +15,8 @@ LEFT, RIGHT = (
     looking_at(name, np.array([x, 1.2, 2.8]), TARGET + [x, 0.0, 0.0]) for name, x in (("left", -0.06), ("right", 0.06))
 )  # fmt: skip
 
+ANY = (99, 0.0)  # a best place may be as good as others
+
 
 def texture(x: Floats, y: Floats) -> Floats:
     """Grey values of a wall at x, y [m]: waves of a few centimetres in no common direction."""
@@ -53,7 +55,7 @@ def test_whole_pixels_equal_the_naive_twin() -> None:
     at = np.array([[40.0, 41.0], [22.0, 30.0]])
     there = at[:, None] + np.stack([np.arange(-6.0, 7.0), np.zeros(13)], axis=1)
     place, alike = np.empty(2), np.empty(2)
-    match_along_rays(grey, other, at, there, 5, 1.0, place, alike)
+    match_along_rays(grey, other, at, there, 5, 1.0, *ANY, place, alike)
     for n in range(2):
         wanted = naive_match(grey, other, at[n], there[n], 5)
         assert np.argmax(wanted) == 9  # three to the right
@@ -72,7 +74,7 @@ def test_the_distance_of_a_wall_is_found_to_a_centimetre(z_m: float) -> None:
     points = origin + (tried[:, None] + offsets)[..., None] * along[:, None]
     there = project(RIGHT, points.reshape(-1, 3)).reshape(len(at), 17, 2)
     place, alike = np.empty(len(at)), np.empty(len(at))
-    match_along_rays(*pictures, at, there, 6, 4.0, place, alike)
+    match_along_rays(*pictures, at, there, 6, 4.0, *ANY, place, alike)
     assert (alike > 0.85).mean() > 0.9
     found = tried + np.interp(place, np.arange(17), offsets)
     error_m = np.abs(found - truth)[alike > 0.85]
@@ -85,13 +87,29 @@ def test_what_has_no_texture_or_ends_the_search_is_not_believed() -> None:
     at = np.array([[40.0, 40.0]])
     there = at[:, None] + np.stack([np.arange(-3.0, 4.0), np.zeros(7)], axis=1)
     place, alike = np.empty(1), np.empty(1)
-    match_along_rays(flat, flat, at, there, 5, 1.0, place, alike)
+    match_along_rays(flat, flat, at, there, 5, 1.0, *ANY, place, alike)
     assert alike[0] == -1.0
     rng = np.random.default_rng(1)
     grey = rng.integers(0, 255, (80, 90), dtype=np.uint8)
-    match_along_rays(grey, np.roll(grey, 9, axis=1), at, there, 5, 1.0, place, alike)
+    match_along_rays(grey, np.roll(grey, 9, axis=1), at, there, 5, 1.0, *ANY, place, alike)
     assert alike[0] < 0.6
-    match_along_rays(grey, np.roll(grey, 3, axis=1), at, there, 5, 1.0, place, alike)
+    match_along_rays(grey, np.roll(grey, 3, axis=1), at, there, 5, 1.0, *ANY, place, alike)
     assert alike[0] == -1.0  # at the end of what was tried
-    match_along_rays(grey, grey, at, np.full_like(there, np.nan), 5, 1.0, place, alike)
+    match_along_rays(grey, grey, at, np.full_like(there, np.nan), 5, 1.0, *ANY, place, alike)
     assert alike[0] == -1.0
+
+
+def test_stripes_along_the_ray_are_alike_everywhere_and_not_believed() -> None:
+    rows = np.repeat(np.where(np.arange(80) // 6 % 2, 200.0, 60.0)[:, None], 90, axis=1)
+    noise = np.random.default_rng(5).normal(0.0, 3.0, (2, 80, 90))
+    grey, other = ((rows + one).astype(np.uint8) for one in noise)
+    at = np.array([[40.0, 40.0], [45.0, 33.0]])
+    there = at[:, None] + np.stack([np.arange(-6.0, 7.0), np.zeros(13)], axis=1)
+    place, alike = np.empty(2), np.empty(2)
+    match_along_rays(grey, other, at, there, 5, 4.0, *ANY, place, alike)
+    assert (alike > 0.85).any()
+    match_along_rays(grey, other, at, there, 5, 4.0, 2, 0.03, place, alike)
+    assert (alike == -1.0).all()
+    spots = np.random.default_rng(6).integers(0, 255, (80, 90), dtype=np.uint8)
+    match_along_rays(spots, np.roll(spots, 3, axis=1), at, there, 5, 4.0, 2, 0.03, place, alike)
+    assert (alike > 0.85).all()

@@ -61,8 +61,8 @@ def measured_distances(
 
     def match(mine: slice) -> None:
         match_along_rays(
-            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, place[mine], alike[mine]
-        )
+            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, p.places, 0.0, place[mine], alike[mine]
+        )  # fmt: skip
 
     half = len(y) // 2
     each(match, (slice(0, half), slice(half, None)))

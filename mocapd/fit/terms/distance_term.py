@@ -34,6 +34,8 @@ class MeasuredDistances:
 class DistanceTerm:
     """The distances of one frame set for one body model, a `PoseTerm`."""
 
+    is_measured = True
+
     def __init__(self, model: BodyModel, measured: MeasuredDistances) -> None:
         self._model, self._measured = model, measured
         self._row = np.zeros(model.n_pose)

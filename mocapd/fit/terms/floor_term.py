@@ -30,6 +30,8 @@ class FloorParams:
 class FloorTerm:
     """The floor at y = 0 under one body model, a `PoseTerm`."""
 
+    is_measured = False
+
     def __init__(self, model: BodyModel, params: FloorParams | None = None) -> None:
         self._model, self._params = model, params if params is not None else FloorParams()
         # a picture shows how high a shoe is, and hardly whether its heel is up
