@@ -11,7 +11,7 @@ import numpy as np
 
 from mocapd.body.bones import NAMES
 from mocapd.body.skeleton import INDEX
-from mocapd.clock import seconds
+from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints, Pose
@@ -34,15 +34,19 @@ class SteadyingParams:
     trust_s: float = 0.7  # who was not confirmed at all is fully believed no sooner
     sure_rad_s: float = 15.0
     doubtful_rad_s: float = 3.0
+    settles_s: float = (
+        0.4  # who was just found is told as found: there is nothing better to hold on to
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Told:
-    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1."""
+    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1; since_ns: when it was first found."""
 
     t_ns: int
     pose: Pose
     trust: Floats
+    since_ns: int
 
 
 def _end_of_bones() -> Ints:
@@ -71,7 +75,9 @@ def steadied(
     p, trust = params, confidence[_END_OF_BONE]
     gap_s = _ANEW_S if last is None else seconds(t_ns - last.t_ns)
     if last is None or gap_s >= _ANEW_S:
-        return Told(t_ns, found, trust)
+        return Told(t_ns, found, trust, t_ns)
+    if t_ns - last.since_ns < nanoseconds(p.settles_s):
+        return Told(t_ns, found, trust, last.since_ns)
     trust[list(jumped)] = 0.0
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
@@ -83,7 +89,7 @@ def steadied(
     turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
     root_m = last.pose.root_m + follows[0] * (found.root_m - last.pose.root_m)
     turned = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
-    return Told(t_ns, Pose(root_m, rotations.canonical(turned)), trust)
+    return Told(t_ns, Pose(root_m, rotations.canonical(turned)), trust, last.since_ns)
 
 
 def behind(uncertainty_m: Floats, told_m: Floats, found_m: Floats) -> Floats:

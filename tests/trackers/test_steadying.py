@@ -10,7 +10,7 @@ from mocapd.types import Floats, Pose
 
 ARM, FOREARM, ELBOW = INDEX["leftUpperArm"], INDEX["leftLowerArm"], INDEX["leftLowerArm"]
 FRAME_NS = 33_333_333
-PARAMS = SteadyingParams()
+PARAMS = SteadyingParams(settles_s=0.0)
 SURE, DOUBTFUL = np.ones(N_JOINTS), np.zeros(N_JOINTS)
 
 
@@ -93,3 +93,15 @@ def test_a_joint_that_is_told_beside_where_it_was_found_is_less_certain() -> Non
     np.testing.assert_allclose(
         behind(np.array([0.02, 0.02]), told, found), [0.02, np.hypot(0.02, 0.3 / np.sqrt(3.0))]
     )
+
+
+def test_who_was_just_found_is_told_as_found_until_settled() -> None:
+    usual = SteadyingParams()
+    told = steadied(turned(0.0), DOUBTFUL, 0, None, usual)
+    behind_rad = []
+    for n in range(1, 20):
+        told = steadied(turned(0.1 * n), DOUBTFUL, n * FRAME_NS, told, usual)
+        behind_rad.append(0.1 * n - rad(told))
+    settled = round(usual.settles_s * 30.0)
+    np.testing.assert_allclose(behind_rad[: settled - 1], 0.0, atol=1e-9)
+    assert behind_rad[settled + 2] > 0.05

@@ -79,6 +79,7 @@ class Glider:
         self._told = told if told is not None and told.pose is not None else None
         self._last: Sourced | None = None  # what was known then
         self._moved_m: Floats | None = None  # each joint (J,3), since the frame before that
+        self._moved: Away | None = None  # its pose, likewise
         self._away: Away | None = None
         self._speed_m_s = 0.0
 
@@ -101,20 +102,24 @@ class Glider:
             assert self._last is not None
             last = self._last.body
         moved_m = None if last is None else _moved(last, body)
+        moved = _turned(last, body)
         if told is None or gap_ns > nanoseconds(p.glide_within_s):
             self._away = None
         elif is_new:
             # the motion since then is not to be mended
             self._begin(told, body if last is None else last, skeleton)
         elif self._away is not None and moved_m is not None and self._jumps(moved_m, gap_ns):
-            self._begin(told, body, skeleton)  # who has just begun to speak settles
-            moved_m = None
+            # who has just begun to speak settles: what is told goes on as it went, and that is not to be mended
+            assert told.pose is not None
+            pose = told.pose if self._moved is None else off(told.pose, self._moved, 1.0)
+            self._begin(replace(told, pose=pose), body, skeleton)
+            moved_m, moved = self._moved_m, self._moved
         if self._away is not None and body.pose is not None:
             step_m = min(p.glide_m, max(self._speed_m_s * seconds(gap_ns), _LEAST_M))
             self._away = lessened(body.pose, self._away, skeleton, step_m)
         if self._away is not None:
             body = glided(body, self._away, skeleton)
-        self._told, self._last, self._moved_m = body, now, moved_m
+        self._told, self._last, self._moved_m, self._moved = body, now, moved_m, moved
         return body, self._away is not None
 
     def _begin(self, told: BodyState, known: BodyState, skeleton: Skeleton) -> None:
@@ -132,6 +137,12 @@ class Glider:
             most_m = max(p.glide_m, p.jump_m_s * seconds(gap_ns))
             return bool(np.linalg.norm(moved_m, axis=1).max() > most_m)
         return bool(np.linalg.norm(moved_m - self._moved_m, axis=1).max() > p.jump_m)
+
+
+def _turned(before: BodyState | None, now: BodyState) -> Away | None:
+    if before is None or before.pose is None or now.pose is None:
+        return None
+    return away_from(now.pose, before.pose)
 
 
 def _moved(before: BodyState, now: BodyState) -> Floats:

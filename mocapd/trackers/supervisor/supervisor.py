@@ -111,7 +111,10 @@ class Supervisor:
         if self._speaker is None:
             self._glider.reset()
             return Track(lost_body(frames.t_ns, self.name), shape)
-        track, now = self._known[self._speaker].track, self._composed(self._bodies(), skeleton)
+        track, now = (
+            self._known[self._speaker].track,
+            self._composed(self._heard_of(before), skeleton),
+        )
         assert track is not None
         assert now is not None
         self._mind_the_others(now.body, frames)
@@ -207,6 +210,19 @@ class Supervisor:
             for name, known in self._known.items()
             if known.body is not None
         }
+
+    def _heard_of(self, before: Mapping[str, Sourced]) -> dict[str, Sourced]:
+        """The bodies of this frame set, without one that completes who spoke before and was not there then: how it moves
+        is not known yet, and what is told must go over to it."""
+        bodies = self._bodies()
+        lower = self._lower
+        if (
+            lower is not None
+            and self._speaker in before
+            and lower.name not in (self._speaker, *before)
+        ):
+            bodies.pop(lower.name, None)
+        return bodies
 
     def _composed(self, bodies: Mapping[str, Sourced], skeleton: Skeleton) -> Sourced | None:
         """The body of who speaks, of those of one frame set, completed where it is an upper body alone."""

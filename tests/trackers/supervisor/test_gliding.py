@@ -1,5 +1,7 @@
 """From any body to any other no joint jumps, and the way ends."""
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -94,3 +96,25 @@ def test_who_settles_on_the_way_does_not_jump_either() -> None:
         told_m.append(told.joints_m)
     assert np.linalg.norm(np.diff(told_m, axis=0), axis=2).max() <= Params().glide_m + 1e-9
     assert np.allclose(told_m[-1], joints(pose))
+
+
+def test_who_settles_while_they_run_does_not_stay_behind() -> None:
+    """At 15 cm a frame, and by half of that elsewhere at first: what is told runs along while it is mended."""
+    run_m = 0.15
+    aside_m = [0.0, 0.25, 0.25, 0.31, 0.31, 0.31, 0.31, 0.31, 0.31]
+    glider, off_m = Glider(Params()), []
+    for n, x_m in enumerate(aside_m):
+        pose = Pose(body(3, 0.5).root_m + (x_m, 0.0, n * run_m), body(3, 0.5).quats_xyzw)
+        known = BodyState(
+            n * 33_333_333, Tracking.LIVE, "one" if n == 0 else "other", pose, joints(pose), np.ones(len(joints(pose)))
+        )  # fmt: skip
+        was = None
+        if n == 1:  # as the other one had it in the frame before
+            there = Pose(pose.root_m - (0.0, 0.0, run_m), pose.quats_xyzw)
+            was = Sourced(replace(known, t_ns=0, pose=there, joints_m=joints(there)), "other")
+        told, _ = glider.step(Sourced(known, known.tracker), was, SKELETON)
+        assert told.joints_m is not None
+        off_m.append(told.joints_m - joints(Pose(pose.root_m - (x_m, 0.0, 0.0), pose.quats_xyzw)))
+    steps_m = np.linalg.norm(np.diff(off_m, axis=0), axis=2)
+    assert steps_m.max() <= Params().glide_m + 1e-9
+    assert np.allclose(off_m[-1], [0.31, 0.0, 0.0])
