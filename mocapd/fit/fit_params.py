@@ -104,4 +104,8 @@ class LegSearchParams:
         1.4  # what a pose costs that legs seldom have, by its squared Mahalanobis distance
     )
     unusual_cost: float = 1.0  # the same in the cost of a fit
+    tail: float = (
+        25.0  # such a distance, above which more counts ever less: legs of a squat have 50 to 200
+    )
+    squats: int = 3  # of so many tries over the range one is of a deep squat
     gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

@@ -23,7 +23,7 @@ from mocapd.fit.limb_search import (
     turned_rad2,
 )
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.pose_prior import unusual_leg, usual_leg
+from mocapd.fit.pose_prior import seldom, unusual_leg, usual_leg
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
@@ -47,7 +47,7 @@ class LegSearch:
         u = spread(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.2, 0.5)[:, None]
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.2, 0.4, 0.5, 1.2, 0.1, 0.1])
-        self._library = {side: _library(u, side) for side in SIDES}
+        self._library = {side: _library(u, side, params.squats) for side in SIDES}
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
         """Run the search once for nothing: the first uncertain leg must not wait for its kernels to be compiled or loaded."""
@@ -116,7 +116,7 @@ class LegSearch:
         none = np.zeros(len(tries))
         scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
-        unusual = p.unusual_px * unusual_leg(tries, side)
+        unusual = p.unusual_px * seldom(unusual_leg(tries, side), p.tail)
         out: Floats = PX_OF_M2 * scores - unusual - p.farther_px * away_rad2
         return out
 
@@ -124,7 +124,7 @@ class LegSearch:
         """What a pose (3,4) of a leg costs beside what the pictures say: it is seldom seen, or far from here."""
         p = self.params
         away_rad2 = float(turned_rad2(there_xyzw[None, :2], here_xyzw[:2])[0])
-        unusual = float(unusual_leg(there_xyzw[None], side)[0])
+        unusual = float(seldom(unusual_leg(there_xyzw[None], side), p.tail)[0])
         return p.unusual_cost * unusual + p.farther_px * away_rad2
 
 
@@ -137,12 +137,14 @@ def confirmed(side: str, fit: Fit) -> float:
     return float(shares.min(initial=1.0, where=in_sight))
 
 
-def _library(u: Floats, side: str) -> Floats:
-    """Poses (L,3,4) of one leg spread evenly over what legs do."""
+def _library(u: Floats, side: str, squats: int) -> Floats:
+    """Poses (L,3,4) of one leg spread evenly over what legs do, one of so many over those of squats with the knees out."""
     mirror = 1.0 if side == "left" else -1.0
     low = np.array([-1.9, -0.4, -0.3, 0.0])
     high = np.array([0.5, 0.4, 0.7, 2.2])
     angles = low + (high - low) * u[:, :4]
+    low, high = np.array([-1.6, 0.2, 0.4, 1.4]), np.array([-0.5, 0.9, 2.2, 2.75])
+    angles[::squats] = low + (high - low) * u[::squats, :4]
     thigh = angles[:, :3] * np.array([1.0, mirror, mirror])
     shank = np.zeros_like(thigh)
     shank[:, 0] = angles[:, 3]

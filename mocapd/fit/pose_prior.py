@@ -109,6 +109,13 @@ def unusual_leg(poses_xyzw: Floats, side: str) -> Floats:
     return out
 
 
+def seldom(squared: Floats, tail: float) -> Floats:
+    """What poses cost by their squared Mahalanobis distances (N,): about these up to `tail`, beyond it ever less more, as by
+    Student's t. People do what they seldom do."""
+    out: Floats = tail * np.log1p(squared / tail)
+    return out
+
+
 def unusual_legs(local_xyzw: Floats) -> float:
     """Squared Mahalanobis distance of both legs of a pose (J,4) from where they usually are."""
     return sum(

@@ -12,6 +12,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
 from mocapd.fit.leg_search import LegSearch, confirmed
 from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.pose_prior import seldom
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from tests.geometry.rigs import ring
@@ -72,6 +73,35 @@ def test_legs_that_are_where_they_are_seen_stay_there() -> None:
     for turn in range(6):
         fit, sides = search.improve(fit, views, TICK_S, turn)
         assert not sides
+
+
+def test_a_deep_squat_with_the_knees_out_is_found() -> None:
+    truth = posed("left", 0.0, 0.0)
+    local = truth.local_xyzw.copy()
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        local[INDEX[side + "UpperLeg"]] = rotations.exp(np.array([-1.2, 0.5 * mirror, mirror]))
+        local[INDEX[side + "LowerLeg"]] = rotations.exp(np.array([2.2, 0.0, 0.0]))
+    squat = replace(truth, local_xyzw=local)
+    views, there = views_of(squat), FITTER.joints(squat)[0]
+    local = local.copy()
+    for side, mirror in (("left", 1.0), ("right", -1.0)):  # as somebody kneels
+        local[INDEX[side + "UpperLeg"]] = rotations.exp(np.array([-0.4, 0.0, 0.2 * mirror]))
+    search = LegSearch(FITTER, PARAMS)
+    fit = FITTER.fit(replace(squat, local_xyzw=local), views, TICK_S, 4, learn_shape=False)
+    for turn in range(12):
+        fit, _ = search.improve(fit, views, TICK_S, turn)
+        fit = FITTER.fit(fit.state, views, TICK_S, 4, learn_shape=False)
+    found_m = np.linalg.norm(FITTER.joints(fit.state)[0][OUTER] - there[OUTER], axis=1)
+    assert found_m.max() < 0.12
+
+
+def test_what_is_seldom_counts_as_usual_at_first_and_ever_less_beyond() -> None:
+    squared = np.linspace(0.0, 400.0, 200)
+    costs = seldom(squared, 25.0)
+    assert costs[0] == 0.0
+    assert (np.diff(costs) > 0.0).all()
+    assert (np.diff(costs, 2) < 0.0).all()
+    assert seldom(np.array([1.0]), 25.0)[0] == pytest.approx(1.0, rel=0.03)
 
 
 def test_a_leg_does_not_settle_on_the_other_one() -> None:
