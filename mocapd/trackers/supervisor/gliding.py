@@ -80,6 +80,7 @@ class Glider:
         self._last: Sourced | None = None  # what was known then
         self._moved_m: Floats | None = None  # each joint (J,3), since the frame before that
         self._moved: Away | None = None  # its pose, likewise
+        self._jumped = False  # otherwise than it moved
         self._away: Away | None = None
         self._speed_m_s = 0.0
 
@@ -102,7 +103,7 @@ class Glider:
             assert self._last is not None
             last = self._last.body
         moved_m = None if last is None else _moved(last, body)
-        moved = _turned(last, body)
+        moved, jumped = _turned(last, body), False
         if told is None or gap_ns > nanoseconds(p.glide_within_s):
             self._away = None
         elif is_new:
@@ -113,13 +114,16 @@ class Glider:
             assert told.pose is not None
             pose = told.pose if self._moved is None else off(told.pose, self._moved, 1.0)
             self._begin(replace(told, pose=pose), body, skeleton)
-            moved_m, moved = self._moved_m, self._moved
+            if not self._jumped:  # else it moves otherwise now
+                moved_m, moved = self._moved_m, self._moved
+            jumped = True
         if self._away is not None and body.pose is not None:
             step_m = min(p.glide_m, max(self._speed_m_s * seconds(gap_ns), _LEAST_M))
             self._away = lessened(body.pose, self._away, skeleton, step_m)
         if self._away is not None:
             body = glided(body, self._away, skeleton)
-        self._told, self._last, self._moved_m, self._moved = body, now, moved_m, moved
+        self._told, self._last = body, now
+        self._moved_m, self._moved, self._jumped = moved_m, moved, jumped
         return body, self._away is not None
 
     def _begin(self, told: BodyState, known: BodyState, skeleton: Skeleton) -> None:
