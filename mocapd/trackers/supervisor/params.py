@@ -1,6 +1,8 @@
 """The numbers of the supervisor's decisions, with units and reasons."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from mocapd.trackers.steadying import SteadyingParams
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,3 +40,11 @@ class Params:
     jump_m_s: float = 3.0
     jump_m: float = 0.05
     glide_within_s: float = 0.5  # after a longer gap nothing is left to glide from
+
+    # arms that hardly a picture confirms, of who knows the upper body alone: more mildly than without the shirt, whose
+    # colours mistake arms less
+    steadying: SteadyingParams = field(
+        default_factory=lambda: SteadyingParams(
+            sure=0.6, doubtful=0.0, least=0.4, sure_rad_s=60.0, doubtful_rad_s=15.0
+        )
+    )

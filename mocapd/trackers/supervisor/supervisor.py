@@ -7,6 +7,7 @@ from functools import partial
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import nanoseconds
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
+from mocapd.trackers.steadying import Told
 from mocapd.trackers.supervisor.choice import Claim, chosen
 from mocapd.trackers.supervisor.gliding import Glider, Sourced
 from mocapd.trackers.supervisor.joining import apart_m, joined, placed
@@ -21,6 +22,7 @@ from mocapd.trackers.supervisor.standby import (
     wants_offer,
 )
 from mocapd.trackers.supervisor.standing import Standing, is_well, judged
+from mocapd.trackers.supervisor.steady_arms import with_steady_arms
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
 GLIDE = "glide"  # the stage of a frame that is told between one speaker's body and the next one's
@@ -42,13 +44,14 @@ class Candidate:
 class _Known:
     """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
     body led to it; has_offer: it was offered a body that it has not looked for yet; live_since_ns: when it began to have
-    one, None while it has none."""
+    one, None while it has none; told: its body as it was told last."""
 
     track: Track | None = None
     now: bool = False
     guided: bool = False
     has_offer: bool = False
     live_since_ns: int | None = None
+    told: Told | None = None
     standing: Standing = field(default_factory=Standing)
     standby: Standby = field(default_factory=Standby)
 
@@ -157,6 +160,9 @@ class Supervisor:
             track = guided.step_guided(frames, shape, upper)
         else:
             track = tracker.step(frames, shape)
+        if one.kind.upper_only:
+            steadying = self.params.steadying
+            track, known.told = with_steady_arms(track, track.shape, known.told, steadying)
         known.track, known.now, known.has_offer = track, True, False
         if not known.live:
             known.live_since_ns = None
