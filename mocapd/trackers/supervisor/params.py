@@ -15,7 +15,8 @@ class Params:
     # poor or coasting for so long before another may: a frame that fails is no reason
     doubt_s: float = 0.1
 
-    # live for so long before it begins to speak where nobody was: the first looks at who walks in are the worst
+    # live for so long before it begins to speak where nobody was, or known before it completes who speaks: the first
+    # looks at who walks in are the worst
     arrive_s: float = 0.15
 
     # one place

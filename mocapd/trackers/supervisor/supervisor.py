@@ -44,13 +44,14 @@ class Candidate:
 class _Known:
     """Of one candidate. track: the last one; now: whether it is of this frame set; guided: whether another's upper
     body led to it; has_offer: it was offered a body that it has not looked for yet; live_since_ns: when it began to have
-    one, None while it has none; told: its body as it was told last."""
+    one, None while it has none; known_since_ns: likewise, also of one that coasts; told: its body as it was told last."""
 
     track: Track | None = None
     now: bool = False
     guided: bool = False
     has_offer: bool = False
     live_since_ns: int | None = None
+    known_since_ns: int | None = None
     told: Told | None = None
     standing: Standing = field(default_factory=Standing)
     standby: Standby = field(default_factory=Standby)
@@ -99,6 +100,7 @@ class Supervisor:
             one.tracker.reset(near)
         self._known = {one.name: _Known() for one in self.candidates}
         self._speaker: str | None = None
+        self._is_completed = False  # what was told last, by another than who spoke
         self._glider.reset(near)
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
@@ -113,13 +115,15 @@ class Supervisor:
         self._speaker = self._choose(frames)
         if self._speaker is None:
             self._glider.reset()
+            self._is_completed = False
             return Track(lost_body(frames.t_ns, self.name), shape)
         track, now = (
             self._known[self._speaker].track,
-            self._composed(self._heard_of(before), skeleton),
+            self._composed(self._heard_of(before, frames.t_ns), skeleton),
         )
         assert track is not None
         assert now is not None
+        self._is_completed = now.body.tracker != self._speaker
         self._mind_the_others(now.body, frames)
         is_new = self._glider.is_new(now)
         was = self._composed(before, skeleton) if is_new else None
@@ -164,6 +168,10 @@ class Supervisor:
             steadying = self.params.steadying
             track, known.told = with_steady_arms(track, track.shape, known.told, steadying)
         known.track, known.now, known.has_offer = track, True, False
+        if known.body is None:
+            known.known_since_ns = None
+        elif known.known_since_ns is None:
+            known.known_since_ns = frames.t_ns
         if not known.live:
             known.live_since_ns = None
         elif known.live_since_ns is None:
@@ -217,18 +225,24 @@ class Supervisor:
             if known.body is not None
         }
 
-    def _heard_of(self, before: Mapping[str, Sourced]) -> dict[str, Sourced]:
-        """The bodies of this frame set, without one that completes who spoke before and was not there then: how it moves
-        is not known yet, and what is told must go over to it."""
+    def _heard_of(self, before: Mapping[str, Sourced], t_ns: int) -> dict[str, Sourced]:
+        """The bodies of this frame set, without one that completes who spoke before and was not there until a moment ago:
+        how it moves is not known yet, and what is told must go over to it."""
         bodies = self._bodies()
         lower = self._lower
         if (
             lower is not None
             and self._speaker in before
-            and lower.name not in (self._speaker, *before)
+            and lower.name != self._speaker
+            and not (self._is_completed and lower.name in before)
+            and self._is_first_look(lower, t_ns)
         ):
             bodies.pop(lower.name, None)
         return bodies
+
+    def _is_first_look(self, lower: Candidate, t_ns: int) -> bool:
+        since = self._known[lower.name].known_since_ns
+        return since is not None and t_ns - since < nanoseconds(self.params.arrive_s)
 
     def _composed(self, bodies: Mapping[str, Sourced], skeleton: Skeleton) -> Sourced | None:
         """The body of who speaks, of those of one frame set, completed where it is an upper body alone."""

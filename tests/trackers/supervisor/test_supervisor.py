@@ -298,11 +298,13 @@ def test_legs_do_not_jump_when_who_sees_them_is_lost_and_found() -> None:
     assert min(bent_m) > 0.3
 
 
-def test_legs_are_told_from_the_second_frame_on_that_knows_them() -> None:
-    """How they move is not known at the first, and what is told must go over to it."""
+def test_legs_are_told_once_they_have_been_known_for_a_moment() -> None:
+    """The first looks are the worst, how they move is not known at the first, and what is told must go over to it."""
     bodies = scene(ALL_WELL, (Word(0.0), Word(1.0, LOST), Word(2.0))).run(3.0)
     joined = next(body for body in bodies if body.t_ns >= nanoseconds(1.5) and body.tracker == BOTH)
-    assert joined.t_ns == pytest.approx(nanoseconds(2.0 + FRAME_S), abs=nanoseconds(FRAME_S / 2))
+    assert joined.t_ns == pytest.approx(
+        nanoseconds(2.0 + PARAMS.arrive_s), abs=nanoseconds(FRAME_S / 2)
+    )
 
 
 def test_what_still_glides_is_less_certain() -> None:
