@@ -1,10 +1,13 @@
 """Learned colours: those of the cloth, of what is seen, and fixed in the end."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
 from mocapd.fit.cylinders.limb_params import AppearanceParams, LimbScoreParams
 from mocapd.fit.cylinders.occlusion import allocate_occlusion, fill_occlusion
+from mocapd.fit.cylinders.occlusion_kernels import OcclusionModel
 from mocapd.fit.cylinders.part_colours import AppearanceModel, learn, observe, reference_colours
 from mocapd.fit.cylinders.work_camera import work_camera
 from mocapd.types import Bytes, Floats
@@ -15,16 +18,19 @@ HIDDEN_BY_M = LimbScoreParams().hidden_by_m
 FOREARM, SHIN, UPPER_TRUNK = 4, 8, 1
 SURE = np.ones((len(ENDS_M), 2))
 EVERYWHERE = np.full((WORK_PX[1], WORK_PX[0]), 255, np.uint8)
-OCCLUSION = allocate_occlusion(len(ENDS_M), WORK_PX, 8.0)
-QUADS, DEPTHS_M = fill_occlusion(OCCLUSION, work_camera(camera(), WORK_PX), ENDS_M, RADII_M)
+
+
+@cache  # not at import, where each of several processes would compile what it takes
+def occluded() -> tuple[OcclusionModel, Floats, Floats]:
+    """What hides what, and all parts as the camera sees them: their quads, and their depths [m]."""
+    occlusion = allocate_occlusion(len(ENDS_M), WORK_PX, 8.0)
+    return occlusion, *fill_occlusion(occlusion, work_camera(camera(), WORK_PX), ENDS_M, RADII_M)
 
 
 def clothed(seed: int, noise: float = 0.0) -> Bytes:
     """A picture in which a sleeve ends half way down the left forearm: blue cloth, then skin; grey elsewhere."""
-    start, end = (
-        0.5 * (QUADS[FOREARM][0] + QUADS[FOREARM][3]),
-        0.5 * (QUADS[FOREARM][1] + QUADS[FOREARM][2]),
-    )
+    forearm = occluded()[1][FOREARM]
+    start, end = 0.5 * (forearm[0] + forearm[3]), 0.5 * (forearm[1] + forearm[2])
     y, x = np.mgrid[: WORK_PX[1], : WORK_PX[0]]
     along = ((np.stack([x, y], -1) - start) @ (end - start)) / ((end - start) @ (end - start))
     out = np.where(along[..., None] < 0.5, [180.0, 60.0, 30.0], [120.0, 150.0, 210.0])
@@ -38,7 +44,8 @@ def learned(
     model: AppearanceModel, colour: Bytes, mask: Bytes = EVERYWHERE, confidence: Floats = SURE,
     dt_s: float = 0.1,
 ) -> AppearanceModel:  # fmt: skip
-    seen = observe(QUADS, DEPTHS_M, colour, mask, OCCLUSION, HIDDEN_BY_M)
+    occlusion, quads, depths_m = occluded()
+    seen = observe(quads, depths_m, colour, mask, occlusion, HIDDEN_BY_M)
     return learn(model, 0, seen, confidence, dt_s, PARAMS)
 
 

@@ -1,5 +1,7 @@
 """The particles of a limb are forced back to states that are valid beside the rest of the body."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -23,21 +25,26 @@ from tests.fit.mass_spring.naive_constraints import (
 )
 
 BODY = build_body(mean_shape(1.75))
-POINTS = relaxed(BODY, np.array([0.0, 1.63, 0.0])).points_m
 OF_SIDES = np.array([-1.0, 1.0, 1.0])
 limbs = st.sampled_from(sorted(LIMBS))
 seeds = st.integers(0, 2**32 - 1)
 quick = settings(max_examples=25, deadline=None)
 
 
+@cache  # not at import, where each of several processes would compile what it takes
+def points_m() -> Floats:
+    """Of the body at rest; nobody may change them."""
+    return relaxed(BODY, np.array([0.0, 1.63, 0.0])).points_m
+
+
 def cloud(limb: str, seed: int, spread_m: float, n: int = 20) -> Floats:
     noise = spread_m * np.random.default_rng(seed).normal(size=(n, 3, 3))
-    out: Floats = POINTS[list(LIMBS[limb])] + noise
+    out: Floats = points_m()[list(LIMBS[limb])] + noise
     return out
 
 
 def with_limb(limb: str, particle: Floats) -> Floats:
-    points = POINTS.copy()
+    points = points_m().copy()
     points[list(LIMBS[limb])] = particle
     return points
 
@@ -48,12 +55,12 @@ def test_all_particles_at_once_are_each_one_alone_with_the_whole_body_held(
     limb: str, seed: int, spread_m: float
 ) -> None:
     particles = cloud(limb, seed, spread_m, 5)
-    together = project_limb(BODY, limb, particles, POINTS, sweeps=8)
+    together = project_limb(BODY, limb, particles, points_m(), sweeps=8)
     mass = np.full(N_POINTS, np.inf)
     which = list(LIMBS[limb])
     mass[which] = BODY.mass_kg[which]
     for before, after in zip(particles, together, strict=True):
-        one = project_limb(BODY, limb, before[None], POINTS, sweeps=8)[0]
+        one = project_limb(BODY, limb, before[None], points_m(), sweeps=8)[0]
         assert (one == after).all()
         # all constraints of the body, but nothing else may move
         whole = projected(
@@ -61,11 +68,11 @@ def test_all_particles_at_once_are_each_one_alone_with_the_whole_body_held(
             params=SimulationParams(projection_sweeps=8),
         ).points_m  # fmt: skip
         others = np.setdiff1d(np.arange(N_POINTS), which)
-        assert (whole[others] == POINTS[others]).all()
+        assert (whole[others] == points_m()[others]).all()
         # the same constraints; the limits come twice as often for particles
         many = SimulationParams(projection_sweeps=400)
         far = projected(BODY, resting(with_limb(limb, before)), mass, params=many).points_m
-        settled = project_limb(BODY, limb, before[None], POINTS, sweeps=400)[0]
+        settled = project_limb(BODY, limb, before[None], points_m(), sweeps=400)[0]
         if np.abs(far[which] - before).max() < 0.05:
             assert np.abs(far[which] - settled).max() < 0.02
 
@@ -73,7 +80,7 @@ def test_all_particles_at_once_are_each_one_alone_with_the_whole_body_held(
 @quick
 @given(limbs, seeds, st.floats(0.01, 0.3))
 def test_particles_become_valid(limb: str, seed: int, spread_m: float) -> None:
-    after = project_limb(BODY, limb, cloud(limb, seed, spread_m), POINTS, sweeps=60)
+    after = project_limb(BODY, limb, cloud(limb, seed, spread_m), points_m(), sweeps=60)
     for particle in after:
         points = with_limb(limb, particle)
         assert np.isfinite(points).all()
@@ -94,7 +101,7 @@ def test_a_few_sweeps_take_most_of_the_way(limb: str) -> None:
         return float(np.abs(BODY.springs.lengths_of(whole) - BODY.lengths_m)[:, bones].mean())
 
     before = wrong(particles)
-    two, four = (wrong(project_limb(BODY, limb, particles, POINTS, sweeps=n)) for n in (2, 4))
+    two, four = (wrong(project_limb(BODY, limb, particles, points_m(), sweeps=n)) for n in (2, 4))
     assert two < 0.4 * before
     assert four < 0.2 * before
 
@@ -102,8 +109,8 @@ def test_a_few_sweeps_take_most_of_the_way(limb: str) -> None:
 @quick
 @given(limbs, seeds)
 def test_valid_particles_stay(limb: str, seed: int) -> None:
-    valid = project_limb(BODY, limb, cloud(limb, seed, 0.05, 4), POINTS, sweeps=400)
-    again = project_limb(BODY, limb, valid, POINTS, sweeps=4)
+    valid = project_limb(BODY, limb, cloud(limb, seed, 0.05, 4), points_m(), sweeps=400)
+    again = project_limb(BODY, limb, valid, points_m(), sweeps=4)
     # what springs of the trunk give is taken back a little
     assert np.abs(again - valid).max() < 0.02
 
@@ -111,10 +118,10 @@ def test_valid_particles_stay(limb: str, seed: int) -> None:
 @quick
 @given(seeds)
 def test_left_particles_are_right_ones_mirrored(seed: int) -> None:
-    mirrored_points = (POINTS * OF_SIDES)[MIRROR]
+    mirrored_points = (points_m() * OF_SIDES)[MIRROR]
     for kind in ("arm", "leg"):
         particles = cloud(f"left_{kind}", seed, 0.1, 4)
-        left = project_limb(BODY, f"left_{kind}", particles, POINTS, sweeps=40)
+        left = project_limb(BODY, f"left_{kind}", particles, points_m(), sweeps=40)
         right = project_limb(
             BODY, f"right_{kind}", particles * OF_SIDES, mirrored_points, sweeps=40
         )
@@ -124,18 +131,20 @@ def test_left_particles_are_right_ones_mirrored(seed: int) -> None:
 @quick
 @given(limbs, seeds)
 def test_particles_stay_above_a_floor(limb: str, seed: int) -> None:
-    after = project_limb(BODY, limb, cloud(limb, seed, 0.3), POINTS, floor_m=0.0, sweeps=8)
+    after = project_limb(BODY, limb, cloud(limb, seed, 0.3), points_m(), floor_m=0.0, sweeps=8)
     assert (after[:, :, 1] > BODY.constraints.clearance[list(LIMBS[limb])] - 1e-9).all()
 
 
 @pytest.mark.parametrize("limb", sorted(LIMBS))
 def test_particles_whose_points_are_one_find_apart(limb: str) -> None:
-    particles = np.stack([np.tile(POINTS[LIMBS[limb][0]], (3, 1)), np.tile(POINTS[1], (3, 1))])
-    assert np.isfinite(project_limb(BODY, limb, particles, POINTS, sweeps=2)).all()
+    particles = np.stack(
+        [np.tile(points_m()[LIMBS[limb][0]], (3, 1)), np.tile(points_m()[1], (3, 1))]
+    )
+    assert np.isfinite(project_limb(BODY, limb, particles, points_m(), sweeps=2)).all()
 
 
 def test_particles_themselves_are_not_touched() -> None:
     particles = cloud("left_arm", 1, 0.1)
     kept = particles.copy()
-    project_limb(BODY, "left_arm", particles, POINTS)
+    project_limb(BODY, "left_arm", particles, points_m())
     assert (particles == kept).all()

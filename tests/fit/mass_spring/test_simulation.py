@@ -1,5 +1,7 @@
 """The flexible body moves as a body does, whatever pushes it."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -43,7 +45,6 @@ MIDDLE_M = np.array([0.3, 1.63, 0.5])
 BODY = build_body(mean_shape(1.75))
 SOFT = build_body(mean_shape(1.75), Softness(soft_waist=True))
 BODIES = {"stiff": BODY, "soft": SOFT}
-RELAXED = {name: relaxed(body, MIDDLE_M) for name, body in BODIES.items()}
 # Bones do not give; the trunk gives millimetres at rest, and centimetres where people would be hurt.
 BONES = BODY.springs.compliance == 0.0
 BONE_GIVE_M, TRUNK_GIVE_M = 0.006, {"stiff": 0.04, "soft": 0.15}
@@ -51,6 +52,12 @@ OF_SIDES = np.array([-1.0, 1.0, 1.0])
 
 seeds = st.integers(0, 2**32 - 1)
 quick = settings(max_examples=25, deadline=None)
+
+
+@cache  # not at import, where each of several processes would compile what it takes
+def at_rest(name: str) -> MassSpringState:
+    """The body of this name in BODIES, its middle at MIDDLE_M; nobody may change it."""
+    return relaxed(BODIES[name], MIDDLE_M)
 
 
 def strain_m(body: MassSpringBody, points: Floats) -> Floats:
@@ -84,7 +91,7 @@ def assert_valid(body: MassSpringBody, points: Floats, trunk_m: float) -> None:
 @quick
 @given(seeds, st.floats(0.005, 0.1))
 def test_no_impulse_breaks_it(name: str, seed: int, dt_s: float) -> None:
-    body, start = BODIES[name], RELAXED[name]
+    body, start = BODIES[name], at_rest(name)
     state = MassSpringState(start.points_m, impulse(seed))
     for _ in range(15):
         state = advanced(body, state, dt_s)
@@ -94,7 +101,7 @@ def test_no_impulse_breaks_it(name: str, seed: int, dt_s: float) -> None:
 
 
 def test_a_far_correction_is_no_motion() -> None:
-    start = RELAXED["stiff"]
+    start = at_rest("stiff")
     torn = with_points(start, [WRIST[0]], start.points_m[[WRIST[0]]] + [0.9, 0.3, 0.4])
     after = advanced(BODY, torn, SimulationParams().step_s)
     assert np.linalg.norm(after.points_m - torn.points_m, axis=1).max() > 0.3
@@ -107,12 +114,12 @@ def test_a_far_correction_is_no_motion() -> None:
 @quick
 @given(seeds)
 def test_it_comes_to_rest_again(name: str, seed: int) -> None:
-    state = MassSpringState(RELAXED[name].points_m, impulse(seed))
+    state = MassSpringState(at_rest(name).points_m, impulse(seed))
     for _ in range(120):
         state = advanced(BODIES[name], state, 1.0 / 30.0)
     # it may turn about its neck, and slowly does
     assert np.linalg.norm(state.velocities_m_s, axis=1).max() < 0.6
-    heights = state.points_m[:, 1] - RELAXED[name].points_m[:, 1]
+    heights = state.points_m[:, 1] - at_rest(name).points_m[:, 1]
     assert np.abs(heights[[*WRIST, *ANKLE]]).max() < 0.05
     # and no part of the trunk is left twisted
     across = [unit(state.points_m[a] - state.points_m[b]) for a, b in (SHOULDER, HIP)]
@@ -122,7 +129,7 @@ def test_it_comes_to_rest_again(name: str, seed: int) -> None:
 @quick
 @given(seeds, st.sampled_from(sorted(LIMBS)), st.floats(0.0, 0.25))
 def test_a_limb_may_be_put_anywhere(seed: int, limb: str, far_m: float) -> None:
-    which, start = list(LIMBS[limb]), RELAXED["stiff"]
+    which, start = list(LIMBS[limb]), at_rest("stiff")
     offset = np.random.default_rng(seed).normal(size=(3, 3)) * far_m / np.sqrt(3.0)
     sure = np.where(np.isin(np.arange(N_POINTS), which), 0.02, np.inf)
     state = with_points(start, which, start.points_m[which] + offset)
@@ -181,7 +188,7 @@ def test_relaxed_arms_and_legs_dangle_and_the_face_looks_where_it_should(
 @quick
 @given(seeds)
 def test_left_and_right_are_alike(seed: int) -> None:
-    start = RELAXED["stiff"].points_m - MIDDLE_M
+    start = at_rest("stiff").points_m - MIDDLE_M
     v = impulse(seed)
     v[HEAD] = 0.0
     here = advanced(BODY, MassSpringState(start, v), 1.0 / 30.0)
@@ -192,7 +199,7 @@ def test_left_and_right_are_alike(seed: int) -> None:
 @quick
 @given(seeds, st.sampled_from([2, 3, 4, 12]))
 def test_the_frame_rate_does_not_matter(seed: int, parts: int) -> None:
-    start = MassSpringState(RELAXED["stiff"].points_m, impulse(seed))
+    start = MassSpringState(at_rest("stiff").points_m, impulse(seed))
     whole = advanced(BODY, start, 0.1)
     state = start
     for _ in range(parts):
@@ -216,8 +223,8 @@ def test_falling_arms_fall_as_fast_in_steps_of_another_length(step_s: float) -> 
 def test_what_falls_freely_falls_by_half_g_t_squared() -> None:
     body_free = np.where(np.isinf(BODY.mass_kg), 5.0, BODY.mass_kg)
     params = SimulationParams(damping_per_s=0.0)
-    state = advanced(BODY, RELAXED["stiff"], 0.2, body_free, params=params)
-    fallen = (RELAXED["stiff"].points_m - state.points_m)[:, 1].mean()
+    state = advanced(BODY, at_rest("stiff"), 0.2, body_free, params=params)
+    fallen = (at_rest("stiff").points_m - state.points_m)[:, 1].mean()
     # Verlet's sum of n steps is g h^2 n (n + 1) / 2
     assert fallen == pytest.approx(0.5 * 9.81 * 0.2 * (0.2 + 1 / 120), abs=2e-3)
 
@@ -228,14 +235,14 @@ def test_points_of_infinite_mass_stay(seed: int, fixed: set[int]) -> None:
     mass = BODY.mass_kg.copy()
     stay = sorted(fixed | {HEAD})
     mass[stay] = np.inf
-    state = MassSpringState(RELAXED["stiff"].points_m, impulse(seed))
+    state = MassSpringState(at_rest("stiff").points_m, impulse(seed))
     for after in (advanced(BODY, state, 0.1, mass), projected(BODY, state, mass)):
         assert (after.points_m[stay] == state.points_m[stay]).all()
         assert np.isfinite(after.points_m).all()
 
 
 def test_heavy_points_move_least() -> None:
-    start = RELAXED["stiff"]
+    start = at_rest("stiff")
     pulled = with_points(start, [ELBOW[0]], start.points_m[[ELBOW[0]]] + [0.1, 0.1, 0.1])
     moved = []
     for spread_m in (0.3, 0.01):
@@ -259,7 +266,7 @@ def test_masses_follow_confidence() -> None:
 @given(seeds)
 def test_the_floor_holds(seed: int) -> None:
     low = MIDDLE_M - [0.0, 0.5, 0.0]
-    state = resting(RELAXED["stiff"].points_m + [0.0, 0.3, 0.0])
+    state = resting(at_rest("stiff").points_m + [0.0, 0.3, 0.0])
     state = MassSpringState(state.points_m, impulse(seed))
     for k in range(45):
         towards = head_middle(BODY, state) + np.clip(low - head_middle(BODY, state), -0.03, 0.03)
@@ -273,13 +280,13 @@ def test_the_floor_holds(seed: int) -> None:
 
 
 def test_no_floor_is_there_where_none_is_known() -> None:
-    state = resting(RELAXED["stiff"].points_m - [0.0, 3.0, 0.0])
+    state = resting(at_rest("stiff").points_m - [0.0, 3.0, 0.0])
     after = advanced(BODY, state, 0.1)
     assert np.abs(after.points_m - state.points_m).max() < 1e-3
 
 
 def test_the_body_goes_with_its_head_by_four_fifths() -> None:
-    start = RELAXED["stiff"]
+    start = at_rest("stiff")
     way = np.array([0.1, -0.05, 0.2])
     state = with_head(BODY, start, MIDDLE_M + way)
     assert np.linalg.norm(head_middle(BODY, state) - MIDDLE_M - way) < 1e-3
@@ -291,7 +298,7 @@ def test_the_body_goes_with_its_head_by_four_fifths() -> None:
 
 
 def test_time_that_does_not_pass_changes_nothing_and_long_gaps_are_cut() -> None:
-    state = MassSpringState(RELAXED["stiff"].points_m, impulse(1))
+    state = MassSpringState(at_rest("stiff").points_m, impulse(1))
     assert advanced(BODY, state, 0.0) is state
     most = SimulationParams().most_s
     assert (advanced(BODY, state, 60.0).points_m == advanced(BODY, state, most).points_m).all()
@@ -300,7 +307,7 @@ def test_time_that_does_not_pass_changes_nothing_and_long_gaps_are_cut() -> None
 def test_a_soft_waist_leans_where_a_stiff_one_takes_the_shoulders_along() -> None:
     lean = np.radians(20.0)
     tilt = []
-    for body, start in zip(BODIES.values(), RELAXED.values(), strict=True):
+    for body, start in ((body, at_rest(name)) for name, body in BODIES.items()):
         p = start.points_m
         c, s = np.cos(lean), np.sin(lean)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -317,7 +324,7 @@ def test_a_soft_waist_leans_where_a_stiff_one_takes_the_shoulders_along() -> Non
 @pytest.mark.parametrize("passing_m", [0.12, np.inf])
 def test_legs_pass_each_other_but_not_through(passing_m: float) -> None:
     body = build_body(mean_shape(1.75), Softness(passing_m=passing_m))
-    start = RELAXED["stiff"]
+    start = at_rest("stiff")
     both = [ANKLE[0], ANKLE[1]]
     mass = body.mass_kg.copy()
     mass[both] = 40.0
