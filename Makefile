@@ -71,6 +71,7 @@ demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one liv
 test: export PYTHONDONTWRITEBYTECODE :=
 # Four processes on two cores, as many tests wait for something else.
 test: dev ## run all tests but those of clients/
+	$(BIN)/python -m tests.made_once
 	$(BIN)/python -m pytest --numprocesses 4 --dist loadfile --no-loadscope-reorder --ignore tests/clients
 
 test-clients: export PYTHONDONTWRITEBYTECODE :=

@@ -2,11 +2,13 @@
 
 import ast
 import sys
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
+@cache
 def first_lines() -> dict[Path, str]:
     """By path within the project; a folder's is that of its `__init__.py`. Empty where there is none."""
     found = {}

@@ -26,6 +26,7 @@ class Ender:
     """Starts daemons and ends them. own_s, wall_s: what each took to end [s], without and with its waits for a processor."""
 
     folder: Path
+    room: str
     rng: random.Random
     own_s: list[float] = field(default_factory=list)
     wall_s: list[float] = field(default_factory=list)
@@ -62,7 +63,7 @@ class Ender:
 
     def _daemon(self) -> FaultyDaemon:
         """With every output, the page, and the tracker that most run."""
-        words = ("--capture", "sim:living_room")
+        words = ("--capture", f"sim:{self.room}")
         # every output, also where nobody takes anything
         more = ("vmc.enabled=true", "vrchat.enabled=true", "osc.enabled=true")
         settings = [word for one in more for word in ("--set", one)]
@@ -111,7 +112,7 @@ def run(extent: Extent) -> Came:
     """See FaultRow."""
     count = round(extent.of(MOMENTS, 3))
     with tempfile.TemporaryDirectory() as folder:
-        ender = Ender(Path(folder), random.Random(extent.seed))
+        ender = Ender(Path(folder), extent.room, random.Random(extent.seed))
         for number in range(count):
             if number % 2 == 0:
                 ender.end_starting()

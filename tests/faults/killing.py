@@ -26,8 +26,8 @@ _LOST_FRAMES = HZ  # of a recording at most: a second
 class Killer:
     """Kills, and looks at what is left."""
 
-    def __init__(self, folder: Path, seed: int) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, seed: int, room: str) -> None:
+        self.folder, self.room = folder, room
         self.wrong: list[str] = []
         self.most_lost = 0  # frames of a recording
         self._rng = random.Random(seed)
@@ -73,7 +73,7 @@ class Killer:
         """While it starts, then when it serves, which it must after that."""
         home = self.folder / "home"
         home.mkdir(exist_ok=True)
-        words = ("--capture", "sim:living_room", "--tracker", "canned")
+        words = ("--capture", f"sim:{self.room}", "--tracker", "canned")
         starting = FaultyDaemon(home, words)
         time.sleep(self._rng.uniform(0.0, _STARTS_S))
         starting.close()
@@ -119,7 +119,7 @@ def run(extent: Extent) -> Came:
     """See FaultRow."""
     each = round(extent.of(KILLS / 4, 2))
     with tempfile.TemporaryDirectory() as folder:
-        killer = Killer(Path(folder), extent.seed)
+        killer = Killer(Path(folder), extent.seed, extent.room)
         for number in range(each):
             killer.kill_writer("calibration", saved_number)
             killer.kill_writer("cache", cached_number)

@@ -11,6 +11,11 @@ class Extent:
     seed: int
     share: float = 1.0
 
+    @property
+    def room(self) -> str:
+        """The simulated room of two webcams: a short run has the one that other tests have rendered."""
+        return "living_room" if self.share >= 1.0 else "first_setup"
+
     def of(self, count: float, least: float = 1.0) -> float:
         """So much of a count or a time."""
         return max(least, count * self.share)

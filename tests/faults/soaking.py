@@ -26,8 +26,8 @@ def run(extent: Extent) -> Came:
     """See FaultRow."""
     wrong: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
-        # rendering an hour's frames takes minutes: a short run has the room that others have rendered
-        scene = _fast_scene(Path(folder)) if extent.share >= 1.0 else "living_room"
+        # rendering an hour's frames takes minutes
+        scene = _fast_scene(Path(folder)) if extent.share >= 1.0 else extent.room
         words = ("--capture", f"sim:{scene}", "--tracker", "auto")
         outputs = ("vmc.enabled=true", "vrchat.enabled=true", "osc.enabled=true")
         settings = [word for one in outputs for word in ("--set", one)]

@@ -1,0 +1,65 @@
+"""Makes what many of the processes of `make test` need, before them: kernels, a film, and the pose database.
+
+Four that begin at the same moment would otherwise compile the same, each for itself. Two processes share the work;
+what is there already is left as it is.
+"""
+
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+
+from mocapd.app.libraries import prepare_libraries
+from mocapd.assets import asset_path
+from mocapd.calibration.record import Calibration
+from mocapd.session.tracker_setup import cached, make_caches, ready_tracker
+from mocapd.sim.film import load_film
+from mocapd.sim.scenario import load_scenario
+from tests.conftest import ROOT
+from tests.sim.simulated_calibration import calibration_of_setup
+
+CACHE = ROOT / ".pytest_cache" / "d" / "mocapd" / "mocapd"  # in the fixture cache_home
+
+
+def _quiet(*_: object) -> None:
+    """Progress that nobody looks at."""
+
+
+def _room() -> Calibration:
+    """Of the film of the setup's page, on which the daemons of tests/faults run too."""
+    scenario = load_scenario(asset_path("scenarios/first_setup.toml"))
+    return calibration_of_setup(load_film(scenario, CACHE).setup)
+
+
+def _compile(tracker: str) -> None:
+    """As a daemon does before it is live."""
+    ready_tracker(tracker, _room(), cached(CACHE, _quiet), _quiet)
+
+
+def film_and_flex() -> None:
+    """The renderer's kernels, the film, and the kernels of the tracker without a shirt."""
+    _compile("flex")
+
+
+def database_and_colour() -> None:
+    """The pose database, and the kernels of the tracker with the shirt; it waits for the film."""
+    make_caches("colour", CACHE, _quiet)
+    _compile("colour")
+
+
+PARTS: Mapping[str, Callable[[], None]] = {
+    one.__name__: one for one in (film_and_flex, database_and_colour)
+}
+
+
+def main(words: list[str]) -> int:
+    """The named part, or all at once; the exit code."""
+    if words:
+        prepare_libraries(CACHE)
+        PARTS[words[0]]()
+        return 0
+    made = [subprocess.Popen([sys.executable, "-m", "tests.made_once", name]) for name in PARTS]
+    return max([abs(one.wait()) for one in made])
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
