@@ -9,7 +9,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import tomli_w
@@ -56,11 +56,26 @@ def cache_home(pytestconfig: pytest.Config) -> Path:
 
 
 @pytest.fixture(scope="session")
-def pose_database() -> "PoseDatabase":
+def pose_database(cache_home: Path) -> "PoseDatabase":
     """A small pose database, built once."""
-    from mocapd.shirt.pose_database.database import DatabaseParams, build_database
+    return kept_database(cache_home, count=3000, pool=1.2, cells=32)
 
-    return build_database(DatabaseParams(count=3000, pool=1.2, cells=32))
+
+@pytest.fixture(scope="session")
+def smaller_database(cache_home: Path) -> "PoseDatabase":
+    """One of a third of the poses, for pictures that need no more."""
+    return kept_database(cache_home, count=1000, pool=1.1, cells=16)
+
+
+def kept_database(cache_home: Path, **params: Any) -> "PoseDatabase":
+    """The pose database of these DatabaseParams, read as a daemon reads its own; the first who needs it makes it."""
+    from mocapd.shirt.pose_database.database import DatabaseParams, content_hash
+    from mocapd.shirt.pose_database.database_file import load_or_build
+
+    wanted = DatabaseParams(**params)
+    folder = cache_home / "databases" / content_hash(wanted)[:16]
+    folder.mkdir(parents=True, exist_ok=True)
+    return load_or_build(folder, wanted).database
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from mocapd.errors import InputError
 from mocapd.evaluate.colour_proposals import score_by_labels, score_by_strokes, table
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.setup_record import SimSetup
@@ -53,8 +53,8 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def database() -> PoseDatabase:
-    return build_database(DatabaseParams(count=1000, pool=1.1, cells=16))
+def database(smaller_database: PoseDatabase) -> PoseDatabase:
+    return smaller_database
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import FrameSet, Rig
@@ -32,8 +32,8 @@ ARMS = [INDEX[s + bone] for s in ("left", "right") for bone in ("UpperArm", "Low
 
 
 @pytest.fixture(scope="module")
-def database() -> PoseDatabase:
-    return build_database(DatabaseParams(count=1000, pool=1.1, cells=16))
+def database(smaller_database: PoseDatabase) -> PoseDatabase:
+    return smaller_database
 
 
 @pytest.fixture(scope="module")

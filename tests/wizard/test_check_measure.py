@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mocapd.geometry import rotations
-from mocapd.shirt.pose_database.database import DatabaseParams, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
 from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
@@ -20,14 +20,14 @@ TURN_RAD = np.radians(1.0)
 
 
 @pytest.fixture(scope="module")
-def measured() -> tuple[Filmed, list[Measure], list[Measure]]:
+def measured(pose_database: PoseDatabase) -> tuple[Filmed, list[Measure], list[Measure]]:
     """The film, tracked on its true rig; measured against that, and against one with cam1 turned up."""
     filmed = film()
     rig = rig_of(filmed.scenario)
     first, second = rig.cameras
     up = rotations.to_matrix(rotations.exp(np.array([TURN_RAD, 0.0, 0.0])))
     turned = Rig((first, replace(second, R=up @ second.R, t_m=up @ second.t_m)))
-    ready = tracker_of(filmed, build_database(DatabaseParams(count=3000, pool=1.2, cells=32)))
+    ready = tracker_of(filmed, pose_database)
     found = []
     for one in (rig, turned):
         ready.reset()

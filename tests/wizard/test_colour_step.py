@@ -15,7 +15,7 @@ from mocapd.errors import CannotCreateError, InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.shirt.colour.white_balance import frobenius_distance
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Bytes
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -29,8 +29,8 @@ NAMES = standard_shirt().colour_names
 
 
 @pytest.fixture(scope="module")
-def database() -> PoseDatabase:
-    return build_database(DatabaseParams(count=1000, pool=1.1, cells=16))
+def database(smaller_database: PoseDatabase) -> PoseDatabase:
+    return smaller_database
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.types import Frame, FrameSet
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
@@ -33,8 +33,8 @@ EVERY = 3  # of the simulated frame sets one is shown: 10 a second are followed 
 
 
 @pytest.fixture(scope="module")
-def database() -> PoseDatabase:
-    return build_database(DatabaseParams(count=1000, pool=1.1, cells=16))
+def database(smaller_database: PoseDatabase) -> PoseDatabase:
+    return smaller_database
 
 
 @pytest.fixture(scope="module")
