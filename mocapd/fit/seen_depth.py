@@ -5,19 +5,18 @@ are found by this alone.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import Roi
-from mocapd.geometry.camera_model import centre, normalised, project
+from mocapd.fit.work_rays import pixels_as_delivered, work_rays_in_world
+from mocapd.geometry.camera_model import centre, project
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays
 
 GRID_PX = 3  # the middle one of so many work pixels each way is looked for
-_KEPT = 16  # of cameras and sizes of work pictures
 _NEAREST_M = 0.3
 _APART = 2  # places: as near to the best one all are nearly as good
 
@@ -54,22 +53,8 @@ def grid_rays(
 ) -> tuple[Floats, Floats]:
     """Pixels as delivered (N,2), and unit directions (N,3) in the world, of places (N,) in the grid over a region."""
     y, x = (n * GRID_PX + GRID_PX // 2 + corner for n, corner in ((y, roi[1]), (x, roi[0])))
-    pixels = np.asarray((np.stack([x, y], axis=1) + 0.5) * image_scale - 0.5, np.float64)
-    directions: Floats = _directions(camera, image_scale)[y, x]
-    return pixels, directions
-
-
-@lru_cache(_KEPT)
-def _directions(camera: Camera, image_scale: int) -> Floats:
-    """Of every work pixel (h,w,3), unit vectors in the world: lenses are undone once, not in every frame."""
-    w, h = (
-        side // image_scale + GRID_PX for side in camera.size_px
-    )  # a grid's last place may lie beyond the picture
-    pixels = np.stack(np.meshgrid(np.arange(w), np.arange(h)), axis=2)
-    xy = normalised(camera, np.asarray((pixels + 0.5) * image_scale - 0.5, np.float64))
-    d = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=2)
-    out: Floats = d / np.linalg.norm(d, axis=2, keepdims=True) @ camera.R
-    return out
+    directions: Floats = work_rays_in_world(camera, image_scale)[y, x]
+    return pixels_as_delivered(y, x, image_scale), directions
 
 
 def seen_depth_m(

@@ -9,7 +9,8 @@ from mocapd.body.shaping import Shaped
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.terms.distance_term import MeasuredDistances
-from mocapd.geometry.camera_model import project, rays
+from mocapd.fit.work_rays import pixels_as_delivered, work_rays
+from mocapd.geometry.camera_model import centre, project
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays
 
@@ -49,10 +50,10 @@ def measured_distances(
     p = params if params is not None else MeasuringParams()
     y, x = _samples(drawn, drawing.model.part, p.points, turn)
     triangle = drawn[1][y, x].astype(np.int64)
-    pixels: Floats = (
-        np.stack([x, y], axis=1) + np.array(corner, dtype=float) + 0.5
-    ) * drawing.image_scale - 0.5
-    origin, along = rays(drawing.camera, pixels)
+    camera, scale = drawing.camera, drawing.image_scale
+    at_y, at_x = y + corner[1], x + corner[0]
+    pixels = pixels_as_delivered(at_y, at_x, scale)
+    origin, along = centre(camera), work_rays(camera, scale)[at_y, at_x] @ camera.R
     expected_m = np.einsum("ni,ni->n", _places(drawing, body, triangle) - origin, along)
     offsets_m = np.linspace(-p.reach_m, p.reach_m, p.places)
     points = origin + (expected_m[:, None] + offsets_m)[..., None] * along[:, None]
