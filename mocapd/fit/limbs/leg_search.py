@@ -1,7 +1,7 @@
 """When a leg does not agree with the pictures: other poses of it are tried, the best is kept.
 
 A knee that comes up in a tenth of a second is out of the fit's reach, and a leg that slipped onto the other one stays there.
-As for arms (`limb_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
+As for arms (`arm_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
 """
 
 from collections.abc import Sequence
@@ -11,17 +11,10 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.regions import Label
-from mocapd.fit.arm_samples import Arm, leg_of, placed
 from mocapd.fit.fit_params import LegSearchParams
-from mocapd.fit.limb_search import (
-    PX_OF_M2,
-    added_in_views,
-    best_poses,
-    candidates,
-    part,
-    spread,
-    turned_rad2,
-)
+from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
+from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
+from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import seldom, unusual_leg, usual_leg
 from mocapd.fit.solver import Fit, Fitter, View
