@@ -1,7 +1,7 @@
 """When an arm does not agree with the pictures: other poses of it are tried, the best is kept."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from mocapd.body.pose_space import SIDES, PoseSpace
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
+from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
 from mocapd.fit.limbs.reaching import reaching_poses
 from mocapd.fit.motion_state import MotionState
@@ -61,37 +62,44 @@ class ArmSearch:
             return fit, ()
         changed = []
         empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
+        refit = partial(
+            self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
+        )  # fmt: skip
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
-            tries = candidates(
-                self.fitter, fit.state, arm, views,
-                part(self._cloud, turn, p.arm_cloud), part(self._library[side], turn, p.arm_library),
-            )  # fmt: skip
-            reaching = reaching_poses(self.fitter, fit.state, arm, views, p.arm_reaches, turn)
-            tries = np.concatenate([tries, reaching])
-            scores = score_arm_poses(self.fitter, fit.state, arm, views, tries, p.farther_px, empty)
-            scores -= p.unusual_px * unusualness(tries, self._usual[side])
-            scores += p.hand_px * score_hand_places(
-                self.fitter, fit.state, arm, views, tries, empty
-            )
-            here = tries[0]
-            best, least = fit, self._cost(arm, fit, here, views, empty) - p.arm_gain
-            for n in best_poses(tries[:, 1:], scores, p.arm_fits):
-                local = fit.state.local_xyzw.copy()
-                local[arm.chain[:3]] = tries[n]
-                state = replace(fit.state, local_xyzw=local)
-                other = self.fitter.fit(state, views, dt_s, 3, learn_shape, fine=1, terms=terms)
-                cost = self._cost(arm, other, here, views, empty)
-                if cost < least:
-                    best, least = other, cost
-            if best is not fit:
-                fit = best
+            tries = self._candidates(fit.state, arm, views, turn)
+            scores = self._scores(fit.state, arm, views, tries, empty)
+            best = best_poses(tries[:, 1:], scores, p.arm_fits)
+            starts = [with_limb(fit.state, arm, tries[n]) for n in best]
+            cost = partial(self._cost, arm, tries[0], views, empty)
+            better = cheapest_fit(fit, starts, refit, cost, p.arm_gain)
+            if better is not fit:
+                fit = better
                 changed.append(side)
         return fit, tuple(changed)
 
+    def _candidates(self, state: MotionState, arm: Arm, views: Sequence[View], turn: int) -> Floats:
+        """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose."""
+        p = self.params
+        cloud = part(self._cloud, turn, p.arm_cloud)
+        library = part(self._library[arm.side], turn, p.arm_library)
+        tries = candidates(self.fitter, state, arm, views, cloud, library)
+        reaching = reaching_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
+        return np.concatenate([tries, reaching])
+
+    def _scores(
+        self, state: MotionState, arm: Arm, views: Sequence[View], tries: Floats, empty: float
+    ) -> Floats:
+        """How much of each try, and of its hand, is seen, less what contradicts it (N,) [work px]."""
+        p = self.params
+        scores = score_arm_poses(self.fitter, state, arm, views, tries, p.farther_px, empty)
+        scores -= p.unusual_px * unusualness(tries, self._usual[arm.side])
+        scores += p.hand_px * score_hand_places(self.fitter, state, arm, views, tries, empty)
+        return scores
+
     def _cost(
-        self, arm: Arm, fit: Fit, here_xyzw: Floats, views: Sequence[View], empty: float
+        self, arm: Arm, here_xyzw: Floats, views: Sequence[View], empty: float, fit: Fit
     ) -> float:
         """Of a fit, with what its pose of an arm (3,4) costs beside what the pictures say, and its hand."""
         there = fit.state.local_xyzw[arm.chain[:3]]
