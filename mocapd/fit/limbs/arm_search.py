@@ -24,7 +24,7 @@ _LIBRARY = 2048
 
 
 class ArmSearch:
-    """Tries other poses of arms that the pictures do not confirm"""
+    """Tries other poses of arms that the pictures do not confirm."""
 
     def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
         self.fitter, self.params = fitter, params
