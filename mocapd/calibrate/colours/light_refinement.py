@@ -11,7 +11,7 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.fit.body_drawing import IdMapRenderer, image_scales
-from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
 from mocapd.geometry.camera_model import to_camera

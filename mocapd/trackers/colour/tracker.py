@@ -13,7 +13,7 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.limb_search import ArmSearch, is_uncertain
+from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
     MotionState,

@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
-from mocapd.fit.limb_search import shortest_turn
+from mocapd.fit.limbs.limb_candidates import shortest_turn
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations

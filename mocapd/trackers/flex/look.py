@@ -13,8 +13,8 @@ from mocapd.body.model import BodyModel
 from mocapd.body.regions import Band, Region, recoloured, regions
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
-from mocapd.fit.leg_search import LegSearch
-from mocapd.fit.limb_search import ArmSearch
+from mocapd.fit.limbs.arm_search import ArmSearch
+from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.appearance import Appearance
 from mocapd.types import Camera

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
+from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
@@ -133,16 +134,11 @@ class OtherPoses:
             starts.append(with_hips_below_chest(fitter, fit.state))
         # below hips that may be wrong no leg is usual; below those that another tracker knows that counts, too
         unusual = 0.0 if hips_too else 1.0
-        best = fit
-        least = fit.cost + unusual * unusual_legs(fit.state.local_xyzw) - p.crossed_gain
-        for start in starts:
-            other = fitter.fit(
-                start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms
-            )
-            cost = other.cost + unusual * unusual_legs(other.state.local_xyzw)
-            if cost < least:
-                best, least = other, cost
-        return best
+        return cheapest_fit(
+            fit, starts,
+            lambda start: fitter.fit(start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms),
+            lambda one: one.cost + unusual * unusual_legs(one.state.local_xyzw), p.crossed_gain,
+        )  # fmt: skip
 
     def _turned(
         self,

@@ -1,27 +1,21 @@
 """The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.body.pose_space import SIDES, full_body, upper_body
-from mocapd.body.regions import Region, as_silhouette
-from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.skeleton import (
-    INDEX,
-    N_JOINTS,
-    joint_positions,
-    local_from_global,
-    standard_skeleton,
-)
+from mocapd.body.pose_space import SIDES, full_body
+from mocapd.body.regions import as_silhouette
+from mocapd.body.shape import BodyShape
+from mocapd.body.skeleton import N_JOINTS, standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_prior import predicted_information
-from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved, step_between
+from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
@@ -29,42 +23,28 @@ from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
 from mocapd.trackers.depth_views import with_depths
 from mocapd.trackers.flex.camera_views import CameraViews
-from mocapd.trackers.flex.confidence import joint_confidence
+from mocapd.trackers.flex.led import (
+    LEGS,
+    TAKEN_OVER_S,
+    guided_information,
+    predicted_below,
+    standing_below,
+    taken_over,
+)
 from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
-from mocapd.trackers.flex.other_poses import WHOLE, OtherPoses
+from mocapd.trackers.flex.memory import Memory, Wearer, of_wearer, velocity_of
+from mocapd.trackers.flex.other_poses import OtherPoses
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.person_search import PersonSearch
-from mocapd.trackers.steadying import Told, behind, steadied
+from mocapd.trackers.flex.telling import told_of
+from mocapd.trackers.steadying import Told
 from mocapd.trackers.texture_distance import texture_distances
-from mocapd.trackers.told_pose import told_pose
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
-from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig, Tracking
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
+from mocapd.types import BodyState, Frame, FrameSet, Pose, Rig, Tracking
 from mocapd.vision.face.lbp_cascade import blind_cascade
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-_TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
-_UPPER = np.flatnonzero(upper_body().group_of_joint >= 0)  # joints that a guide knows
-_LEGS = (Region.LEG, Region.FOOT)
 _TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Memory:
-    """What is carried from frame to frame while somebody is tracked."""
-
-    t_ns: int
-    state: MotionState
-    fit: Fit
-    cameras: tuple[str, ...]
-    changed: tuple[str, ...] = ()  # parts of the body that were found elsewhere
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Wearer:
-    """The proportions as handed in, in the tracker's space."""
-
-    factors: Floats
-    information: Floats
 
 
 class FlexTracker:
@@ -95,7 +75,6 @@ class FlexTracker:
         self._model = self._fitter.model
         self._skeleton = standard_skeleton(stature_m)
         self._floor = FloorTerm(self._model, p.floor)
-        self._arm_columns = {side: self._model.space.columns(f"{side}_arm") for side in SIDES}
         self._cameras = CameraViews(self._fitter, p)
         self._find = PersonSearch(
             self._silhouettes, self._floor, self._cameras, rig.cameras, p.start, now_ns
@@ -141,7 +120,7 @@ class FlexTracker:
         self._cameras.reset()
         self._dress(ALL_DIFFER)
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
-        self._known: _Memory | None = None
+        self._known: Memory | None = None
         self._told: Told | None = None
         self._near = near
         self._find.reset()
@@ -158,7 +137,7 @@ class FlexTracker:
         views: list[View] = []
         if self._cameras.present:
             if known is not None:
-                known, views = self._follow(_with(known, wearer), frames)
+                known, views = self._follow(of_wearer(known, wearer), frames)
             elif self._near is not None:
                 known, views = self._take_over(self._near, wearer, frames)
                 self._near = None
@@ -179,7 +158,7 @@ class FlexTracker:
             known, views = self._follow_guide(known, upper.pose, wearer, frames)
         return self._end(known, views, frames, shape, every=2)
 
-    def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[_Wearer, _Memory | None]:
+    def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Wearer, Memory | None]:
         """The wearer of this step, and what is known of the last one."""
         self._turn += 1
         self._find.times.came(frames.t_ns)
@@ -189,11 +168,11 @@ class FlexTracker:
         known = self._known
         if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
             known = None  # too old to predict from
-        return _Wearer(*known_of(shape, self._model.space)), known
+        return Wearer(*known_of(shape, self._model.space)), known
 
     def _end(
         self,
-        known: _Memory | None,
+        known: Memory | None,
         views: list[View],
         frames: FrameSet,
         shape: BodyShape,
@@ -211,7 +190,7 @@ class FlexTracker:
 
     # --- stages ---
 
-    def _follow(self, known: _Memory, frames: FrameSet) -> tuple[_Memory, list[View]]:
+    def _follow(self, known: Memory, frames: FrameSet) -> tuple[Memory, list[View]]:
         """One frame of tracking; a frame without evidence leaves `known` at its old time."""
         p, fitter, last = self.params, self._fitter, known.state
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
@@ -226,10 +205,10 @@ class FlexTracker:
         if self._turn % p.depth_turns == 0:
             views = with_depths(fitter, predicted, views, frames, p.depths)
         self.probe("depths")
-        confirmed = known.fit.confirmed_arms
+        confirmed, columns = known.fit.confirmed_arms, self._model.space.columns
         motion = predicted_information(
             known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
-            [(self._arm_columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
+            [(columns(f"{s}_arm"), min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
         )  # fmt: skip
         terms = self._terms(predicted, views, frames)
         self.probe("distances")
@@ -243,24 +222,18 @@ class FlexTracker:
         )  # fmt: skip
         if not self._believed(fit):
             return known, views
-        state = fit.state
-        velocity = self._velocity(fit, last, dt_s, changed)
-        return _Memory(
-            frames.t_ns, replace(state, velocity=velocity), fit, self._names(views), tuple(changed)
-        ), views
+        velocity = velocity_of(self._model, p, fit, last, dt_s, changed)
+        state = replace(fit.state, velocity=velocity)
+        return Memory(frames.t_ns, state, fit, self._names(views), changed), views
 
     def _follow_guide(
-        self, known: _Memory | None, upper: Pose, wearer: _Wearer, frames: FrameSet
-    ) -> tuple[_Memory | None, list[View]]:
+        self, known: Memory | None, upper: Pose, wearer: Wearer, frames: FrameSet
+    ) -> tuple[Memory | None, list[View]]:
         """One frame of legs and head below and above a body that another tracker knows."""
         p, cameras, model = self.params, self._cameras, self._model
-        last = known.state if known is not None else self._standing_below(upper, wearer)
-        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else _TAKEN_OVER_S
-        local = moved(model, last, dt_s, p.prediction_damping)[1]
-        local[_UPPER] = local_from_global(self._skeleton, upper.quats_xyzw)[_UPPER]
-        predicted = MotionState(
-            upper.root_m.copy(), local, last.velocity, wearer.factors, wearer.information
-        )
+        last = known.state if known is not None else standing_below(model, upper, wearer)
+        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else TAKEN_OVER_S
+        predicted = predicted_below(model, self._skeleton, p, last, dt_s, upper, wearer)
         cameras.mark_body(predicted)
         if cameras.are_new:
             cameras.seed_background()
@@ -274,25 +247,22 @@ class FlexTracker:
         self.probe("classify")
         if not views:
             return known, views
-        held = np.zeros(model.n_pose)
-        held[:3] = p.guided_sd_m**-2
-        held[3 : upper_body().n_pose] = p.guided_sd_rad**-2
         terms: tuple[PoseTerm, ...] = (self._floor,)
         if not is_first:
-            terms = self._terms(predicted, views, frames, _LEGS)
+            terms = self._terms(predicted, views, frames, LEGS)
         self.probe("distances")
-        loose = np.diag(held + 1.0 / (fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+        held = guided_information(p, fitter.prediction_sd, dt_s)
         # legs that were not seen before have a way to go
         iterations = p.guided_iterations if known is not None else p.start.iterations
         fit = fitter.fit(
-            predicted, views, dt_s, iterations, learn_shape=False, rendered=not is_first, fine=1, motion=loose,
+            predicted, views, dt_s, iterations, learn_shape=False, rendered=not is_first, fine=1, motion=held,
             terms=terms,
         )  # fmt: skip
         self.probe("fit")
         changed: tuple[str, ...] = ()
         if not is_first:
             fit, changed = self._others.other_legs(
-                self._dressed, fit, views, dt_s, self._turn, terms, loose
+                self._dressed, fit, views, dt_s, self._turn, terms, held
             )
             self.probe("legs")
         if is_first and fit.explained >= p.learn_explained:
@@ -301,14 +271,9 @@ class FlexTracker:
             return known, views
         velocity = np.zeros(model.n_pose)
         if known is not None:
-            velocity = self._velocity(fit, last, dt_s, changed)
-        return _Memory(
-            frames.t_ns,
-            replace(fit.state, velocity=velocity),
-            fit,
-            self._names(views),
-            tuple(changed),
-        ), views
+            velocity = velocity_of(model, p, fit, last, dt_s, changed)
+        state = replace(fit.state, velocity=velocity)
+        return Memory(frames.t_ns, state, fit, self._names(views), changed), views
 
     def _stand_before(self) -> None:
         """Renew what stands before the backgrounds, now and then everywhere, where something may have been uncovered."""
@@ -317,13 +282,6 @@ class FlexTracker:
         if looks_round:
             self._cameras.take_uncovered()
         self.probe("background")
-
-    def _standing_below(self, upper: Pose, wearer: _Wearer) -> MotionState:
-        """Somebody with this upper body whose legs hang straight down."""
-        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
-        return MotionState(
-            upper.root_m, local, np.zeros(self._model.n_pose), wearer.factors, wearer.information
-        )
 
     def _terms(
         self,
@@ -339,24 +297,7 @@ class FlexTracker:
         )
         return (self._floor, *measured)
 
-    def _velocity(self, fit: Fit, last: MotionState, dt_s: float, changed: Sequence[str]) -> Floats:
-        """Of the pose (n_pose,) per second, from the step since the last one; not of parts that changed over."""
-        p, state = self.params, fit.state
-        before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
-        velocity = step_between(self._model, now, before) / dt_s
-        velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
-        velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
-        for side in SIDES:
-            # what is hardly seen is hardly known to move
-            trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
-            columns = self._arm_columns[side]
-            glide = p.hidden_arm_glide * last.velocity[columns]
-            velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
-        for part in changed:
-            velocity[slice(None) if part == WHOLE else self._model.space.columns(part)] = 0.0
-        return velocity
-
-    def _start(self, wearer: _Wearer, frames: FrameSet) -> tuple[_Memory | None, list[View]]:
+    def _start(self, wearer: Wearer, frames: FrameSet) -> tuple[Memory | None, list[View]]:
         """Look for somebody who stands before the background."""
         found = self._find.look(wearer.factors, wearer.information, frames.t_ns)
         self.probe("start")
@@ -366,18 +307,16 @@ class FlexTracker:
         self._cameras.mark_body(fit.state)
         self._cameras.doubt_background()
         self._learn_first(fit.state)
-        return _Memory(frames.t_ns, fit.state, fit, names), []
+        return Memory(frames.t_ns, fit.state, fit, names), []
 
     def _take_over(
-        self, near: BodyState, wearer: _Wearer, frames: FrameSet
-    ) -> tuple[_Memory | None, list[View]]:
+        self, near: BodyState, wearer: Wearer, frames: FrameSet
+    ) -> tuple[Memory | None, list[View]]:
         """Begin from another tracker's body, if the pictures have its outline: what is beside it is the background."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
             return None, []
-        local = local_from_global(self._skeleton, pose.quats_xyzw)
-        still = np.zeros(self._model.n_pose)
-        there = MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
+        there = taken_over(self._model, self._skeleton, pose, wearer)
         self._cameras.mark_body(there)
         if self._cameras.outline_contrast() < self.params.least_contrast:
             return None, []
@@ -388,12 +327,12 @@ class FlexTracker:
         if not views:
             return None, []
         fit = self._fitter.fit(
-            there, views, _TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False,
+            there, views, TAKEN_OVER_S, self.params.fit.iterations, learn_shape=False,
             terms=self._terms(there, views, frames),
         )  # fmt: skip
         if not self._believed(fit):
             return None, []
-        return _Memory(frames.t_ns, fit.state, fit, self._names(views)), views
+        return Memory(frames.t_ns, fit.state, fit, self._names(views)), views
 
     def _believed(self, fit: Fit) -> bool:
         """Whether enough of the body agrees with the pictures."""
@@ -401,7 +340,7 @@ class FlexTracker:
         # every second pixel was counted
         return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
 
-    def _learn(self, seen: _Memory | None, views: Sequence[View], nobody: bool, every: int) -> None:
+    def _learn(self, seen: Memory | None, views: Sequence[View], nobody: bool, every: int) -> None:
         """Learn the look of a body that agrees well, in one of `every` cameras, and the background beside it, or everywhere
         when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
@@ -428,11 +367,6 @@ class FlexTracker:
         self._fitter = self._dressed.fitter
         self._cameras.fitter = self._fitter
 
-    def _bones(self, parts: Sequence[str]) -> tuple[int, ...]:
-        if WHOLE in parts:
-            return tuple(range(N_JOINTS))
-        return tuple(INDEX[bone] for part in parts for bone in self._model.space.parts[part].joints)
-
     def _names(self, views: Sequence[View]) -> tuple[str, ...]:
         return tuple(self._cameras.each[v.index].name for v in views)
 
@@ -445,33 +379,9 @@ class FlexTracker:
         if tracking is Tracking.LOST or known is None:
             self._told = None
             return Track(lost_body(frames.t_ns, self.name), shape)
-        away_s = seconds(frames.t_ns - known.t_ns)
-        told = told_pose(
-            self._fitter, known.state, known.fit, None, away_s, self.params.prediction_damping
+        body, self._told = told_of(
+            known, self._told, frames.t_ns, tracking, self.name, self._fitter, shape, self.params
         )
-        confidence = joint_confidence(known.fit, len(known.cameras), told.uncertainty_m, away_s)
-        jumped = self._bones(known.changed) if away_s == 0.0 else ()
-        self._told = steadied(
-            told.pose, confidence, frames.t_ns, self._told, self.params.steadying, jumped
-        )
-        joints_m = joint_positions(skeleton_of(shape), self._told.pose)
         evidence, roi_px = self._cameras.evidence(views)
-        body = BodyState(
-            t_ns=frames.t_ns,
-            tracking=tracking,
-            tracker=self.name,
-            pose=self._told.pose,
-            joints_m=joints_m,
-            confidence=confidence,
-            cameras=known.cameras if away_s == 0.0 else (),
-            uncertainty_m=behind(grown(told.uncertainty_m, away_s), joints_m, told.joints_m),
-        )
-        return Track(body, shape, known.fit.explained * faded(away_s), evidence, roi_px)
-
-
-def _with(known: _Memory, wearer: _Wearer) -> _Memory:
-    """What is carried on, of a wearer as known to whoever steps the tracker."""
-    return replace(
-        known,
-        state=replace(known.state, factors=wearer.factors, information=wearer.information),
-    )
+        agrees = known.fit.explained * faded(seconds(frames.t_ns - known.t_ns))
+        return Track(body, shape, agrees, evidence, roi_px)

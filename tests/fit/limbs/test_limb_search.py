@@ -12,18 +12,12 @@ from mocapd.body.model import shaped
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, RIGHT_ARM
-from mocapd.fit.arm_samples import arm_of, placed
 from mocapd.fit.fit_params import LimbSearchParams
-from mocapd.fit.limb_search import (
-    ArmSearch,
-    arm_library,
-    best_poses,
-    candidates,
-    is_uncertain,
-    score_arm_poses,
-    score_hand_places,
-)
-from mocapd.fit.limb_search_kernels import score_arms
+from mocapd.fit.limbs.arm_samples import arm_of, placed
+from mocapd.fit.limbs.arm_search import ArmSearch, arm_library, is_uncertain
+from mocapd.fit.limbs.limb_candidates import best_poses, candidates
+from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
+from mocapd.fit.limbs.limb_search_kernels import score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations

@@ -9,7 +9,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, LEFT_LEG, LEGS, RIGHT_ARM, RIGHT_LEG, TORSO
-from mocapd.fit.limb_search_kernels import ArmSamples
+from mocapd.fit.limbs.limb_search_kernels import ArmSamples
 from mocapd.types import Floats, Ints
 
 SKIN_ID = 11  # as a colour, beside the ten of the shirt

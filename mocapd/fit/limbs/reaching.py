@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.body.skeleton import PARENTS
-from mocapd.fit.arm_samples import Arm
+from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import GRID_PX, grid_rays
 from mocapd.fit.solver import Fitter, View

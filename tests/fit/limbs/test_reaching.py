@@ -7,10 +7,10 @@ import pytest
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.arm_samples import Arm, arm_of
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.limb_search import score_arm_poses
-from mocapd.fit.reaching import poses_to, reaching_poses
+from mocapd.fit.limbs.arm_samples import Arm, arm_of
+from mocapd.fit.limbs.limb_scores import score_arm_poses
+from mocapd.fit.limbs.reaching import poses_to, reaching_poses
 from mocapd.fit.solver import Fitter, View
 from mocapd.types import Floats
 from tests.fit.synthetic import FACTOR, MODEL, standing

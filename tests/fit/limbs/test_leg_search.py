@@ -10,7 +10,7 @@ from mocapd.body.pose_space import SIDES, full_body
 from mocapd.body.regions import by_region
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
-from mocapd.fit.leg_search import LegSearch, confirmed
+from mocapd.fit.limbs.leg_search import LegSearch, confirmed
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import seldom
 from mocapd.fit.solver import Fitter, View

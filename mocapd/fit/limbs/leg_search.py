@@ -1,27 +1,21 @@
 """When a leg does not agree with the pictures: other poses of it are tried, the best is kept.
 
 A knee that comes up in a tenth of a second is out of the fit's reach, and a leg that slipped onto the other one stays there.
-As for arms (`limb_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
+As for arms (`arm_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.regions import Label
-from mocapd.fit.arm_samples import Arm, leg_of, placed
 from mocapd.fit.fit_params import LegSearchParams
-from mocapd.fit.limb_search import (
-    PX_OF_M2,
-    added_in_views,
-    best_poses,
-    candidates,
-    part,
-    spread,
-    turned_rad2,
-)
+from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
+from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
+from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
+from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import seldom, unusual_leg, usual_leg
 from mocapd.fit.solver import Fit, Fitter, View
@@ -69,32 +63,20 @@ class LegSearch:
         """
         p = self.params
         changed = []
+        refit = partial(
+            self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=False, fine=1, motion=motion, terms=terms
+        )  # fmt: skip
         for side, leg in self.legs.items():
             if confirmed(side, fit) >= p.uncertain:
                 continue
             tries = self._candidates(fit.state, side, leg, views, turn)
             scores = self._scores(fit.state, side, leg, views, tries)
-            here = tries[0]
-            best, least = fit, fit.cost_for_any_pose + self._price(side, here, here) - p.gain
-            for n in best_poses(tries[:, :2], scores, p.fits):
-                local = fit.state.local_xyzw.copy()
-                local[leg.chain[:3]] = tries[n]
-                other = self.fitter.fit(
-                    replace(fit.state, local_xyzw=local),
-                    views,
-                    dt_s,
-                    3,
-                    learn_shape=False,
-                    fine=1,
-                    motion=motion,
-                    terms=terms,
-                )
-                cost = self._price(side, other.state.local_xyzw[leg.chain[:3]], here)
-                cost += other.cost_for_any_pose
-                if cost < least:
-                    best, least = other, cost
-            if best is not fit:
-                fit = best
+            best = best_poses(tries[:, :2], scores, p.fits)
+            starts = [with_limb(fit.state, leg, tries[n]) for n in best]
+            cost = partial(self._cost, leg, tries[0])
+            better = cheapest_fit(fit, starts, refit, cost, p.gain)
+            if better is not fit:
+                fit = better
                 changed.append(side)
         return fit, tuple(changed)
 
@@ -120,12 +102,13 @@ class LegSearch:
         out: Floats = PX_OF_M2 * scores - unusual - p.farther_px * away_rad2
         return out
 
-    def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
-        """What a pose (3,4) of a leg costs beside what the pictures say: it is seldom seen, or far from here."""
+    def _cost(self, leg: Arm, here_xyzw: Floats, fit: Fit) -> float:
+        """Of a fit, with what its pose of a leg costs beside the pictures: it is seldom seen, or far from here (3,4)."""
         p = self.params
-        away_rad2 = float(turned_rad2(there_xyzw[None, :2], here_xyzw[:2])[0])
-        unusual = float(seldom(unusual_leg(there_xyzw[None], side), p.tail)[0])
-        return p.unusual_cost * unusual + p.farther_px * away_rad2
+        there = fit.state.local_xyzw[leg.chain[:3]]
+        away_rad2 = float(turned_rad2(there[None, :2], here_xyzw[:2])[0])
+        unusual = float(seldom(unusual_leg(there[None], leg.side), p.tail)[0])
+        return fit.cost_for_any_pose + (p.unusual_cost * unusual + p.farther_px * away_rad2)
 
 
 def confirmed(side: str, fit: Fit) -> float:

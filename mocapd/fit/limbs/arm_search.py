@@ -1,0 +1,140 @@
+"""When an arm does not agree with the pictures: other poses of it are tried, the best is kept."""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from mocapd.body.joint_limits import from_swing_twist
+from mocapd.body.pose_space import SIDES, PoseSpace
+from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.limbs.arm_samples import Arm, arm_of
+from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
+from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
+from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
+from mocapd.fit.limbs.reaching import reaching_poses
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import arm_motions, unusualness
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+_LIBRARY = 2048
+
+
+class ArmSearch:
+    """Tries other poses of arms that the pictures do not confirm."""
+
+    def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
+        self.fitter, self.params = fitter, params
+        self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
+        self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
+        u = spread(_LIBRARY)
+        near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]
+        self._usual = arm_motions()
+        self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
+
+    def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
+        """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
+        uncertain arm must not wait for them to be compiled or loaded."""
+        for side, arm in self.arms.items():
+            tries = candidates(
+                self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
+            )
+            score_arm_poses(self.fitter, state, arm, views, tries, 0.0, 0.0)
+
+    def improve(
+        self,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        learn_shape: bool,
+        terms: Sequence[PoseTerm] = (),
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """A better fit, if another pose of an uncertain arm gives one, and the sides that changed.
+
+        turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
+        """
+        p = self.params
+        if not any(is_uncertain(side, fit, p) for side in self.arms):
+            return fit, ()
+        changed = []
+        empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
+        refit = partial(
+            self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
+        )  # fmt: skip
+        for side, arm in self.arms.items():
+            if not is_uncertain(side, fit, p):
+                continue
+            tries = self._candidates(fit.state, arm, views, turn)
+            scores = self._scores(fit.state, arm, views, tries, empty)
+            best = best_poses(tries[:, 1:], scores, p.arm_fits)
+            starts = [with_limb(fit.state, arm, tries[n]) for n in best]
+            cost = partial(self._cost, arm, tries[0], views, empty)
+            better = cheapest_fit(fit, starts, refit, cost, p.arm_gain)
+            if better is not fit:
+                fit = better
+                changed.append(side)
+        return fit, tuple(changed)
+
+    def _candidates(self, state: MotionState, arm: Arm, views: Sequence[View], turn: int) -> Floats:
+        """Local rotations (N,3,4) of collar, upper arm and forearm to try; the first is the present pose."""
+        p = self.params
+        cloud = part(self._cloud, turn, p.arm_cloud)
+        library = part(self._library[arm.side], turn, p.arm_library)
+        tries = candidates(self.fitter, state, arm, views, cloud, library)
+        reaching = reaching_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
+        return np.concatenate([tries, reaching])
+
+    def _scores(
+        self, state: MotionState, arm: Arm, views: Sequence[View], tries: Floats, empty: float
+    ) -> Floats:
+        """How much of each try, and of its hand, is seen, less what contradicts it (N,) [work px]."""
+        p = self.params
+        scores = score_arm_poses(self.fitter, state, arm, views, tries, p.farther_px, empty)
+        scores -= p.unusual_px * unusualness(tries, self._usual[arm.side])
+        scores += p.hand_px * score_hand_places(self.fitter, state, arm, views, tries, empty)
+        return scores
+
+    def _cost(
+        self, arm: Arm, here_xyzw: Floats, views: Sequence[View], empty: float, fit: Fit
+    ) -> float:
+        """Of a fit, with what its pose of an arm (3,4) costs beside what the pictures say, and its hand."""
+        there = fit.state.local_xyzw[arm.chain[:3]]
+        price = self._price(arm.side, there, here_xyzw)
+        return fit.cost_for_any_pose + price - self._hand_px(arm, fit, views, empty)
+
+    def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
+        """How much of the hand is seen where this fit has it, in the measure of its cost."""
+        if self.params.hand_cost == 0.0:
+            return 0.0
+        pose = fit.state.local_xyzw[arm.chain[:3]][None]
+        seen_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)
+        return self.params.hand_cost * float(seen_px[0])
+
+    def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
+        """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""
+        p = self.params
+        unusual = float(unusualness(there_xyzw[None], self._usual[side])[0])
+        away_rad2 = float(turned_rad2(there_xyzw[None, 1:], here_xyzw[1:])[0])
+        return p.unusual_cost * unusual + p.farther_px * away_rad2
+
+
+def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
+    """Whether too little of an arm is confirmed by the pictures, or they show what only an arm can be."""
+    return fit.confirmed_arms[side] < params.uncertain_arm or fit.nearer_px > params.nearer_px
+
+
+def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
+    """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
+    limits = space.limits
+    upper, fore = space.group(side + "UpperArm"), space.group(side + "LowerArm")
+    u = spread(size)
+    out = np.tile(rotations.IDENTITY_XYZW, (size, 3, 1))
+    for place, group, span in ((1, upper, slice(0, 3)), (2, fore, slice(3, 6))):
+        low, high = limits.lower_rad[group], limits.upper_rad[group]
+        angles = low + (high - low) * u[:, span]
+        out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
+    return out

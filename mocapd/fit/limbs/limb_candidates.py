@@ -1,0 +1,135 @@
+"""What to try where a limb does not agree with the pictures: its mirror images, clouds of poses, and the best of all tries.
+
+A tracked limb can slip into a pose that looks right to one camera. Candidates are its mirror images
+in depth along each camera's view (the two poses of a segment that project alike, Sminchisescu and
+Triggs 2003), and a low-discrepancy cloud about the present pose and about rest.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.body.skeleton import PARENTS
+from mocapd.fit.limbs.arm_samples import Arm
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry import rotations
+from mocapd.types import Camera, Floats
+
+_ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
+
+
+def candidates(
+    fitter: Fitter,
+    state: MotionState,
+    limb: Arm,
+    views: Sequence[View],
+    cloud: Floats,
+    library: Floats,
+    first: int = 1,
+) -> Floats:
+    """Local rotations (N,3,4) of a limb's first three bones to try; the first is the present pose.
+
+    cloud (C,6): rotation vectors to turn its two long bones by; library (L,3,4): poses to try as they are; first: which of
+    the three is the first long one, that of an arm after its collar.
+    """
+    joints, globals_ = fitter.joints(state)
+    upper, lower, end = limb.chain[first : first + 3]
+    present = state.local_xyzw[limb.chain[:3]]
+    out = [present]
+    for view in views:
+        camera = fitter.drawings[view.index].camera
+        for q_upper, q_lower in mirrored_bones(joints, globals_, (upper, lower, end), camera):
+            local = present.copy()
+            local[first] = rotations.multiply(rotations.inverse(globals_[PARENTS[upper]]), q_upper)
+            local[first + 1] = rotations.multiply(rotations.inverse(q_upper), q_lower)
+            out.append(local)
+    turned = np.repeat(present[None], len(cloud), axis=0)
+    turned[:, first : first + 2] = turned_about(present[first : first + 2], cloud)
+    return np.concatenate([np.array(out), turned, library])
+
+
+def mirrored_bones(
+    joints: Floats, globals_: Floats, limb: tuple[int, int, int], camera: Camera
+) -> list[tuple[Floats, Floats]]:
+    """Global rotations (4,) of the two bones between the joints of a limb, either or both mirrored in depth: they project
+    alike."""
+    upper, lower, end = limb
+    a, b = joints[lower] - joints[upper], joints[end] - joints[lower]
+    ray = joints[lower] + camera.R.T @ camera.t_m
+    ray = ray / np.linalg.norm(ray)
+    a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
+    return [
+        (
+            rotations.multiply(shortest_turn(a, new_a), globals_[upper]),
+            rotations.multiply(shortest_turn(b, new_b), globals_[lower]),
+        )
+        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip))
+    ]
+
+
+def shortest_turn(a: Floats, b: Floats) -> Floats:
+    """The smallest rotation (4,) that turns direction a into direction b."""
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    w = 1.0 + a @ b
+    if w < 1e-6:
+        axis = np.cross(a, [1.0, 0.0, 0.0] if abs(a[0]) < 0.9 else [0.0, 1.0, 0.0])
+        return np.append(axis / np.linalg.norm(axis), 0.0)
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    q = (
+        ay * bz - az * by,
+        az * bx - ax * bz,
+        ax * by - ay * bx,
+        w,
+    )  # np.cross takes twenty times as long
+    return rotations.canonical(np.array(q))
+
+
+def turned_about(bones_xyzw: Floats, cloud: Floats) -> Floats:
+    """Poses (C,2,4) of a limb's two long bones (2,4), turned by the rotation vectors of a cloud (C,6)."""
+    turned = np.repeat(bones_xyzw[None], len(cloud), axis=0)
+    turned[:, 0] = rotations.multiply(rotations.exp(cloud[:, :3]), turned[:, 0])
+    turned[:, 1] = rotations.multiply(rotations.exp(cloud[:, 3:]), turned[:, 1])
+    return turned
+
+
+def spread(size: int) -> Floats:
+    """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960)."""
+    out = np.zeros((size, 6))
+    for column, base in enumerate((2, 3, 5, 7, 11, 13)):
+        n, f = np.arange(1, size + 1), 1.0
+        while n.any():
+            f /= base
+            out[:, column] += f * (n % base)
+            n //= base
+    return out
+
+
+def part(rows: Floats, turn: int, size: int) -> Floats:
+    """As many of the rows (N,...), others each turn."""
+    first = (turn * size) % len(rows)
+    return rows[first : first + size]
+
+
+def best_poses(bones_xyzw: Floats, scores: Floats, keep: int) -> list[int]:
+    """Places of the `keep` best poses of a limb's two long bones (N,2,4), best first, no two alike; none below the first, the
+    present pose."""
+    out: list[int] = []
+    for n in np.argsort(-scores, kind="stable").tolist():
+        if n == 0 or len(out) == keep:
+            break
+        # a hypothesis close to one already kept would end where that one ends
+        if not any(_is_alike(bones_xyzw[n], bones_xyzw[kept]) for kept in out):
+            out.append(n)
+    return out
+
+
+def _is_alike(a_xyzw: Floats, b_xyzw: Floats) -> bool:
+    return bool(np.abs((a_xyzw * b_xyzw).sum(axis=1)).min() > _ALIKE)
+
+
+def turned_rad2(bones_xyzw: Floats, from_xyzw: Floats) -> Floats:
+    """By how much a limb's two long bones differ: squared angles (N,), of poses (N,2,4) from one (2,4) [rad^2]."""
+    cosines = np.abs((bones_xyzw * from_xyzw).sum(axis=2))
+    turned: Floats = ((2.0 * np.arccos(np.minimum(cosines, 1.0))) ** 2).sum(axis=1)
+    return turned

@@ -1,0 +1,33 @@
+"""Tries of a limb are fitted to the pictures, and the cheapest fit is kept if it is worth the change."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+
+from mocapd.fit.limbs.arm_samples import Arm
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit
+from mocapd.types import Floats
+
+
+def with_limb(state: MotionState, limb: Arm, pose_xyzw: Floats) -> MotionState:
+    """The state with another pose (3,4) of a limb's first three bones."""
+    local = state.local_xyzw.copy()
+    local[limb.chain[:3]] = pose_xyzw
+    return replace(state, local_xyzw=local)
+
+
+def cheapest_fit(
+    fit: Fit,
+    starts: Iterable[MotionState],
+    refit: Callable[[MotionState], Fit],
+    cost: Callable[[Fit], float],
+    gain: float,
+) -> Fit:
+    """The cheapest of the fits that begin at `starts`, if it costs less than this one by more than `gain`; else this one."""
+    best, least = fit, cost(fit) - gain
+    for start in starts:
+        other = refit(start)
+        other_cost = cost(other)
+        if other_cost < least:
+            best, least = other, other_cost
+    return best

@@ -1,0 +1,121 @@
+"""How much of each try of a limb is seen where the rest of the body is not, less what contradicts it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.fit.body_drawing import PartialRender
+from mocapd.fit.limbs.arm_samples import SKIN_ID, Arm, placed
+from mocapd.fit.limbs.limb_candidates import turned_rad2
+from mocapd.fit.limbs.limb_search_kernels import ArmSamples, crowd_arms, score_arms
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.types import Floats
+
+PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
+_NO_DEPTHS = np.empty((0, 0), np.float32)
+
+
+def score_arm_poses(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    farther: float,
+    empty: float,
+) -> Floats:
+    """How much of each hypothesis (N,3,4) is seen, less what contradicts it and what is in the trunk (N,) [work px].
+
+    farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2]; empty: share of
+    what lies where the picture shows none of the shirt's colours that contradicts it.
+    """
+    model = fitter.model
+    body = fitter.shaper(state.factors)
+    samples = placed(body, arm, arm.sleeve)
+    scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
+    fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
+    depths_m2 = np.empty(len(hypotheses))
+    crowd_arms(
+        hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.torso(body),
+        fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
+    )  # fmt: skip
+    scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
+    # an arm before a trunk that looks like it is told by depths
+    covered = 0.0 if any(view.depth_m is not None for view in views) else 1.0
+    scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
+    seen_px: Floats = PX_OF_M2 * scores
+    return seen_px
+
+
+def score_hand_places(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    empty: float,
+) -> Floats:
+    """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
+    less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for sleeves."""
+    samples = placed(fitter.shaper(state.factors), arm, arm.hand)
+    scores = np.zeros(len(hypotheses))
+    for view in views:
+        if view.bare is None:
+            continue
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+        drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
+        seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
+        score_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
+    seen_px: Floats = PX_OF_M2 * scores
+    return seen_px
+
+
+def added_in_views(
+    fitter: Fitter,
+    state: MotionState,
+    limb: Arm,
+    views: Sequence[View],
+    samples: ArmSamples,
+    hypotheses: Floats,
+    empty: float,
+    scores: Floats,
+    covered: float = 1.0,
+) -> Floats:
+    """scores (N,) and what each camera says of a limb in front of the rest of the body [m^2]; covered: see `score_arms`."""
+
+    def seen_in(view: View) -> Floats:
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
+        mine = np.zeros(len(hypotheses))
+        score_in_view(
+            fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, mine, covered
+        )
+        return mine
+
+    # added up in the order of the views, whichever thread was first
+    return sum(fitter.each(seen_in, views), scores)
+
+
+def score_in_view(
+    fitter: Fitter,
+    view: View,
+    base: PartialRender,
+    drawn: NDArray[np.uint8],
+    seen: NDArray[np.uint8],
+    samples: ArmSamples,
+    hypotheses: Floats,
+    empty: float,
+    scores: Floats,
+    covered: float = 1.0,
+) -> None:
+    """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]; covered: see
+    `score_arms`."""
+    drawing = fitter.drawings[view.index]
+    image_scale = drawing.image_scale
+    score_arms(
+        hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
+        np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
+        base.zbuffer, drawn, seen, view.pixel_weight, empty, covered,
+        _NO_DEPTHS if view.depth_m is None else view.depth_m, fitter.params.depth_off_m, scores,
+    )  # fmt: skip

@@ -1,0 +1,66 @@
+"""What is carried from frame to frame of somebody who is tracked, and how fast they are taken to move."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES
+from mocapd.fit.motion_state import MotionState, step_between
+from mocapd.fit.solver import Fit
+from mocapd.trackers.flex.other_poses import WHOLE
+from mocapd.trackers.flex.params import Params
+from mocapd.types import Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Memory:
+    """Somebody as they were fitted at t_ns, and the names of the cameras that showed them."""
+
+    t_ns: int
+    state: MotionState
+    fit: Fit
+    cameras: tuple[str, ...]
+    changed: tuple[str, ...] = ()  # parts of the body that were found elsewhere
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wearer:
+    """The proportions as handed in, in the tracker's space."""
+
+    factors: Floats
+    information: Floats
+
+
+def of_wearer(known: Memory, wearer: Wearer) -> Memory:
+    """What is carried on, of a wearer as known to whoever steps the tracker."""
+    return replace(
+        known,
+        state=replace(known.state, factors=wearer.factors, information=wearer.information),
+    )
+
+
+def velocity_of(
+    model: BodyModel,
+    params: Params,
+    fit: Fit,
+    last: MotionState,
+    dt_s: float,
+    changed: Sequence[str],
+) -> Floats:
+    """Of the pose (n_pose,) per second, from the step since the last one; not of parts that changed over."""
+    p, state = params, fit.state
+    before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
+    velocity = step_between(model, now, before) / dt_s
+    velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
+    velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
+    for side in SIDES:
+        # what is hardly seen is hardly known to move
+        trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
+        columns = model.space.columns(f"{side}_arm")
+        glide = p.hidden_arm_glide * last.velocity[columns]
+        velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
+    for part in changed:
+        velocity[slice(None) if part == WHOLE else model.space.columns(part)] = 0.0
+    return velocity
