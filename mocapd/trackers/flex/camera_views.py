@@ -10,8 +10,8 @@ from mocapd.clock import seconds
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
-from mocapd.trackers.flex.appearance import Appearance, region_distances
 from mocapd.trackers.flex.floor_view import FloorView
+from mocapd.trackers.flex.looks.appearance import Appearance, region_distances
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
 from mocapd.vision.clip_background import clip_background

@@ -9,8 +9,8 @@ from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.motion_state import MotionState, step_between
 from mocapd.fit.solver import Fit
-from mocapd.trackers.flex.other_poses import WHOLE
 from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex.rescue.other_poses import WHOLE
 from mocapd.types import Floats
 
 

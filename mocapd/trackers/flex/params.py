@@ -6,9 +6,9 @@ from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, 
 from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
-from mocapd.trackers.flex.appearance import AppearanceParams
-from mocapd.trackers.flex.face_watch import FaceWatchParams
-from mocapd.trackers.flex.turn_watch import TurnWatchParams
+from mocapd.trackers.flex.looks.appearance import AppearanceParams
+from mocapd.trackers.flex.rescue.face_watch import FaceWatchParams
+from mocapd.trackers.flex.rescue.turn_watch import TurnWatchParams
 from mocapd.trackers.steadying import SteadyingParams
 from mocapd.vision.room_background import BackgroundParams
 

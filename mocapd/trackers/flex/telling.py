@@ -9,8 +9,8 @@ from mocapd.clock import seconds
 from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.confidence import joint_confidence
 from mocapd.trackers.flex.memory import Memory
-from mocapd.trackers.flex.other_poses import WHOLE
 from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex.rescue.other_poses import WHOLE
 from mocapd.trackers.steadying import Told, behind, steadied
 from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import grown

@@ -31,11 +31,11 @@ from mocapd.trackers.flex.led import (
     standing_below,
     taken_over,
 )
-from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, Look, look_of
+from mocapd.trackers.flex.looks.look import ALL_DIFFER, DressedFitters, Look, look_of
 from mocapd.trackers.flex.memory import Memory, Wearer, of_wearer, velocity_of
-from mocapd.trackers.flex.other_poses import OtherPoses
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.person_search import PersonSearch
+from mocapd.trackers.flex.rescue.other_poses import OtherPoses
 from mocapd.trackers.flex.telling import told_of
 from mocapd.trackers.steadying import Told
 from mocapd.trackers.texture_distance import texture_distances

@@ -19,7 +19,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.trackers.flex.build import build_flex_tracker
-from mocapd.trackers.flex.turned import turned_round
+from mocapd.trackers.flex.rescue.turned import turned_round
 from mocapd.types import BodyState, Floats, Pose
 from tests.geometry.rigs import ring
 

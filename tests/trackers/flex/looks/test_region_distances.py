@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.regions import Region
-from mocapd.trackers.flex.appearance import region_distances
+from mocapd.trackers.flex.looks.appearance import region_distances
 
 
 def test_distances_are_those_of_a_distance_transform_of_each_region() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.fit.solver import Fit
-from mocapd.trackers.flex.turn_watch import TurnWatch, TurnWatchParams
+from mocapd.trackers.flex.rescue.turn_watch import TurnWatch, TurnWatchParams
 from tests.fit.synthetic import standing
 
 PARAMS = TurnWatchParams()

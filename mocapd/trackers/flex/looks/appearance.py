@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from mocapd.body.regions import Band, Region
-from mocapd.trackers.flex.appearance_kernels import (
+from mocapd.trackers.flex.looks.appearance_kernels import (
     BITS,
     N_BINS,
     N_CLASSES,
@@ -20,7 +20,7 @@ from mocapd.trackers.flex.appearance_kernels import (
     count_colours,
     log_table,
 )
-from mocapd.trackers.flex.region_distance_kernels import LANES, chamfer_distances
+from mocapd.trackers.flex.looks.region_distance_kernels import LANES, chamfer_distances
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW
 

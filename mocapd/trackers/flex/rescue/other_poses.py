@@ -12,17 +12,17 @@ from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe
-from mocapd.trackers.flex.face_watch import FaceWatch
-from mocapd.trackers.flex.legs import (
+from mocapd.trackers.flex.looks.look import Dressed
+from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex.rescue.face_watch import FaceWatch
+from mocapd.trackers.flex.rescue.legs import (
     are_crossed,
     twist_rad,
     with_hips_below_chest,
     with_legs_exchanged,
 )
-from mocapd.trackers.flex.look import Dressed
-from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex.turn_watch import TurnWatch
-from mocapd.trackers.flex.turned import MIRRORED, UNDER_LIMBS, turned_round
+from mocapd.trackers.flex.rescue.turn_watch import TurnWatch
+from mocapd.trackers.flex.rescue.turned import MIRRORED, UNDER_LIMBS, turned_round
 from mocapd.types import Floats, FrameSet
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 

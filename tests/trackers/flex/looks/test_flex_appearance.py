@@ -10,15 +10,15 @@ from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.regions import Band, Region
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
-from mocapd.trackers.flex.appearance import Appearance, AppearanceParams, region_distances
-from mocapd.trackers.flex.appearance_kernels import (
+from mocapd.trackers.flex.looks.appearance import Appearance, AppearanceParams, region_distances
+from mocapd.trackers.flex.looks.appearance_kernels import (
     BITS,
     N_BINS,
     N_CLASSES,
     classify_regions,
     log_table,
 )
-from mocapd.trackers.flex.look import ALL_DIFFER, DressedFitters, look_of
+from mocapd.trackers.flex.looks.look import ALL_DIFFER, DressedFitters, look_of
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, SHADOW
 from tests.geometry.rigs import ring
 

@@ -15,7 +15,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
-from mocapd.trackers.flex.legs import (
+from mocapd.trackers.flex.rescue.legs import (
     are_crossed,
     twist_rad,
     with_hips_below_chest,

@@ -16,7 +16,7 @@ from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.solver import Fitter
-from mocapd.trackers.flex.appearance import Appearance
+from mocapd.trackers.flex.looks.appearance import Appearance
 from mocapd.types import Camera
 
 Look = tuple[
