@@ -9,6 +9,7 @@ from mocapd.body.shaping import Shaped
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.terms.distance_term import MeasuredDistances
+from mocapd.fit.terms.sampling_kernels import N_GROUPS, spread_over_groups
 from mocapd.fit.work_rays import pixels_as_delivered, work_rays
 from mocapd.geometry.camera_model import centre, project
 from mocapd.types import Bytes, Camera, Floats, Ints
@@ -78,22 +79,9 @@ def _samples(
     drawn: tuple[Bytes, NDArray[np.int32]], part: NDArray[np.uint8], points: int, turn: int
 ) -> tuple[Ints, Ints]:
     """Rows and columns of pixels inside of the drawing, as many of each part's regions."""
-    ids, triangle_at = drawn
-    inside = ids > 0
-    e = _EDGE_PX
-    deep = np.zeros_like(inside)
-    deep[e:-e, e:-e] = (
-        inside[: -2 * e, e:-e] & inside[2 * e :, e:-e] & inside[e:-e, : -2 * e] & inside[e:-e, 2 * e :]
-    )  # fmt: skip
-    y, x = np.nonzero(deep & inside)
-    which = part[triangle_at[y, x]].astype(np.int64) * 16 + ids[y, x]
-    rows = []
-    for one in np.unique(which).tolist():
-        mine = np.flatnonzero(which == one)
-        step = max(len(mine) // points, 1)
-        rows.append(mine[turn % step :: step][:points])
-    picked = np.concatenate(rows) if rows else np.empty(0, np.int64)
-    return y[picked], x[picked]
+    places = np.empty((points * N_GROUPS, 2), np.int64)
+    n = spread_over_groups(*drawn, part, _EDGE_PX, points, turn, places)
+    return places[:n, 0].copy(), places[:n, 1].copy()
 
 
 def _places(drawing: IdMapRenderer, body: Shaped, triangle: Ints) -> Floats:
