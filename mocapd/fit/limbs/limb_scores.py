@@ -59,16 +59,20 @@ def score_hand_places(
 ) -> Floats:
     """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
     less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for sleeves."""
+    none = np.zeros(len(hypotheses))
+    looked = [view for view in views if view.bare is not None]
+    if not looked:
+        return none
     samples = placed(fitter.shaper(state.factors), arm, arm.hand)
-    scores = np.zeros(len(hypotheses))
-    for view in views:
-        if view.bare is None:
-            continue
+
+    def seen_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
         drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
+        assert view.bare is not None
         seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
-        score_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty, scores)
-    seen_px: Floats = PX_OF_M2 * scores
+        return _scores_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty)
+
+    seen_px: Floats = PX_OF_M2 * sum(fitter.each(seen_in, looked), none)
     return seen_px
 
 
@@ -87,17 +91,15 @@ def added_in_views(
 
     def seen_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
-        mine = np.zeros(len(hypotheses))
-        score_in_view(
-            fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, mine, covered
+        return _scores_in_view(
+            fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, covered
         )
-        return mine
 
     # added up in the order of the views, whichever thread was first
     return sum(fitter.each(seen_in, views), scores)
 
 
-def score_in_view(
+def _scores_in_view(
     fitter: Fitter,
     view: View,
     base: PartialRender,
@@ -106,12 +108,10 @@ def score_in_view(
     samples: ArmSamples,
     hypotheses: Floats,
     empty: float,
-    scores: Floats,
     covered: float = 1.0,
-) -> None:
-    """Add what one camera says, of ids (h,w) `drawn` without the arm, and `seen`, to scores (N,) [m^2]; covered: see
-    `score_arms`."""
-    drawing = fitter.drawings[view.index]
+) -> Floats:
+    """What one camera says (N,) [m^2], of ids (h,w) `drawn` without the arm, and `seen`; covered: see `score_arms`."""
+    drawing, scores = fitter.drawings[view.index], np.zeros(len(hypotheses))
     image_scale = drawing.image_scale
     score_arms(
         hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
@@ -119,3 +119,4 @@ def score_in_view(
         base.zbuffer, drawn, seen, view.pixel_weight, empty, covered,
         _NO_DEPTHS if view.depth_m is None else view.depth_m, fitter.params.depth_off_m, scores,
     )  # fmt: skip
+    return scores
