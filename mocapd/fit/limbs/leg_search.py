@@ -45,8 +45,8 @@ class LegSearch:
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
         """Run the search once for nothing: the first uncertain leg must not wait for its kernels to be compiled or loaded."""
-        for side, leg in self.legs.items():
-            self._scores(state, side, leg, views, self._candidates(state, side, leg, views, 0)[:1])
+        for leg in self.legs.values():
+            self._scores(state, leg, views, self._candidates(state, leg, views, 0)[:1])
 
     def improve(
         self,
@@ -69,8 +69,8 @@ class LegSearch:
         for side, leg in self.legs.items():
             if confirmed(side, fit) >= p.uncertain:
                 continue
-            tries = self._candidates(fit.state, side, leg, views, turn)
-            scores = self._scores(fit.state, side, leg, views, tries)
+            tries = self._candidates(fit.state, leg, views, turn)
+            scores = self._scores(fit.state, leg, views, tries)
             best = best_poses(tries[:, :2], scores, p.fits)
             starts = [with_limb(fit.state, leg, tries[n]) for n in best]
             cost = partial(self._cost, leg, tries[0])
@@ -80,25 +80,21 @@ class LegSearch:
                 changed.append(side)
         return fit, tuple(changed)
 
-    def _candidates(
-        self, state: MotionState, side: str, leg: Arm, views: Sequence[View], turn: int
-    ) -> Floats:
+    def _candidates(self, state: MotionState, leg: Arm, views: Sequence[View], turn: int) -> Floats:
         """Local rotations (N,3,4) of thigh, shank and foot to try; the first is the present pose."""
         p = self.params
         cloud = part(self._cloud, turn, p.cloud)
-        library = part(self._library[side], turn, p.library)
+        library = part(self._library[leg.side], turn, p.library)
         return candidates(self.fitter, state, leg, views, cloud, library, first=0)
 
-    def _scores(
-        self, state: MotionState, side: str, leg: Arm, views: Sequence[View], tries: Floats
-    ) -> Floats:
+    def _scores(self, state: MotionState, leg: Arm, views: Sequence[View], tries: Floats) -> Floats:
         """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
         p = self.params
         samples = placed(self.fitter.shaper(state.factors), leg, leg.sleeve)
         none = np.zeros(len(tries))
         scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
-        unusual = p.unusual_px * seldom(unusual_leg(tries, side), p.tail)
+        unusual = p.unusual_px * seldom(unusual_leg(tries, leg.side), p.tail)
         out: Floats = PX_OF_M2 * scores - unusual - p.farther_px * away_rad2
         return out
 

@@ -9,7 +9,7 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.geometry import rotations
-from mocapd.trackers.flex.memory import Wearer
+from mocapd.trackers.flex.memory import Proportions
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Floats, Pose, Skeleton
 
@@ -18,14 +18,16 @@ LEGS = (Region.LEG, Region.FOOT)  # regions that a guide does not know
 _UPPER = np.flatnonzero(upper_body().group_of_joint >= 0)  # joints that a guide knows
 
 
-def taken_over(model: BodyModel, skeleton: Skeleton, pose: Pose, wearer: Wearer) -> MotionState:
+def taken_over(
+    model: BodyModel, skeleton: Skeleton, pose: Pose, wearer: Proportions
+) -> MotionState:
     """Another tracker's body, at rest."""
     local = local_from_global(skeleton, pose.quats_xyzw)
     still = np.zeros(model.n_pose)
     return MotionState(pose.root_m.copy(), local, still, wearer.factors, wearer.information)
 
 
-def standing_below(model: BodyModel, upper: Pose, wearer: Wearer) -> MotionState:
+def standing_below(model: BodyModel, upper: Pose, wearer: Proportions) -> MotionState:
     """Somebody with this upper body whose legs hang straight down."""
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     still = np.zeros(model.n_pose)
@@ -39,7 +41,7 @@ def predicted_below(
     last: MotionState,
     dt_s: float,
     upper: Pose,
-    wearer: Wearer,
+    wearer: Proportions,
 ) -> MotionState:
     """The upper body as the guide has it, legs and head where they have gone since the last state."""
     local = moved(model, last, dt_s, params.prediction_damping)[1]

@@ -15,7 +15,7 @@ from mocapd.types import Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Memory:
+class Followed:
     """Somebody as they were fitted at t_ns, and the names of the cameras that showed them."""
 
     t_ns: int
@@ -26,14 +26,14 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wearer:
+class Proportions:
     """The proportions as handed in, in the tracker's space."""
 
     factors: Floats
     information: Floats
 
 
-def of_wearer(known: Memory, wearer: Wearer) -> Memory:
+def of_wearer(known: Followed, wearer: Proportions) -> Followed:
     """What is carried on, of a wearer as known to whoever steps the tracker."""
     return replace(
         known,

@@ -8,7 +8,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
 from mocapd.clock import seconds
 from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.confidence import joint_confidence
-from mocapd.trackers.flex.memory import Memory
+from mocapd.trackers.flex.memory import Followed
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.rescue.other_poses import WHOLE
 from mocapd.trackers.steadying import Told, behind, steadied
@@ -18,7 +18,7 @@ from mocapd.types import BodyState, Tracking
 
 
 def told_of(
-    known: Memory,
+    known: Followed,
     last: Told | None,
     t_ns: int,
     tracking: Tracking,

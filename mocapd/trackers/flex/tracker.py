@@ -32,7 +32,7 @@ from mocapd.trackers.flex.led import (
     taken_over,
 )
 from mocapd.trackers.flex.looks.look import ALL_DIFFER, DressedFitters, Look, look_of
-from mocapd.trackers.flex.memory import Memory, Wearer, of_wearer, velocity_of
+from mocapd.trackers.flex.memory import Followed, Proportions, of_wearer, velocity_of
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.person_search import PersonSearch
 from mocapd.trackers.flex.rescue.other_poses import OtherPoses
@@ -120,7 +120,7 @@ class FlexTracker:
         self._cameras.reset()
         self._dress(ALL_DIFFER)
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
-        self._known: Memory | None = None
+        self._known: Followed | None = None
         self._told: Told | None = None
         self._near = near
         self._find.reset()
@@ -158,7 +158,7 @@ class FlexTracker:
             known, views = self._follow_guide(known, upper.pose, wearer, frames)
         return self._end(known, views, frames, shape, every=2)
 
-    def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Wearer, Memory | None]:
+    def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Proportions, Followed | None]:
         """The wearer of this step, and what is known of the last one."""
         self._turn += 1
         self._find.times.came(frames.t_ns)
@@ -168,11 +168,11 @@ class FlexTracker:
         known = self._known
         if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
             known = None  # too old to predict from
-        return Wearer(*known_of(shape, self._model.space)), known
+        return Proportions(*known_of(shape, self._model.space)), known
 
     def _end(
         self,
-        known: Memory | None,
+        known: Followed | None,
         views: list[View],
         frames: FrameSet,
         shape: BodyShape,
@@ -190,7 +190,7 @@ class FlexTracker:
 
     # --- stages ---
 
-    def _follow(self, known: Memory, frames: FrameSet) -> tuple[Memory, list[View]]:
+    def _follow(self, known: Followed, frames: FrameSet) -> tuple[Followed, list[View]]:
         """One frame of tracking; a frame without evidence leaves `known` at its old time."""
         p, fitter, last = self.params, self._fitter, known.state
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
@@ -224,11 +224,11 @@ class FlexTracker:
             return known, views
         velocity = velocity_of(self._model, p, fit, last, dt_s, changed)
         state = replace(fit.state, velocity=velocity)
-        return Memory(frames.t_ns, state, fit, self._names(views), changed), views
+        return Followed(frames.t_ns, state, fit, self._names(views), changed), views
 
     def _follow_guide(
-        self, known: Memory | None, upper: Pose, wearer: Wearer, frames: FrameSet
-    ) -> tuple[Memory | None, list[View]]:
+        self, known: Followed | None, upper: Pose, wearer: Proportions, frames: FrameSet
+    ) -> tuple[Followed | None, list[View]]:
         """One frame of legs and head below and above a body that another tracker knows."""
         p, cameras, model = self.params, self._cameras, self._model
         last = known.state if known is not None else standing_below(model, upper, wearer)
@@ -273,7 +273,7 @@ class FlexTracker:
         if known is not None:
             velocity = velocity_of(model, p, fit, last, dt_s, changed)
         state = replace(fit.state, velocity=velocity)
-        return Memory(frames.t_ns, state, fit, self._names(views), changed), views
+        return Followed(frames.t_ns, state, fit, self._names(views), changed), views
 
     def _stand_before(self) -> None:
         """Renew what stands before the backgrounds, now and then everywhere, where something may have been uncovered."""
@@ -297,7 +297,7 @@ class FlexTracker:
         )
         return (self._floor, *measured)
 
-    def _start(self, wearer: Wearer, frames: FrameSet) -> tuple[Memory | None, list[View]]:
+    def _start(self, wearer: Proportions, frames: FrameSet) -> tuple[Followed | None, list[View]]:
         """Look for somebody who stands before the background."""
         found = self._find.look(wearer.factors, wearer.information, frames.t_ns)
         self.probe("start")
@@ -307,11 +307,11 @@ class FlexTracker:
         self._cameras.mark_body(fit.state)
         self._cameras.doubt_background()
         self._learn_first(fit.state)
-        return Memory(frames.t_ns, fit.state, fit, names), []
+        return Followed(frames.t_ns, fit.state, fit, names), []
 
     def _take_over(
-        self, near: BodyState, wearer: Wearer, frames: FrameSet
-    ) -> tuple[Memory | None, list[View]]:
+        self, near: BodyState, wearer: Proportions, frames: FrameSet
+    ) -> tuple[Followed | None, list[View]]:
         """Begin from another tracker's body, if the pictures have its outline: what is beside it is the background."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(_TOO_OLD_S):
@@ -332,7 +332,7 @@ class FlexTracker:
         )  # fmt: skip
         if not self._believed(fit):
             return None, []
-        return Memory(frames.t_ns, fit.state, fit, self._names(views)), views
+        return Followed(frames.t_ns, fit.state, fit, self._names(views)), views
 
     def _believed(self, fit: Fit) -> bool:
         """Whether enough of the body agrees with the pictures."""
@@ -340,7 +340,9 @@ class FlexTracker:
         # every second pixel was counted
         return fit.explained >= p.live_explained and 2.0 * fit.matched.sum() >= p.least_body_px
 
-    def _learn(self, seen: Memory | None, views: Sequence[View], nobody: bool, every: int) -> None:
+    def _learn(
+        self, seen: Followed | None, views: Sequence[View], nobody: bool, every: int
+    ) -> None:
         """Learn the look of a body that agrees well, in one of `every` cameras, and the background beside it, or everywhere
         when nobody is known."""
         if seen is not None and seen.fit.explained >= self.params.learn_explained:
