@@ -1,7 +1,7 @@
 """One camera's background: learned where nobody is, in a new light at once, and what stands before it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -13,15 +13,16 @@ from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import (
     BACKGROUND,
     BEFORE,
+    CLOTH_OR_SHADOW,
     SHADOW,
     UNKNOWN,
     stands,
     stands_before,
 )
+from mocapd.vision.uncovered import UncoveredParams, uncovered
 
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
-_OUTLINE = np.ones((3, 3), np.uint8)
 _GAP = np.ones(
     (5, 5), np.uint8
 )  # what is narrower is a part of the body that looks like its background
@@ -37,7 +38,7 @@ class BackgroundParams:
     # of a shadow: which share of the light it leaves at least, and how far a channel may be off then, 0..255
     sure_shadow: tuple[float, float] = (0.5, 7.0)
     likely_shadow: tuple[float, float] = (0.25, 12.0)
-    least_uncovered_px: int = 60  # of a piece whose outline says anything
+    uncovered: UncoveredParams = field(default_factory=UncoveredParams)
     rate: float = 0.04  # share of a look, once it is known
     lamp_tolerance: float = 0.055  # of a channel, 0..1: what differs by more is in another light
     lamp_share: float = 0.2  # of the background that changes at once when a lamp does
@@ -83,26 +84,14 @@ class RoomBackground:
         off = np.abs(picture - self._mean).max(axis=-1)
         self._age[(body > 0) & (off <= self._params.tolerance)] = 0
 
-    def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes) -> None:
-        """Take for background what somebody uncovered who was learned with it: pieces of `before` (h,w) along whose outline
-        the background has the stronger edges, and not the picture (h,w,3) (Cucchiara et al. 2003 call them ghosts). They
-        become BACKGROUND in `before`. What lies within `body` (h,w) is not looked at."""
-        asked = (stands(before) & (body == 0)).astype(np.uint8)
-        n, numbered, stats, _ = cv2.connectedComponentsWithStats(asked)
-        if n < 2:
-            return
-        now, known = brightness_edges(picture), brightness_edges(self._mean.astype(np.uint8))
-        for k in range(1, n):
-            if stats[k, cv2.CC_STAT_AREA] < self._params.least_uncovered_px:
-                continue
-            x, y, w, h = stats[k, : cv2.CC_STAT_AREA].tolist()
-            about = np.s_[max(y - 1, 0) : y + h + 1, max(x - 1, 0) : x + w + 1]
-            mask = (numbered[about] == k).astype(np.uint8)
-            outline = cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0
-            if now[about][outline].sum() < known[about][outline].sum():
-                there = mask > 0
-                self._mean[about][there] = picture[about][there]
-                before[about][there] = BACKGROUND
+    def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:
+        """Take for background what `uncovered` says of a picture (h,w,3), of what stands before it (h,w), where it becomes
+        BACKGROUND, and of a body (h,w) and its arms (h,w)."""
+        ghosts = uncovered(
+            picture, self._mean.astype(np.uint8), before, body, arms, self._params.uncovered
+        )
+        self._mean[ghosts] = picture[ghosts]
+        before[ghosts] = BACKGROUND
 
     def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
         """By how much each channel (3,) became brighter when a lamp went on or off, whose light the background then takes;
@@ -164,12 +153,8 @@ class RoomBackground:
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
         one[kept == UNKNOWN] = UNKNOWN
         shaded = (one == BEFORE) & (kept >= SHADOW)
+        # a gap is of the body only between what is sure to be before
+        solid = cv2.morphologyEx((kept == BEFORE).astype(np.uint8), cv2.MORPH_CLOSE, _GAP)
+        one[(one == BEFORE) & (kept == BACKGROUND) & (solid == 0)] = CLOTH_OR_SHADOW
         one[shaded] = kept[shaded]
         return one
-
-
-def brightness_edges(picture: Bytes) -> Singles:
-    """How steep brightness is at each pixel (h,w) of a picture (h,w,3)."""
-    grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
-    across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
-    return np.asarray(np.abs(across) + np.abs(down), np.float32)

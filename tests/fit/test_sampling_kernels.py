@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from mocapd.fit.terms.sampling_kernels import N_GROUPS, spread_over_groups
+from mocapd.fit.terms.sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.types import Bytes, Ints
 
 pytestmark = pytest.mark.kernels
 
 
 def naive(
-    ids: Bytes, triangle_at: NDArray[np.int32], part: Bytes, edge: int, points: int, turn: int
+    ids: Bytes, triangle_at: NDArray[np.int32], part: Bytes, edge: int, points: Ints, turn: int
 ) -> Ints:
     """One group after the other, by numpy."""
     inside, e = ids > 0, edge
@@ -26,21 +26,21 @@ def naive(
     rows = [np.empty(0, np.int64)]
     for one in np.unique(which).tolist():
         mine = np.flatnonzero(which == one)
-        step = max(len(mine) // points, 1)
-        rows.append(mine[turn % step :: step][:points])
+        most = int(points[one // 16])
+        step = max(len(mine) // most, 1)
+        rows.append(mine[turn % step :: step][:most])
     picked = np.concatenate(rows)
     return np.stack([y[picked], x[picked]], axis=1)
 
 
-@given(st.integers(0, 2**32 - 1), st.integers(1, 12), st.integers(0, 500))
-def test_as_many_of_each_group_evenly_and_others_each_turn(
-    seed: int, points: int, turn: int
-) -> None:
+@given(st.integers(0, 2**32 - 1), st.integers(0, 500))
+def test_as_many_of_each_group_evenly_and_others_each_turn(seed: int, turn: int) -> None:
     rng = np.random.default_rng(seed)
+    points = rng.integers(1, 13, N_PARTS)
     ids = np.kron(rng.integers(0, 5, (4, 5)), np.ones((11, 9), int)).astype(np.uint8)
     part = rng.integers(0, 6, 40).astype(np.uint8)
     triangle_at = np.where(ids > 0, rng.integers(0, 40, ids.shape), -1).astype(np.int32)
-    out = np.empty((points * N_GROUPS, 2), np.int64)
+    out = np.empty((12 * N_GROUPS, 2), np.int64)
     n = spread_over_groups(ids, triangle_at, part, 2, points, turn, out)
     assert np.array_equal(out[:n], naive(ids, triangle_at, part, 2, points, turn))
 
@@ -48,4 +48,9 @@ def test_as_many_of_each_group_evenly_and_others_each_turn(
 def test_a_picture_smaller_than_its_edges_has_none() -> None:
     ids, triangle_at = np.ones((3, 4), np.uint8), np.zeros((3, 4), np.int32)
     out = np.empty((N_GROUPS, 2), np.int64)
-    assert spread_over_groups(ids, triangle_at, np.zeros(1, np.uint8), 2, 1, 0, out) == 0
+    assert (
+        spread_over_groups(
+            ids, triangle_at, np.zeros(1, np.uint8), 2, np.ones(N_PARTS, np.int64), 0, out
+        )
+        == 0
+    )

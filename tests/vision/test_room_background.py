@@ -42,7 +42,7 @@ def naive(pixel: np.ndarray, mean: np.ndarray) -> int:
     off = float(np.abs(a - share * m).max())
     if share < 1.0 and share > SURE[0] and off < SURE[1]:
         return SHADOW
-    if LIKELY[0] <= share < 1.0 and off < LIKELY[1]:
+    if LIKELY[0] <= share <= 1.0 / SURE[0] and off < LIKELY[1]:
         return CLOTH_OR_SHADOW
     return BEFORE
 
@@ -103,10 +103,59 @@ def test_what_somebody_uncovers_is_background_and_somebody_who_comes_is_not() ->
     now[10:50, 50:62] = (200, 60, 30)
     before = background.before(now)
     assert (before[12:48, 12:20] > 0).all()
-    background.take_uncovered(now, before, NOBODY)
+    background.take_uncovered(now, before, NOBODY, NOBODY)
     assert not before[:, :30].any()
     assert (before[12:48, 52:60] == BEFORE).all()
     assert not background.before(wall(71))[:, :30].any()
+
+
+def test_what_was_uncovered_beside_somebody_is_no_arm_though_one_was_fitted_to_it() -> None:
+    """A passer-by was learned with the room, and left a ghost that touches the wearer, whose arm is drawn into it."""
+    background = RoomBackground(H, W, BackgroundParams())
+    for seed in range(20):
+        occupied = wall(seed)
+        occupied[6:50, 14:32] = (30, 60, 200)
+        background.learn(occupied, NOBODY)
+    now, body, arms = wall(70), NOBODY.copy(), NOBODY.copy()
+    now[8:56, 32:44] = (200, 60, 30)
+    body[8:56, 32:44] = 1
+    arms[10:34, 26:32] = 1
+    body |= arms
+    before = background.before(now)
+    assert (before[12:48, 16:30] > 0).all()
+    background.take_uncovered(now, before, body, arms)
+    assert not before[:, :31].any()
+    assert (before[10:54, 34:42] == BEFORE).all()
+
+
+def test_an_arm_before_the_wall_is_not_taken_for_it() -> None:
+    background, now, body, arms = learned(), wall(70), NOBODY.copy(), NOBODY.copy()
+    now[8:56, 32:44] = (200, 60, 30)
+    now[12:18, 4:32] = (200, 60, 30)
+    body[8:56, 32:44] = 1
+    arms[12:18, 8:32] = 1
+    body |= arms
+    before = background.before(now)
+    background.take_uncovered(now, before, body, arms)
+    assert (before[13:17, 6:30] == BEFORE).all()
+
+
+def test_floor_that_a_shadow_left_may_be_brighter_and_is_not_somebody() -> None:
+    background = learned()
+    lit = np.clip(1.3 * wall(80).astype(float), 0, 255).astype(np.uint8)
+    picture = wall(80)
+    picture[40:56, 20:60] = lit[40:56, 20:60]
+    assert (background.before(picture)[42:54, 22:58] == CLOTH_OR_SHADOW).mean() > 0.95
+
+
+def test_gaps_in_a_shadow_are_no_cloth() -> None:
+    """Where a shadow is patchy, as on a wooden floor, what closes it is not surely somebody."""
+    background, picture = learned(), wall(81)
+    shaded = (0.65 * picture).astype(np.uint8)
+    rows, columns = np.mgrid[:H, :W]
+    patchy = (rows > 30) & ((rows + columns) % 6 < 3)
+    picture[patchy] = shaded[patchy]
+    assert not (background.before(picture)[34:] == BEFORE).any()
 
 
 def test_a_region_alone_is_looked_at_as_the_whole_is() -> None:

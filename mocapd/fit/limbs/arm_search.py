@@ -9,6 +9,7 @@ from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.pose_space import SIDES, PoseSpace
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
+from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
@@ -21,6 +22,7 @@ from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 _LIBRARY = 2048
+_EXCHANGE_ITERATIONS = 4  # both arms have a longer way than one that was searched
 
 
 class ArmSearch:
@@ -77,6 +79,12 @@ class ArmSearch:
             if better is not fit:
                 fit = better
                 changed.append(side)
+        if p.exchange_turns and turn % p.exchange_turns == 0:
+            start = with_arms_exchanged(self.fitter, fit.state, self.arms)
+            refit = partial(refit, iterations=_EXCHANGE_ITERATIONS)
+            exchanged = cheapest_fit(fit, [start], refit, self._cost_of_both, p.arm_gain)
+            if exchanged is not fit:
+                return exchanged, SIDES
         return fit, tuple(changed)
 
     def _candidates(self, state: MotionState, arm: Arm, views: Sequence[View], turn: int) -> Floats:
@@ -105,6 +113,14 @@ class ArmSearch:
         there = fit.state.local_xyzw[arm.chain[:3]]
         price = self._price(arm.side, there, here_xyzw)
         return fit.cost_for_any_pose + price - self._hand_px(arm, fit, views, empty)
+
+    def _cost_of_both(self, fit: Fit) -> float:
+        """Of a fit, with what the poses of its arms cost for being seldom seen."""
+        unusual = sum(
+            float(unusualness(fit.state.local_xyzw[None, arm.chain[:3]], self._usual[side])[0])
+            for side, arm in self.arms.items()
+        )
+        return fit.cost_for_any_pose + self.params.unusual_cost * unusual
 
     def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
         """How much of the hand is seen where this fit has it, in the measure of its cost."""

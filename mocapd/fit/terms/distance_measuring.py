@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.shaping import Shaped
+from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.terms.distance_term import MeasuredDistances
-from mocapd.fit.terms.sampling_kernels import N_GROUPS, spread_over_groups
+from mocapd.fit.terms.sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.fit.work_rays import pixels_as_delivered, work_rays
 from mocapd.geometry.camera_model import centre, project
 from mocapd.types import Bytes, Camera, Floats, Ints
@@ -23,6 +24,7 @@ class MeasuringParams:
     """How many points are tried, and which are believed."""
 
     points: int = 20  # tried on each part and region of the body that shows
+    leg_points: int = 20  # the same of legs, which have less texture
     reach_m: float = 0.4  # looked for so much nearer and farther than expected
     places: int = 19  # along the ray
     half_px: int = 6  # of a patch, in the pictures as delivered
@@ -49,7 +51,7 @@ def measured_distances(
     the points. What has no texture, or does not look alike, is left out.
     """
     p = params if params is not None else MeasuringParams()
-    y, x = _samples(drawn, drawing.model.part, p.points, turn)
+    y, x = _samples(drawn, drawing.model.part, p, turn)
     triangle = drawn[1][y, x].astype(np.int64)
     camera, scale = drawing.camera, drawing.image_scale
     at_y, at_x = y + corner[1], x + corner[0]
@@ -76,10 +78,15 @@ def measured_distances(
 
 
 def _samples(
-    drawn: tuple[Bytes, NDArray[np.int32]], part: NDArray[np.uint8], points: int, turn: int
+    drawn: tuple[Bytes, NDArray[np.int32]],
+    part: NDArray[np.uint8],
+    params: MeasuringParams,
+    turn: int,
 ) -> tuple[Ints, Ints]:
     """Rows and columns of pixels inside of the drawing, as many of each part's regions."""
-    places = np.empty((points * N_GROUPS, 2), np.int64)
+    points = np.full(N_PARTS, params.points)
+    points[[LEFT_LEG, RIGHT_LEG]] = params.leg_points
+    places = np.empty((int(points.sum()) * N_GROUPS // N_PARTS, 2), np.int64)
     n = spread_over_groups(*drawn, part, _EDGE_PX, points, turn, places)
     return places[:n, 0].copy(), places[:n, 1].copy()
 

@@ -5,7 +5,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 _IDS = 16  # of regions or colours, fewer than that
-N_GROUPS = 16 * _IDS  # parts of the body, fewer than 16, and ids of each
+N_PARTS = 16  # of the body, fewer than that
+N_GROUPS = N_PARTS * _IDS
 
 
 @njit(cache=True, nogil=True)
@@ -35,12 +36,12 @@ def spread_over_groups(
     triangle_at: NDArray[np.int32],
     part: NDArray[np.uint8],
     edge: int,
-    points: int,
+    points: NDArray[np.int64],
     turn: int,
     out: NDArray[np.int64],
 ) -> int:
-    """Fill out (points * N_GROUPS, 2) with rows and columns of pixels of ids (h,w), group after group, at most `points` of
-    each and evenly over it; how many there are.
+    """Fill out (N,2) with rows and columns of pixels of ids (h,w), group after group, of each at most the points (16,) of its
+    part and evenly over it; how many there are.
 
     A group is an id on a part, part (T,) of the triangles in triangle_at (h,w). Only pixels from whose place the body goes
     on for `edge` each way; turn: a running number, by which others are taken.
@@ -56,11 +57,12 @@ def spread_over_groups(
     place, end = np.empty(N_GROUPS, np.int64), np.empty(N_GROUPS, np.int64)
     total = 0
     for group in range(N_GROUPS):
-        step[group] = max(count[group] // points, 1)
+        most = points[group // _IDS]
+        step[group] = max(count[group] // most, 1)
         first[group] = turn % step[group]
         place[group] = total
         left = count[group] - first[group]
-        total += min((left + step[group] - 1) // step[group], points) if left > 0 else 0
+        total += min((left + step[group] - 1) // step[group], most) if left > 0 else 0
         end[group] = total
     count[:] = 0
     for y in range(edge, h - edge):

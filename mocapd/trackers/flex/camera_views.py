@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.clock import seconds
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.motion_state import MotionState
@@ -17,7 +18,8 @@ from mocapd.types import Bytes, FrameSet
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BEFORE, stands
 from mocapd.vision.frame_size import check_frame_size
-from mocapd.vision.room_background import RoomBackground, brightness_edges
+from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.uncovered import brightness_edges
 
 _ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
 _LINE = np.ones((3, 3), np.uint8)
@@ -154,11 +156,16 @@ class CameraViews:
         self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
 
     def take_uncovered(self) -> None:
-        """Take for background what stands before it by mistake; see `RoomBackground`."""
+        """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
 
         def take(i: int) -> None:
-            camera = self.each[i]
-            camera.background.take_uncovered(camera.picture, camera.before, camera.drawn)
+            camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
+            if camera.near is not None:
+                x0, y0, x1, y1 = camera.near
+                ids, triangles = self.fitter.drawings[i].last(camera.near)
+                part = self.fitter.model.part[np.maximum(triangles, 0)]
+                arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
+            camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
 
         self._each(take, self.present)
 

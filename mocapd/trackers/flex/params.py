@@ -49,7 +49,9 @@ class Params:
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0, arm_fits=3)
+        default_factory=lambda: LimbSearchParams(
+            hand_px=0.0, hand_cost=0.0, arm_fits=3, exchange_turns=2
+        )
     )
     legs: LegSearchParams = field(default_factory=LegSearchParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
@@ -60,7 +62,9 @@ class Params:
     turning: TurnWatchParams = field(default_factory=TurnWatchParams)
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     steadying: SteadyingParams = field(default_factory=SteadyingParams)
-    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(points=10))
+    distances: MeasuringParams = field(
+        default_factory=lambda: MeasuringParams(points=10, leg_points=24)
+    )
 
     depth_turns: int = 2  # from one look for depths to the next
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]

@@ -1,4 +1,4 @@
-"""The first pose: a silhouette before the known background, as somebody who faces the cameras and stands on the floor."""
+"""The first pose: a silhouette before the known background, as somebody who stands on the floor, whichever way."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,6 +20,7 @@ from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands
 
 _ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
+_PAST_RAD = 1.2  # to either side: one fit does not turn by a quarter
 _UPRIGHT = 0.85  # of the hips' height: two shadows, or pieces of one body, are explained by one that squats
 _ON_FLOOR_M = 0.25  # of both ankles on average: one foot may be raised, or both be on a step
 _ANKLES = [INDEX[side + "Foot"] for side in SIDES]
@@ -162,15 +163,24 @@ def first_fit(
     """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
     rest = fitter.shaper(factors).rest
     roughly: list[Fit] = []
-    for yaw in _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs]):
+
+    def fitted(yaw: float, arm: float) -> Fit:
+        state = MotionState(
+            rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
+        )  # fmt: skip
+        fit = fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
+        roughly.append(fit)
+        return fit
+
+    ways, aside = _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
+    costs = {}
+    for way in ways:
         for arm in params.arms_rad:
-            state = MotionState(
-                rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
-            )  # fmt: skip
-            roughly.append(
-                fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
-            )
+            costs[arm] = fitted(way, arm).cost
             yield
+    for way in aside:
+        fitted(way, min(costs, key=costs.__getitem__))
+        yield
     roughly.sort(key=lambda fit: fit.cost)
     refined: list[Fit] = []
     for one in roughly[: params.refined]:
@@ -191,15 +201,16 @@ def fit_to_blobs(
     return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
 
 
-def _ways(who: Standing, eyes_m: Sequence[Floats]) -> list[float]:
-    """Which way somebody may face [rad], 0 along +Z: the cameras, or any way where these stand all around."""
+def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
+    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side, or any way where these stand
+    all around."""
     away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
     away /= np.linalg.norm(away, axis=1, keepdims=True)
     middle = away.mean(axis=0)
     yaw = float(np.arctan2(middle[0], middle[1]))
     if np.linalg.norm(middle) > _ONE_SIDE:
-        return [yaw]
-    return [yaw + quarter * 0.5 * np.pi for quarter in range(4)]
+        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD]
+    return [yaw + quarter * 0.5 * np.pi for quarter in range(4)], []
 
 
 def _stance(yaw: float, arm: float) -> Floats:

@@ -305,6 +305,7 @@ class FlexTracker:
             return None, []
         fit, names = found
         self._cameras.mark_body(fit.state)
+        self._cameras.take_uncovered()
         self._cameras.doubt_background()
         self._learn_first(fit.state)
         return Followed(frames.t_ns, fit.state, fit, names), []

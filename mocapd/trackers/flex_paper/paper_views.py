@@ -72,7 +72,8 @@ class PaperView:
         self.background.follow_light(self._now.colour, self._body)
         self.before = self.background.before(self._now.colour)
         if uncovered:
-            self.background.take_uncovered(self._now.colour, self.before, self._body)
+            no_arms = np.zeros_like(self._body)
+            self.background.take_uncovered(self._now.colour, self.before, self._body, no_arms)
 
     def mark_body(self, ends_m: Floats | None, radii_m: Floats) -> None:
         """Where the parts of ends (C,2,3) and radii (C,2) [m] are, widened, nothing is learned as background, and they hide

@@ -1,0 +1,84 @@
+"""What somebody uncovered who was learned with the room: where they stood the picture differs from the background by mistake.
+
+Such a ghost has its outline in the background, and none in the picture (Cucchiara et al. 2003).
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.types import Bytes, Singles
+from mocapd.vision.foreground_kernels import stands
+
+_OUTLINE = np.ones((3, 3), np.uint8)
+_BODY_EDGE = np.ones((7, 7), np.uint8)  # half of it: how near to the body edges are the body's
+
+
+@dataclass(frozen=True, slots=True)
+class UncoveredParams:
+    """Which pieces are looked at, and when one is a ghost."""
+
+    least_px: int = 60  # of a piece whose outline says anything
+    # of a piece with an arm in it: how long its outline is at least, and the share of the background's edges it has at most
+    arm_outline_px: int = 100
+    arm_edges: float = 0.6
+
+
+def uncovered(
+    picture: Bytes,
+    background: Bytes,
+    before: Bytes,
+    body: Bytes,
+    arms: Bytes,
+    params: UncoveredParams,
+) -> NDArray[np.bool_]:
+    """Where ghosts are (h,w): pieces of what stands before the background along whose outline it has the stronger edges, and
+    not the picture (h,w,3 each).
+
+    before (h,w): as of `stands_before`. What lies within body (h,w) is not looked at, but for its arms (h,w), which may have
+    been fitted to a ghost.
+    """
+    there = stands(before)
+    if not there.any():
+        return there
+    edges = brightness_edges(picture), brightness_edges(background)
+    p, trunk = params, np.where(arms > 0, np.uint8(0), body)
+    with_arms = _ghosts(there, trunk, edges, p.least_px, p.arm_outline_px, p.arm_edges)
+    beside = _ghosts(there & ~with_arms, body, edges, p.least_px, 0, 1.0)
+    return with_arms | beside
+
+
+def _ghosts(
+    there: NDArray[np.bool_],
+    body: Bytes,
+    edges: tuple[Singles, Singles],
+    least_px: int,
+    least_outline_px: int,
+    share: float,
+) -> NDArray[np.bool_]:
+    """Pieces (h,w) of what is there beside the body; edges (h,w): of the picture, of which an outline must have less than
+    this share of those of the background."""
+    out = np.zeros_like(there)
+    n, numbered, stats, _ = cv2.connectedComponentsWithStats((there & (body == 0)).astype(np.uint8))
+    now, known = edges
+    away = cv2.dilate(body, _BODY_EDGE) == 0
+    for k in range(1, n):
+        if stats[k, cv2.CC_STAT_AREA] < least_px:
+            continue
+        x, y, w, h = stats[k, : cv2.CC_STAT_AREA].tolist()
+        about = np.s_[max(y - 1, 0) : y + h + 1, max(x - 1, 0) : x + w + 1]
+        mask = (numbered[about] == k).astype(np.uint8)
+        outline = (cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0) & away[about]
+        if outline.sum() >= least_outline_px:
+            is_ghost = now[about][outline].sum() < share * known[about][outline].sum()
+            out[about] |= (mask > 0) & is_ghost
+    return out
+
+
+def brightness_edges(picture: Bytes) -> Singles:
+    """How steep brightness is at each pixel (h,w) of a picture (h,w,3)."""
+    grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+    across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
+    return np.asarray(np.abs(across) + np.abs(down), np.float32)
