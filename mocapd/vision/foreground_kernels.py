@@ -23,8 +23,7 @@ def stands_before(
 
     picture (h,w,3); mean (h,w,3) 0..255 and age (h,w) of the background. A shadow is the background dimmed in all channels
     alike (Horprasert et al. 1999): `sure` and `likely` are to which share at least, and how far the colour may then be off.
-    A sure one is SHADOW, where cloth of the background's colour is seldom, a likely one CLOTH_OR_SHADOW; so is what is
-    as much brighter as a sure shadow is darker, where one was learned and has moved on.
+    A sure one is SHADOW, where cloth of the background's colour is seldom, a likely one CLOTH_OR_SHADOW.
     """
     h, w, _ = picture.shape
     for y in range(h):
@@ -43,12 +42,12 @@ def stands_before(
                 continue
             share = along / length2
             out[y, x] = BEFORE
-            if share < likely[0] or share > 1.0 / sure[0]:
+            if share >= 1.0 or share < likely[0]:
                 continue
             off = np.float32(0.0)
             for c in range(3):
                 off = max(off, abs(np.float32(picture[y, x, c]) - share * mean[y, x, c]))
-            if sure[0] < share < 1.0 and off < sure[1]:
+            if share > sure[0] and off < sure[1]:
                 out[y, x] = SHADOW
             elif off < likely[1]:
                 out[y, x] = CLOTH_OR_SHADOW

@@ -13,7 +13,6 @@ from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import (
     BACKGROUND,
     BEFORE,
-    CLOTH_OR_SHADOW,
     SHADOW,
     UNKNOWN,
     stands,
@@ -153,8 +152,5 @@ class RoomBackground:
         one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
         one[kept == UNKNOWN] = UNKNOWN
         shaded = (one == BEFORE) & (kept >= SHADOW)
-        # a gap is of the body only between what is sure to be before
-        solid = cv2.morphologyEx((kept == BEFORE).astype(np.uint8), cv2.MORPH_CLOSE, _GAP)
-        one[(one == BEFORE) & (kept == BACKGROUND) & (solid == 0)] = CLOTH_OR_SHADOW
         one[shaded] = kept[shaded]
         return one

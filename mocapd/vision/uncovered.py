@@ -43,26 +43,29 @@ def uncovered(
     there = stands(before)
     if not there.any():
         return there
-    edges = brightness_edges(picture), brightness_edges(background)
-    p, trunk = params, np.where(arms > 0, np.uint8(0), body)
-    with_arms = _ghosts(there, trunk, edges, p.least_px, p.arm_outline_px, p.arm_edges)
-    beside = _ghosts(there & ~with_arms, body, edges, p.least_px, 0, 1.0)
-    return with_arms | beside
+    p, pictures = params, (picture, background)
+    with_arms = np.zeros_like(there)
+    if arms.any():
+        trunk = np.where(arms > 0, np.uint8(0), body)
+        with_arms = _ghosts(there, trunk, pictures, p.least_px, p.arm_outline_px, p.arm_edges)
+    return with_arms | _ghosts(there & ~with_arms, body, pictures, p.least_px, 0, 1.0)
 
 
 def _ghosts(
     there: NDArray[np.bool_],
     body: Bytes,
-    edges: tuple[Singles, Singles],
+    pictures: tuple[Bytes, Bytes],
     least_px: int,
     least_outline_px: int,
     share: float,
 ) -> NDArray[np.bool_]:
-    """Pieces (h,w) of what is there beside the body; edges (h,w): of the picture, of which an outline must have less than
-    this share of those of the background."""
+    """Pieces (h,w) of what is there beside the body; pictures (h,w,3): of now, of whose edges an outline must have less than
+    this share of those of the background's."""
     out = np.zeros_like(there)
-    n, numbered, stats, _ = cv2.connectedComponentsWithStats((there & (body == 0)).astype(np.uint8))
-    now, known = edges
+    # this algorithm takes a third of the time of the usual one
+    n, numbered, stats, _ = cv2.connectedComponentsWithStatsWithAlgorithm(
+        (there & (body == 0)).astype(np.uint8), 8, cv2.CV_32S, cv2.CCL_BBDT
+    )
     away = cv2.dilate(body, _BODY_EDGE) == 0
     for k in range(1, n):
         if stats[k, cv2.CC_STAT_AREA] < least_px:
@@ -72,9 +75,18 @@ def _ghosts(
         mask = (numbered[about] == k).astype(np.uint8)
         outline = (cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0) & away[about]
         if outline.sum() >= least_outline_px:
-            is_ghost = now[about][outline].sum() < share * known[about][outline].sum()
-            out[about] |= (mask > 0) & is_ghost
+            now, known = (_edges_about(one, about)[outline].sum() for one in pictures)
+            out[about] |= (mask > 0) & (now < share * known)
     return out
+
+
+def _edges_about(picture: Bytes, about: tuple[slice, slice]) -> Singles:
+    """`brightness_edges` of a part of a picture (h,w,3)."""
+    rows, columns = about
+    y, x = max(rows.start - 1, 0), max(columns.start - 1, 0)
+    wider = brightness_edges(picture[y : rows.stop + 1, x : columns.stop + 1])
+    h, w = (min(s.stop, n) - s.start for s, n in zip(about, picture.shape, strict=False))
+    return wider[rows.start - y :, columns.start - x :][:h, :w]
 
 
 def brightness_edges(picture: Bytes) -> Singles:

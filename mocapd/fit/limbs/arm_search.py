@@ -81,8 +81,8 @@ class ArmSearch:
                 changed.append(side)
         if p.exchange_turns and turn % p.exchange_turns == 0:
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
-            refit = partial(refit, iterations=_EXCHANGE_ITERATIONS)
-            exchanged = cheapest_fit(fit, [start], refit, self._cost_of_both, p.arm_gain)
+            far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
+            exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, p.arm_gain)
             if exchanged is not fit:
                 return exchanged, SIDES
         return fit, tuple(changed)

@@ -6,13 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
-from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
-from mocapd.fit.limbs.reaching import poses_to
+from mocapd.fit.limbs.reaching import bends_to, bent
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
-from mocapd.geometry import rotations
-from mocapd.types import Floats
 
 
 def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, Arm]) -> MotionState:
@@ -21,23 +18,9 @@ def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, A
     local = state.local_xyzw.copy()
     for side, its in (SIDES, SIDES[::-1]):
         arm, other = arms[side], arms[its]
-        chain = arm.chain[:3]
-        poses = poses_to(
-            joints_m[other.chain[3:4]], joints_m, globals_, arm, state.local_xyzw[chain]
-        )
-        elbows_m = _elbows(poses, arm, joints_m, globals_)
-        nearest = np.linalg.norm(elbows_m - joints_m[other.chain[2]], axis=1).argmin()
-        local[chain] = poses[nearest]
+        shoulder, chain = joints_m[arm.chain[1]], arm.chain[:3]
+        elbow, hand = joints_m[other.chain[2:4]]
+        bends = bends_to(hand[None], joints_m, globals_, arm)
+        nearest = min(bends, key=lambda bend: float(np.linalg.norm(shoulder + bend[0] - elbow)))
+        local[chain] = bent(*nearest, joints_m, globals_, arm, state.local_xyzw[chain])[0]
     return replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))
-
-
-def _elbows(poses_xyzw: Floats, arm: Arm, joints_m: Floats, globals_xyzw: Floats) -> Floats:
-    """Where poses (N,3,4) of an arm with its present collar have the elbow (N,3)."""
-    collar, upper, elbow = arm.chain[:3]
-    fixed = rotations.multiply(globals_xyzw[PARENTS[collar]], poses_xyzw[:, 0])
-    present = rotations.inverse(globals_xyzw[upper])
-    along: Floats = rotations.rotate(present, joints_m[elbow] - joints_m[upper])
-    placed: Floats = joints_m[upper] + rotations.rotate(
-        rotations.multiply(fixed, poses_xyzw[:, 1]), along
-    )
-    return placed

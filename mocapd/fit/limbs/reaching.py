@@ -72,13 +72,20 @@ def poses_to(
     joints_m (J,3), globals_xyzw (J,4): of the body; present_xyzw (3,4): the arm's own, of which the collar stays. The
     forearm bends about its hinge, in the plane of shoulder, elbow and hand.
     """
+    bends = bends_to(hands_m, joints_m, globals_xyzw, arm)
+    return np.concatenate(
+        [bent(*bend, joints_m, globals_xyzw, arm, present_xyzw) for bend in bends]
+    )
+
+
+def bends_to(
+    hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm
+) -> list[tuple[Floats, Floats]]:
+    """Upper arms and forearms (T,3 each) [m] that bring the hand to each of hands_m (T,3), or as near as it reaches, one pair
+    for each way that the elbow is swivelled; others as `poses_to`."""
     shoulder, elbow, hand = joints_m[arm.chain[1:4]]
     upper_m, lower_m = np.linalg.norm(elbow - shoulder), np.linalg.norm(hand - elbow)
-    outwards = (
-        1.0 if arm.side == "left" else -1.0
-    )  # of the body's own x, along which an arm lies in the T-pose
     trunk = globals_xyzw[PARENTS[arm.chain[0]]]
-    collar = rotations.multiply(trunk, present_xyzw[0])
     way = hands_m - shoulder
     far_m = np.linalg.norm(way, axis=1)
     towards = way / np.maximum(far_m, _LEAST)[:, None]
@@ -87,22 +94,41 @@ def poses_to(
     radius_m = np.sqrt(np.maximum(upper_m**2 - middle_m**2, 0.0))
     below = _unit(towards * towards[:, 1:2] - [0.0, 1.0, 0.0])
     beside = np.cross(towards, below)
-    out_of_body = outwards * rotations.to_matrix(trunk)[:, 0]
+    out_of_body = _outwards(arm) * rotations.to_matrix(trunk)[:, 0]
     beside *= np.where(beside @ out_of_body > 0.0, 1.0, -1.0)[:, None]
-    poses = []
+    out = []
     for swivel in _SWIVELS_RAD:
         off_line = np.cos(swivel) * below + np.sin(swivel) * beside
         upper = middle_m[:, None] * towards + radius_m[:, None] * off_line
-        lower = far_m[:, None] * towards - upper
-        x = outwards / upper_m * upper
-        z = _unit(lower - (lower * x).sum(axis=1, keepdims=True) * x)
-        bend_rad = np.arctan2((lower * z).sum(axis=1), outwards * (lower * x).sum(axis=1))
-        frame = rotations.from_matrix(np.stack([x, np.cross(z, x), z], axis=2))
-        pose = np.repeat(present_xyzw[None], len(hands_m), axis=0)
-        pose[:, 1] = rotations.multiply(rotations.inverse(collar), frame)
-        pose[:, 2] = rotations.exp(bend_rad[:, None] * [0.0, -outwards, 0.0])
-        poses.append(pose)
-    return np.concatenate(poses)
+        out.append((upper, far_m[:, None] * towards - upper))
+    return out
+
+
+def bent(
+    upper: Floats,
+    lower: Floats,
+    joints_m: Floats,
+    globals_xyzw: Floats,
+    arm: Arm,
+    present_xyzw: Floats,
+) -> Floats:
+    """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `poses_to`."""
+    outwards = _outwards(arm)
+    collar = rotations.multiply(globals_xyzw[PARENTS[arm.chain[0]]], present_xyzw[0])
+    shoulder, elbow = joints_m[arm.chain[1:3]]
+    x = outwards / np.linalg.norm(elbow - shoulder) * upper
+    z = _unit(lower - (lower * x).sum(axis=1, keepdims=True) * x)
+    bend_rad = np.arctan2((lower * z).sum(axis=1), outwards * (lower * x).sum(axis=1))
+    frame = rotations.from_matrix(np.stack([x, np.cross(z, x), z], axis=2))
+    pose = np.repeat(present_xyzw[None], len(upper), axis=0)
+    pose[:, 1] = rotations.multiply(rotations.inverse(collar), frame)
+    pose[:, 2] = rotations.exp(bend_rad[:, None] * [0.0, -outwards, 0.0])
+    return pose
+
+
+def _outwards(arm: Arm) -> float:
+    """Of the body's own x, along which an arm lies in the T-pose."""
+    return 1.0 if arm.side == "left" else -1.0
 
 
 def _unit(v: Floats) -> Floats:

@@ -56,7 +56,8 @@ def test_hands_change_places_and_the_rest_stays(
 def test_elbows_come_as_near_to_the_others_as_the_swivels_tried() -> None:
     state = with_hands((0.0, 0.0, 0.4), (0.0, -0.25, 0.3))
     joints, globals_ = BY.joints(state)
-    after = BY.joints(with_arms_exchanged(BY, state, ARMS))[0]
+    exchanged = with_arms_exchanged(BY, state, ARMS)
+    after = BY.joints(exchanged)[0]
     for side, other in (SIDES, SIDES[::-1]):
         arm, its = ARMS[side], ARMS[other]
         tried = poses_to(
