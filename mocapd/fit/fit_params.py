@@ -86,8 +86,8 @@ class LimbSearchParams:
     hand_px: float = 1.0  # what a hand's pixel that is skin, or is not, counts beside a sleeve's
     hand_cost: float = 1.0  # the same beside the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
-    # from one try of each arm where the other is to the next, while one is uncertain; 0: colours tell them apart
-    exchange_turns: int = 0
+    # whether each is tried where the other is, too, in frames that know depths: these tell look-alikes apart
+    exchange: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -79,7 +79,7 @@ class ArmSearch:
             if better is not fit:
                 fit = better
                 changed.append(side)
-        if p.exchange_turns and turn % p.exchange_turns == 0:
+        if p.exchange and any(view.depth_m is not None for view in views):
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
             far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
             exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, p.arm_gain)

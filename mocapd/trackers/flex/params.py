@@ -50,7 +50,7 @@ class Params:
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
         default_factory=lambda: LimbSearchParams(
-            hand_px=0.0, hand_cost=0.0, arm_fits=3, exchange_turns=2
+            hand_px=0.0, hand_cost=0.0, arm_fits=3, exchange=True
         )
     )
     legs: LegSearchParams = field(default_factory=LegSearchParams)

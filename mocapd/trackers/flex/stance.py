@@ -20,6 +20,7 @@ from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands
 
 _ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
+_BESIDE = 0.99  # the same of cameras beside each other: less than 16 degrees between two
 _PAST_RAD = 1.2  # to either side: one fit does not turn by a quarter
 _UPRIGHT = 0.85  # of the hips' height: two shadows, or pieces of one body, are explained by one that squats
 _ON_FLOOR_M = 0.25  # of both ankles on average: one foot may be raised, or both be on a step
@@ -202,14 +203,15 @@ def fit_to_blobs(
 
 
 def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
-    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side, or any way where these stand
-    all around."""
+    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side where these stand beside each
+    other, as they see one side alone; or any way where these stand all around."""
     away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
     away /= np.linalg.norm(away, axis=1, keepdims=True)
     middle = away.mean(axis=0)
     yaw = float(np.arctan2(middle[0], middle[1]))
-    if np.linalg.norm(middle) > _ONE_SIDE:
-        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD]
+    together = np.linalg.norm(middle)
+    if together > _ONE_SIDE:
+        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD] if together > _BESIDE else []
     return [yaw + quarter * 0.5 * np.pi for quarter in range(4)], []
 
 
