@@ -71,22 +71,14 @@ def _ghosts(
         if stats[k, cv2.CC_STAT_AREA] < least_px:
             continue
         x, y, w, h = stats[k, : cv2.CC_STAT_AREA].tolist()
-        about = np.s_[max(y - 1, 0) : y + h + 1, max(x - 1, 0) : x + w + 1]
+        # an outline is a pixel wide, and what edges are there depends on one more
+        about = np.s_[max(y - 2, 0) : y + h + 2, max(x - 2, 0) : x + w + 2]
         mask = (numbered[about] == k).astype(np.uint8)
         outline = (cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0) & away[about]
         if outline.sum() >= least_outline_px:
-            now, known = (_edges_about(one, about)[outline].sum() for one in pictures)
+            now, known = (brightness_edges(one[about])[outline].sum() for one in pictures)
             out[about] |= (mask > 0) & (now < share * known)
     return out
-
-
-def _edges_about(picture: Bytes, about: tuple[slice, slice]) -> Singles:
-    """`brightness_edges` of a part of a picture (h,w,3)."""
-    rows, columns = about
-    y, x = max(rows.start - 1, 0), max(columns.start - 1, 0)
-    wider = brightness_edges(picture[y : rows.stop + 1, x : columns.stop + 1])
-    h, w = (min(s.stop, n) - s.start for s, n in zip(about, picture.shape, strict=False))
-    return wider[rows.start - y :, columns.start - x :][:h, :w]
 
 
 def brightness_edges(picture: Bytes) -> Singles:

@@ -12,7 +12,7 @@ from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
-from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
+from mocapd.fit.limbs.limb_scores import know_depths, score_arm_poses, score_hand_places
 from mocapd.fit.limbs.reaching import reaching_poses
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import arm_motions, unusualness
@@ -79,7 +79,7 @@ class ArmSearch:
             if better is not fit:
                 fit = better
                 changed.append(side)
-        if p.exchange and any(view.depth_m is not None for view in views):
+        if p.exchange and know_depths(views):
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
             far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
             exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, p.arm_gain)
@@ -116,10 +116,8 @@ class ArmSearch:
 
     def _cost_of_both(self, fit: Fit) -> float:
         """Of a fit, with what the poses of its arms cost for being seldom seen."""
-        unusual = sum(
-            float(unusualness(fit.state.local_xyzw[None, arm.chain[:3]], self._usual[side])[0])
-            for side, arm in self.arms.items()
-        )
+        local = fit.state.local_xyzw
+        unusual = sum(self._unusual(side, local[arm.chain[:3]]) for side, arm in self.arms.items())
         return fit.cost_for_any_pose + self.params.unusual_cost * unusual
 
     def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
@@ -133,9 +131,13 @@ class ArmSearch:
     def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
         """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""
         p = self.params
-        unusual = float(unusualness(there_xyzw[None], self._usual[side])[0])
+        unusual = self._unusual(side, there_xyzw)
         away_rad2 = float(turned_rad2(there_xyzw[None, 1:], here_xyzw[1:])[0])
         return p.unusual_cost * unusual + p.farther_px * away_rad2
+
+    def _unusual(self, side: str, pose_xyzw: Floats) -> float:
+        """`unusualness` of one pose (3,4)."""
+        return float(unusualness(pose_xyzw[None], self._usual[side])[0])
 
 
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:

@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.limbs.arm_samples import Arm
+from mocapd.fit.limbs.limb_fits import with_limb
 from mocapd.fit.limbs.reaching import bends_to, bent
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
@@ -15,12 +16,13 @@ from mocapd.fit.solver import Fitter
 def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, Arm]) -> MotionState:
     """Each hand where the other one is, or as near as it reaches, with the elbow beside the other's; arms: both, by side."""
     joints_m, globals_ = fitter.joints(state)
-    local = state.local_xyzw.copy()
+    exchanged = replace(state, velocity=np.zeros_like(state.velocity))
     for side, its in (SIDES, SIDES[::-1]):
         arm, other = arms[side], arms[its]
         shoulder, chain = joints_m[arm.chain[1]], arm.chain[:3]
         elbow, hand = joints_m[other.chain[2:4]]
         bends = bends_to(hand[None], joints_m, globals_, arm)
         nearest = min(bends, key=lambda bend: float(np.linalg.norm(shoulder + bend[0] - elbow)))
-        local[chain] = bent(*nearest, joints_m, globals_, arm, state.local_xyzw[chain])[0]
-    return replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))
+        poses = bent(*nearest, joints_m, globals_, arm, state.local_xyzw[chain])
+        exchanged = with_limb(exchanged, arm, poses[0])
+    return exchanged

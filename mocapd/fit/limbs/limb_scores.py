@@ -17,6 +17,11 @@ PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m
 _NO_DEPTHS = np.empty((0, 0), np.float32)
 
 
+def know_depths(views: Sequence[View]) -> bool:
+    """Whether some view tells what is before what, also where all looks alike."""
+    return any(view.depth_m is not None for view in views)
+
+
 def score_arm_poses(
     fitter: Fitter,
     state: MotionState,
@@ -43,7 +48,7 @@ def score_arm_poses(
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
     # an arm before a trunk that looks like it is told by depths
-    covered = 0.0 if any(view.depth_m is not None for view in views) else 1.0
+    covered = 0.0 if know_depths(views) else 1.0
     scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
     seen_px: Floats = PX_OF_M2 * scores
     return seen_px

@@ -2,6 +2,7 @@
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import cv2
 import numpy as np
@@ -163,28 +164,25 @@ def first_fit(
 ) -> Generator[None, None, Fit]:
     """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
     rest = fitter.shaper(factors).rest
-    roughly: list[Fit] = []
 
     def fitted(yaw: float, arm: float) -> Fit:
         state = MotionState(
             rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
         )  # fmt: skip
-        fit = fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
-        roughly.append(fit)
-        return fit
+        return fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
 
     ways, aside = _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
-    costs = {}
-    for way in ways:
-        for arm in params.arms_rad:
-            costs[arm] = fitted(way, arm).cost
-            yield
-    for way in aside:
-        fitted(way, min(costs, key=costs.__getitem__))
+    roughly: dict[tuple[float, float], Fit] = {}
+    for stance in product(ways, params.arms_rad):
+        roughly[stance] = fitted(*stance)
         yield
-    roughly.sort(key=lambda fit: fit.cost)
+    _, arm = min(roughly, key=lambda stance: roughly[stance].cost)
+    for way in aside:
+        roughly[way, arm] = fitted(way, arm)
+        yield
+    best = sorted(roughly.values(), key=lambda fit: fit.cost)
     refined: list[Fit] = []
-    for one in roughly[: params.refined]:
+    for one in best[: params.refined]:
         refined.append(fit_to_blobs(fitter, views, one.state, params.iterations, terms, params))
         yield
     return min(refined, key=lambda fit: fit.cost)
