@@ -106,6 +106,12 @@ class CameraRenderer:
         opened, closed = ([Body(pose, jacket)] for pose in shutter) if shutter else ([], [])
         return self._picture(there, opened, closed, levels, noise_key)
 
+    def picture_of_group(
+        self, opened: list[Body], closed: list[Body], levels: Floats, noise_key: int
+    ) -> Bytes:
+        """A picture of as many figures, the person first, moving between two sets of poses."""
+        return self._picture(tuple(range(len(opened))), opened, closed, levels, noise_key)
+
     def _there(self, t_s: float) -> tuple[int, ...]:
         """Who is in the picture: 0 the person, from 1 on the others."""
         others = range(1, len(self._figures))

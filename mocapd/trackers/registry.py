@@ -236,6 +236,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             reads_outline=True,
             compared_with={
                 "paper": ("flex_paper", FlexPaperSection()),
+                "no joints": ("flex", FlexSection(joints=False)),
                 "no texture": ("flex", FlexSection(texture=False)),
                 "no depths": ("flex", FlexSection(depths=False)),
                 "no floor": ("flex", FlexSection(floor=False)),

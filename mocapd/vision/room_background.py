@@ -64,6 +64,10 @@ class RoomBackground:
         """Whether too little was seen yet to tell who stands before it."""
         return self._looks < self._params.first_looks
 
+    def known_room(self) -> tuple[Singles, Bytes]:
+        """The empty room (h,w,3) in the present light, and where it is known (h,w)."""
+        return self._mean, (self._age >= self._params.known_looks).astype(np.uint8)
+
     def seed(self, picture: Bytes, body: Bytes) -> None:
         """Take a picture (h,w,3) for the background where `body` (h,w) is 0, as when a body is handed over."""
         beside = body == 0

@@ -42,7 +42,7 @@ def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
     """The scenario's motion for this skeleton."""
     keys = scenario.motion.keyframes
     times = np.array([key.t_s for key in keys])
-    local = np.stack([_local_rotvecs(key).ravel() for key in keys])
+    local = np.stack([local_rotvecs(key).ravel() for key in keys])
     root, turn = _root_track(keys)
     loop_s = scenario.loop_s
     rng = np.random.default_rng([scenario.seed, 1])
@@ -100,7 +100,7 @@ def pose_at(motion: Motion, t_s: float) -> Pose:
 
 def standing_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
     """One of POSES at the origin, with straight legs."""
-    local = rotations.exp(_local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
+    local = rotations.exp(local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
     local[0] = rotations.exp(np.array([0.0, heading_rad, 0.0]))
     root = np.array([0.0, skeleton.rest_m[0, 1], 0.0])
     return Pose(root, rotations.canonical(global_from_local(skeleton, local)))
@@ -158,7 +158,7 @@ def _root_track(keys: list[PoseKeyframe]) -> tuple[Floats, float]:
     return out, float(turn)
 
 
-def _local_rotvecs(key: PoseKeyframe) -> Floats:
+def local_rotvecs(key: PoseKeyframe) -> Floats:
     """Rotation vectors (J,3) [rad] relative to the parent bones."""
     pose = POSES[key.pose]
     out = np.zeros((N_JOINTS, 3))

@@ -41,6 +41,9 @@ def params_of(section: FlexSection | None) -> Params:
         live_explained=section.live_explained,
         start=replace(usual.start, accept_explained=section.accept_explained),
     )
+    if not section.joints:
+        term = replace(usual.joints.term, weight=0.0)
+        params = replace(params, joints=replace(usual.joints, term=term))
     if not section.texture:
         nothing = replace(usual.distances, least_alike=_MORE_THAN_SAME)
         params = replace(params, distances=nothing)

@@ -6,8 +6,10 @@ from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, 
 from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.trackers.flex.joint_view_params import JointViewParams
 from mocapd.trackers.flex.looks.appearance import AppearanceParams
 from mocapd.trackers.flex.rescue.face_watch import FaceWatchParams
+from mocapd.trackers.flex.rescue.seen_pose import SeenPoseParams
 from mocapd.trackers.flex.rescue.turn_watch import TurnWatchParams
 from mocapd.trackers.steadying import SteadyingParams
 from mocapd.vision.room_background import BackgroundParams
@@ -62,6 +64,8 @@ class Params:
     turning: TurnWatchParams = field(default_factory=TurnWatchParams)
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     steadying: SteadyingParams = field(default_factory=SteadyingParams)
+    joints: JointViewParams = field(default_factory=JointViewParams)
+    seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
     distances: MeasuringParams = field(
         default_factory=lambda: MeasuringParams(points=10, leg_points=24)
     )
@@ -107,5 +111,8 @@ class Params:
 
     # with the upper body known from another tracker
     guided_iterations: int = 3
+    guided_joint_turns: int = (
+        3  # from one look for joints to the next: it takes a quarter of a step
+    )
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03

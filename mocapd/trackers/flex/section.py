@@ -12,6 +12,7 @@ class FlexSection:
 
     live_explained: share of the drawn body and of what stands there that agree, for the pose to be believed
     accept_explained: the same of a silhouette that is taken for a person
+    joints: a network tells where in each picture the joints are
     texture: before cameras side by side, distances are measured by the cloth's texture
     depths: before such cameras, limbs are looked for where something is seen before the body
     floor: feet stand on the floor and are not under it
@@ -27,6 +28,7 @@ class FlexSection:
 
     live_explained: Annotated[float, Meta(gt=0.0, lt=1.0)] = 0.45
     accept_explained: Annotated[float, Meta(gt=0.0, lt=1.0)] = 0.75
+    joints: bool = True
     texture: bool = True
     depths: bool = True
     floor: bool = True

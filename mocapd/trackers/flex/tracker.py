@@ -18,11 +18,13 @@ from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
 from mocapd.trackers.depth_views import with_depths
 from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_views import JointViews
 from mocapd.trackers.flex.led import (
     LEGS,
     TAKEN_OVER_S,
@@ -80,6 +82,7 @@ class FlexTracker:
             self._silhouettes, self._floor, self._cameras, rig.cameras, p.start, now_ns
         )
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
+        self._joints = JointViews(len(rig.cameras), stature_m, p.joints)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = unprobed
         self._rehearse()
@@ -108,12 +111,13 @@ class FlexTracker:
         views = with_depths(
             self._fitter, somebody, views, FrameSet(0, black, 0), self.params.depths
         )
-        terms = self._terms(somebody, views, FrameSet(0, black, 0))
+        seen = self._joints.look(self._fitter, somebody, cameras)
+        terms = (*self._terms(somebody, views, FrameSet(0, black, 0)), *seen)
         fit = self._fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
         still, usual_sd = somebody.velocity, self._fitter.prediction_sd
         predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
         cameras.learn_appearance(somebody, views)
-        self._others.rehearse(self._dressed, somebody, views)
+        self._others.rehearse(self._dressed, somebody, views, seen)
 
     def reset(self, near: BodyState | None = None) -> None:
         """Forget pose, background and appearance. near: a body to be looked for where it is, before everywhere."""
@@ -202,7 +206,13 @@ class FlexTracker:
         self.probe("classify")
         if not views:
             return known, views
-        if self._turn % p.depth_turns == 0:
+        seen: tuple[JointTerm, ...] = ()
+        if (
+            self._turn % p.depth_turns
+        ):  # each of the two takes long: joints in frames without depths
+            seen = self._joints.look(fitter, predicted, self._cameras)
+            self.probe("joints")
+        else:
             views = with_depths(fitter, predicted, views, frames, p.depths)
         self.probe("depths")
         confirmed, columns = known.fit.confirmed_arms, self._model.space.columns
@@ -210,15 +220,15 @@ class FlexTracker:
             known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
             [(columns(f"{s}_arm"), min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
         )  # fmt: skip
-        terms = self._terms(predicted, views, frames)
+        terms = (*self._terms(predicted, views, frames), *seen)
         self.probe("distances")
         fit = fitter.fit(
             predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms,
         )  # fmt: skip
         self.probe("fit")
         fit, changed = self._others.improve(
-            self._dressed, fit, views, dt_s, frames, self._turn, terms,
-            lambda state: self._terms(state, views, frames), self.probe,
+            self._dressed, fit, views, dt_s, frames, self._turn, terms, seen,
+            lambda state: (*self._terms(state, views, frames), *seen), self.probe,
         )  # fmt: skip
         if not self._believed(fit):
             return known, views
@@ -248,8 +258,11 @@ class FlexTracker:
         if not views:
             return known, views
         terms: tuple[PoseTerm, ...] = (self._floor,)
+        seen: tuple[JointTerm, ...] = ()
         if not is_first:
-            terms = self._terms(predicted, views, frames, LEGS)
+            if self._turn % p.guided_joint_turns == 1:
+                seen = self._joints.look(fitter, predicted, cameras)
+            terms = (*self._terms(predicted, views, frames, LEGS), *seen)
         self.probe("distances")
         held = guided_information(p, fitter.prediction_sd, dt_s)
         # legs that were not seen before have a way to go
@@ -262,7 +275,7 @@ class FlexTracker:
         changed: tuple[str, ...] = ()
         if not is_first:
             fit, changed = self._others.other_legs(
-                self._dressed, fit, views, dt_s, self._turn, terms, held
+                self._dressed, fit, views, dt_s, self._turn, terms, seen, held
             )
             self.probe("legs")
         if is_first and fit.explained >= p.learn_explained:

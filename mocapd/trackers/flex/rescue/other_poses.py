@@ -9,6 +9,7 @@ from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe
@@ -21,6 +22,7 @@ from mocapd.trackers.flex.rescue.legs import (
     with_hips_below_chest,
     with_legs_exchanged,
 )
+from mocapd.trackers.flex.rescue.seen_pose import seen_pose, starts_as_seen
 from mocapd.trackers.flex.rescue.turn_watch import TurnWatch
 from mocapd.trackers.flex.rescue.turned import MIRRORED, UNDER_LIMBS, turned_round
 from mocapd.types import Floats, FrameSet
@@ -48,8 +50,16 @@ class OtherPoses:
         self._crossed_looks = 0
         self._turning.reset()
 
-    def rehearse(self, dressed: Dressed, state: MotionState, views: Sequence[View]) -> None:
+    def rehearse(
+        self,
+        dressed: Dressed,
+        state: MotionState,
+        views: Sequence[View],
+        seen: Sequence[JointTerm],
+    ) -> None:
         """Do everything once for nothing: what ordinary frames do not reach must not wait for its kernels."""
+        for one in seen:
+            seen_pose(dressed.fitter, state, one, (), self._params.seen_pose)
         dressed.arms.rehearse(state, views)
         dressed.legs.rehearse(state, views)
         self._facing.rehearse()
@@ -63,15 +73,19 @@ class OtherPoses:
         frames: FrameSet,
         turn: int,
         terms: Terms,
+        seen: Sequence[JointTerm],
         measured: Callable[[MotionState], Terms],
         probe: Probe,
     ) -> tuple[Fit, tuple[str, ...]]:
         """The fit, or a better one, and the parts of the body that changed over.
 
-        turn: a running number; terms: of the fit; measured: those of another pose, once it is drawn last into every view.
+        turn: a running number; terms: of the fit; seen: those of them that saw joints; measured: those of another pose, once
+        it is drawn last into every view.
         """
+        fit, limbs = self._as_seen(dressed.fitter, fit, views, dt_s, terms, seen, None)
+        probe("seen")
         fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
-        changed = [f"{side}_arm" for side in arms]
+        changed = [*limbs, *(f"{side}_arm" for side in arms)]
         probe("arms")
         self._facing.look(dressed.fitter, fit.state, views, frames, turn)
         if self._facing.is_turned:
@@ -87,9 +101,36 @@ class OtherPoses:
                 fit = other
                 changed.append(WHOLE)
         probe("face")
-        fit, legs = self.other_legs(dressed, fit, views, dt_s, turn, terms)
+        fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, None)
         probe("legs")
         return fit, (*changed, *legs)
+
+    def _as_seen(
+        self,
+        fitter: Fitter,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        terms: Terms,
+        seen: Sequence[JointTerm],
+        motion: Floats | None,
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """The fit, or one that begins where the joints were seen, and the limbs that changed over; motion: of every fit,
+        where an upper body leads and legs alone may change."""
+        p = self._params.seen_pose
+        held = [one for one in terms if not one.is_measured and one not in seen]
+        for one in seen:
+            starts, limbs = starts_as_seen(fitter, fit, one, held, p, legs_alone=motion is not None)
+            better = cheapest_fit(
+                fit, starts,
+                lambda start: fitter.fit(
+                    start, views, dt_s, p.fit_iterations, learn_shape=False, fine=1, motion=motion, terms=terms
+                ),
+                lambda fitted: fitted.cost_for_any_pose, p.gain,
+            )  # fmt: skip
+            if better is not fit:
+                return better, limbs
+        return fit, ()
 
     def other_legs(
         self,
@@ -99,9 +140,25 @@ class OtherPoses:
         dt_s: float,
         turn: int,
         terms: Terms,
-        motion: Floats | None = None,
+        seen: Sequence[JointTerm],
+        motion: Floats,
     ) -> tuple[Fit, tuple[str, ...]]:
-        """As `improve`, of the legs alone; motion: of every fit, as where an upper body leads."""
+        """As `improve`, of the legs alone; motion: of every fit, where an upper body leads."""
+        fit, limbs = self._as_seen(dressed.fitter, fit, views, dt_s, terms, seen, motion)
+        fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, motion)
+        return fit, (*limbs, *legs)
+
+    def _searched_legs(
+        self,
+        dressed: Dressed,
+        fit: Fit,
+        views: Sequence[View],
+        dt_s: float,
+        turn: int,
+        terms: Terms,
+        motion: Floats | None,
+    ) -> tuple[Fit, tuple[str, ...]]:
+        """The fit, or one with other legs, and those that changed over."""
         fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms, motion)
         hips_too = motion is None
         apart = self._legs_apart(dressed.fitter, fit, views, dt_s, turn, terms, hips_too)

@@ -1,0 +1,1 @@
+"""Pictures of random people, on which the network of heatmaps is trained."""

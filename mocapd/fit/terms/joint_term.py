@@ -1,0 +1,110 @@
+"""Joints that a network saw in pictures: each near the ray to where it was seen, and as much farther away than the hips."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.arrays import PosedJoints
+from mocapd.body.model import BodyModel
+from mocapd.body.shaping import Shaped
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.terms.joint_rows_kernels import pull_at_joints
+from mocapd.geometry.camera_model import from_camera, to_camera
+from mocapd.types import Camera, Floats, Ints
+
+_TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLeg")]
+
+
+@dataclass(frozen=True, slots=True)
+class JointTermParams:
+    """How much the joints count that a network saw. It errs alike in cameras beside each other, and from frame to frame."""
+
+    weight: float = 4.0  # of a squared Mahalanobis distance [disagreeing pixels]
+    robust: float = 3.0  # standard deviations at which a joint has a quarter of its weight
+    depth_weight: float = 0.5  # of its depth beside its place
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointRays:
+    """What one camera saw of joints (J,), at the frame set's own instant.
+
+    xy (J,2): undistorted normalised coordinates, with information (J,3) xx, xy, yy [1/m^2] across the ray; farther_m (J,):
+    than the hips along the camera's axis, with depth_information (J,) [1/m^2].
+    """
+
+    camera: Camera
+    joints: Ints
+    xy: Floats
+    information: Floats
+    farther_m: Floats
+    depth_information: Floats
+
+
+class JointTerm:
+    """What the cameras of one frame set saw of one body's joints, a `PoseTerm`."""
+
+    is_measured = False
+
+    def __init__(
+        self, model: BodyModel, seen: Sequence[JointRays], params: JointTermParams | None = None
+    ) -> None:
+        self._model, self.seen = model, seen
+        self._params = params if params is not None else JointTermParams()
+        self._rows = np.zeros((4, model.n_pose))
+
+    @property
+    def trusting(self) -> "JointTerm":
+        """The same for a pose that is far away: no joint is taken for another thing."""
+        return JointTerm(self._model, self.seen, replace(self._params, robust=1e6))
+
+    def costs(self, joints_m: Floats) -> Floats:
+        """What each joint (J,) of a body at joints_m (J,3) costs."""
+        p, out = self._params, np.zeros(len(joints_m))
+        for one in self.seen:
+            place2, depth2 = _mahalanobis2(one, joints_m)
+            for m2, weight in ((place2, p.weight), (depth2, p.weight * p.depth_weight)):
+                out[one.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
+        return out
+
+    def turn_rad(self, joints_m: Floats) -> float:
+        """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too
+        little of its trunk was."""
+        seen, mine = np.zeros(3), np.zeros(3)
+        for one in self.seen:
+            place = {int(joint): k for k, joint in enumerate(one.joints)}
+            hips_z = to_camera(one.camera, joints_m[:1])[0, 2]
+            for left, right in _TRUNK:
+                if left in place and right in place:
+                    ends = [place[left], place[right]]
+                    rays = np.concatenate([one.xy[ends], np.ones((2, 1))], axis=1)
+                    there_m = from_camera(
+                        one.camera, rays * (hips_z + one.farther_m[ends])[:, None]
+                    )
+                    seen += there_m[0] - there_m[1]
+                    mine += joints_m[left] - joints_m[right]
+        turn = np.arctan2(mine[2], mine[0]) - np.arctan2(seen[2], seen[0])
+        return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if seen.any() else 0.0
+
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+        """See `PoseTerm`."""
+        m, p = self._model, self._params
+        cost = 0.0
+        for one in self.seen:
+            cost += pull_at_joints(
+                one.joints, one.xy, one.information, one.farther_m, one.depth_information,
+                (p.weight, p.robust, p.depth_weight), one.camera.R, one.camera.t_m, body.rest, m.parents,
+                m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, self._rows, H, b,
+            )  # fmt: skip
+        return cost
+
+
+def _mahalanobis2(seen: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:
+    """Of each joint that was seen (N,), squared: of its place across the ray, and of its depth beside the hips'."""
+    there = to_camera(seen.camera, joints_m)
+    z = there[seen.joints, 2]
+    off = seen.xy * z[:, None] - there[seen.joints, :2]
+    xx, xy, yy = seen.information.T
+    place2 = xx * off[:, 0] ** 2 + 2.0 * xy * off[:, 0] * off[:, 1] + yy * off[:, 1] ** 2
+    depth2 = seen.depth_information * (seen.farther_m - (z - there[0, 2])) ** 2
+    return place2, depth2

@@ -1,0 +1,115 @@
+"""What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointRays, JointTerm
+from mocapd.geometry.camera_model import to_camera, undistort
+from mocapd.trackers.flex.camera_views import CameraView, CameraViews
+from mocapd.trackers.flex.joint_view_params import JointViewParams
+from mocapd.types import Floats
+from mocapd.vision.heatmaps.joint_network import (
+    CELLS,
+    INPUT_PX,
+    JOINTS,
+    MIDDLE,
+    SIDE_M,
+    STATURE_M,
+    JointNetwork,
+)
+
+_JOINTS = np.array([INDEX[name] for name in JOINTS])
+_HIPS, _NECK = INDEX["hips"], INDEX["neck"]
+_NEAREST_M = 0.5
+_CELL_PX = INPUT_PX / CELLS
+_GREY = (127.5, 127.5, 127.5)
+
+
+class JointViews:
+    """One network for each camera."""
+
+    def __init__(
+        self, count: int, stature_m: float, params: JointViewParams, path: Path | None = None
+    ) -> None:
+        """count: of cameras; path: as `JointNetwork`."""
+        self._networks = [JointNetwork(path) for _ in range(count)]
+        self._size, self._params = stature_m / STATURE_M, params
+
+    def look(
+        self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
+    ) -> tuple[JointTerm, ...]:
+        """The joints of a body that is expected here, as a term of its fit; none where they do not count."""
+        if self._params.term.weight == 0.0:
+            return ()
+        here_m, _ = fitter.joints(predicted)
+
+        def see(i: int) -> JointRays | None:
+            late_s, there_m = cameras.present[i], here_m
+            if late_s:
+                root_m, local = moved(fitter.model, predicted, late_s)
+                there_m, _ = fitter.joints(replace(predicted, root_m=root_m, local_xyzw=local))
+            return self._rays(fitter, i, cameras.each[i], here_m, there_m)
+
+        seen = [one for one in fitter.each(see, cameras.present) if one is not None]
+        return (JointTerm(fitter.model, seen, self._params.term),)
+
+    def _rays(
+        self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
+    ) -> JointRays | None:
+        """here_m (J,3): the joints at the frame set's instant, there_m (J,3) at the camera's own."""
+        p, size, drawing = self._params, self._size, fitter.drawings[index]
+        camera, k = drawing.camera, drawing.image_scale
+        in_camera = to_camera(camera, there_m)
+        middle = in_camera[_HIPS] + MIDDLE * (in_camera[_NECK] - in_camera[_HIPS])
+        if middle[2] < _NEAREST_M:
+            return None
+        focal = np.array([camera.K[0, 0], camera.K[1, 1]])
+        at_px = (middle[:2] / middle[2] * focal + camera.K[:2, 2] + 0.5) / k - 0.5
+        side_px = SIDE_M * size * focal[0] / k / middle[2]
+        scale = INPUT_PX / side_px
+        corner = INPUT_PX / 2 - 0.5 - scale * at_px
+        seen = self._networks[index].look(*_crop(view, scale, corner))
+        crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
+        frame_px = ((crop_px - corner) / scale + 0.5) * k - 0.5
+        xy = undistort(camera.dist, (frame_px - camera.K[:2, 2]) / focal)
+        # what moved until this camera's own exposure
+        moved_m = in_camera - to_camera(camera, here_m)
+        xy = xy - moved_m[_JOINTS, :2] / middle[2]
+        inside = (
+            (seen.at_cells > p.inside_cells) & (seen.at_cells < CELLS - 1 - p.inside_cells)
+        ).all(axis=1)
+        inside &= ((frame_px >= 0) & (frame_px < camera.size_px)).all(axis=1)
+        cell_m = SIDE_M * size / CELLS
+        information = _inverse(seen.spread_cells2, p) / cell_m**2
+        sd_m = np.maximum(p.laplace * seen.scale_m * size, p.least_depth_m)
+        return JointRays(
+            camera, _JOINTS[inside], xy[inside], information[inside],
+            size * seen.farther_m[inside], (1.0 / sd_m**2)[inside],
+        )  # fmt: skip
+
+
+def _crop(
+    view: CameraView, scale: float, corner: Floats
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    M = np.array([[scale, 0.0, corner[0]], [0.0, scale, corner[1]]])
+    size = (INPUT_PX, INPUT_PX)
+    room, known = view.background.known_room()
+    picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+    background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+    there = cv2.warpAffine(known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
+    return picture, background, there
+
+
+def _inverse(spread_cells2: Floats, p: JointViewParams) -> Floats:
+    """Information (J,3) of spreads (J,3), both xx, xy, yy."""
+    xx = np.maximum(spread_cells2[:, 0] - p.blur_cells2, 0.0) + p.least_cells2
+    yy = np.maximum(spread_cells2[:, 2] - p.blur_cells2, 0.0) + p.least_cells2
+    xy = np.clip(spread_cells2[:, 1], -0.9 * np.sqrt(xx * yy), 0.9 * np.sqrt(xx * yy))
+    determinant = xx * yy - xy * xy
+    return np.stack([yy / determinant, -xy / determinant, xx / determinant], axis=1)

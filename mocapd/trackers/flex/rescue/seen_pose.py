@@ -1,0 +1,97 @@
+"""The pose that the network's joints say: where a limb, or which way the body faces, is far from it, that is tried."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+
+# Of each limb: the bones whose rotations are taken, and the joints that tell whether it is there
+_LIMBS = {
+    f"{side}_{limb}": (
+        np.array([INDEX[side + bone] for bone in bones]),
+        np.array([INDEX[side + joint] for joint in joints]),
+    )
+    for side in SIDES
+    for limb, bones, joints in (
+        ("arm", ("Shoulder", "UpperArm", "LowerArm"), ("LowerArm", "Hand")),
+        ("leg", ("UpperLeg", "LowerLeg", "Foot"), ("LowerLeg", "Foot")),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SeenPoseParams:
+    """When a limb, or all of the body, is tried where the network has it."""
+
+    limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
+    whole_cost: float = 150.0
+    turned_rad: float = 0.6  # from where it faces, above which the body is turned first
+    iterations: int = 6  # towards the joints
+    fit_iterations: int = 4  # of a fit that begins there
+    loose_s: float = 0.3  # held as loosely as a prediction over this time
+    gain: float = 5.0  # by how much the cost must fall to change over [disagreeing pixels]
+
+
+def starts_as_seen(
+    fitter: Fitter,
+    fit: Fit,
+    seen: JointTerm,
+    held: Sequence[PoseTerm],
+    params: SeenPoseParams,
+    legs_alone: bool = False,
+) -> tuple[list[MotionState], tuple[str, ...]]:
+    """Where a fit may begin anew: with the limbs that are far from there as they were seen, with all of the body; and these
+    limbs. held: what else holds the pose that the joints say; legs_alone: the rest of the body is known."""
+    p, costs = params, seen.costs(fitter.joints(fit.state)[0])
+    far = {
+        name: costs[joints].sum()
+        for name, (_, joints) in _LIMBS.items()
+        if not legs_alone or name.endswith("leg")
+    }
+    whole = not legs_alone and costs.sum() > p.whole_cost
+    if max(far.values()) <= p.limb_cost and not whole:
+        return [], ()
+    there = seen_pose(fitter, fit.state, seen, held, p)
+    costs_there = seen.costs(fitter.joints(there)[0])
+    limbs = tuple(
+        name
+        for name, cost in far.items()
+        if cost - costs_there[_LIMBS[name][1]].sum() > p.limb_cost
+    )
+    starts = []
+    if limbs:
+        local = fit.state.local_xyzw.copy()
+        for name in limbs:
+            bones = _LIMBS[name][0]
+            local[bones] = there.local_xyzw[bones]
+        starts.append(replace(fit.state, local_xyzw=local))
+    if whole and costs.sum() - costs_there.sum() > p.whole_cost:
+        starts.append(there)
+    return starts, limbs
+
+
+def seen_pose(
+    fitter: Fitter,
+    state: MotionState,
+    seen: JointTerm,
+    held: Sequence[PoseTerm],
+    params: SeenPoseParams,
+) -> MotionState:
+    """What the joints alone say, from this state on."""
+    turn_rad = seen.turn_rad(fitter.joints(state)[0])
+    if abs(turn_rad) > params.turned_rad:
+        local = state.local_xyzw.copy()
+        local[0] = rotations.multiply(rotations.exp(np.array([0.0, turn_rad, 0.0])), local[0])
+        state = replace(state, local_xyzw=rotations.canonical(local))
+    terms = (*held, seen.trusting)
+    return fitter.fit(
+        state, (), params.loose_s, params.iterations, learn_shape=False, terms=terms
+    ).state

@@ -1,0 +1,64 @@
+"""Heatmaps of a person's joints in a small picture of it, by a convolutional network.
+
+One map a joint, as Tompson et al. 2014 (Joint training of a convolutional network and a graphical model for human pose
+estimation), read by its moments (Sun et al. 2018, Integral human pose regression); and how much farther away than the hips
+each joint is, with the scale of a Laplace distribution. It was trained on pictures of the simulator alone, of random people
+in random clothes, rooms and lights (`training/` in the checkout, `mocapd.evaluate.heatmaps`).
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mocapd.assets import asset_path
+from mocapd.types import Bytes, Floats, Singles
+from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
+
+# In the order of the maps. A joint has a left and a right one side by side
+JOINTS = (
+    "head", "neck", "hips", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm", "leftHand", "rightHand",
+    "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot",
+)  # fmt: skip
+INPUT_PX = 96
+CELLS = 24  # of a map, each way
+STATURE_M = 1.75  # of a person, to which all sizes are brought
+SIDE_M = 2.4  # of what the input shows, at the distance of the body
+MIDDLE = 0.3  # of the way from hips to neck, which is in the middle of the input
+_FILE = "joint_heatmaps.onnx"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenJoints:
+    """The joints of one picture.
+
+    at_cells (J,2): mean x, y of each map, the middle of the first cell being 0; spread_cells2 (J,3): its variances xx, xy,
+    yy; farther_m (J,): than the hips, of somebody 1.75 m tall, with the scale_m (J,) of its Laplace distribution.
+    """
+
+    at_cells: Floats
+    spread_cells2: Floats
+    farther_m: Floats
+    scale_m: Floats
+
+
+class JointNetwork:
+    """The network with buffers of its own; used by one thread."""
+
+    def __init__(self, path: Path | None = None) -> None:
+        """path: of the trained network, the one that comes with mocapd when None."""
+        file = path if path is not None else asset_path(_FILE)
+        # half the time of OpenCV's newer engine for a network this small
+        self._net = cv2.dnn.readNetFromONNX(str(file), cv2.dnn.ENGINE_CLASSIC)
+        self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
+
+    def look(self, picture: Bytes, background: Singles, known: Bytes) -> SeenJoints:
+        """Of a picture (96,96,3) about a person; background (96,96,3): the room without it, where that is known (96,96)."""
+        fill_input(picture, background, known, self._input[0])
+        self._net.setInput(self._input)
+        maps = np.ascontiguousarray(self._net.forward()[0])
+        n = len(JOINTS)
+        out = np.empty((n, 7))
+        read_maps(maps, n, out)
+        return SeenJoints(out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy())

@@ -1,0 +1,99 @@
+"""Joints that were seen: rows that are derivatives, costs told by joint, and bodies that go where they were seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.motion_state import stepped
+from mocapd.fit.terms.joint_term import JointRays, JointTerm, JointTermParams
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import to_camera
+from mocapd.types import Floats
+from tests.fit.test_pose_terms import BODY, CAMERAS, ROOT, bent, posed, relaxed, settled, system
+
+pytestmark = pytest.mark.kernels
+
+SEEN = np.array(
+    [INDEX[n] for n in ("hips", "leftHand", "rightLowerArm", "leftFoot", "rightUpperArm")]
+)
+
+
+def seen_at(joints_m: Floats, off: float = 0.0, which: np.ndarray = SEEN) -> list[JointRays]:
+    """What both cameras see of some joints, each a little beside."""
+    out = []
+    for k, camera in enumerate(CAMERAS):
+        rng = np.random.default_rng(k)
+        there = to_camera(camera, joints_m)
+        xy = there[which, :2] / there[which, 2:] + rng.normal(0.0, off, (len(which), 2))
+        information = np.tile([400.0, 120.0, 300.0], (len(which), 1))
+        farther_m = there[which, 2] - there[0, 2] + rng.normal(0.0, off, len(which))
+        out.append(JointRays(camera, which, xy, information, farther_m, np.full(len(which), 90.0)))
+    return out
+
+
+def test_rows_are_the_derivatives_of_the_cost() -> None:
+    local = bent()
+    term = JointTerm(BODY, seen_at(posed(ROOT, local).joints, 0.002), JointTermParams(robust=100.0))
+    cost, H, b = system(term, ROOT, local)
+    assert cost > 0.0
+    assert np.allclose(H, H.T)
+    for k in range(BODY.n_pose):
+        ends = []
+        for sign in (1.0, -1.0):
+            step = np.zeros(BODY.n_pose)
+            step[k] = sign * 1e-6
+            ends.append(system(term, *stepped(BODY, ROOT, local, step))[0])
+        slope = (ends[0] - ends[1]) / 2e-6
+        assert slope == pytest.approx(-2.0 * b[k], rel=0.03, abs=5e-3 * np.abs(b).max())
+
+
+def test_what_each_joint_costs_adds_up_to_the_cost() -> None:
+    local = bent()
+    joints_m = posed(ROOT, local).joints
+    lower = np.setdiff1d(SEEN, [0])  # the hips' own depth is nothing beside themselves
+    term = JointTerm(BODY, seen_at(joints_m, 0.05, lower))
+    costs = term.costs(joints_m)
+    assert costs.sum() == pytest.approx(system(term, ROOT, local)[0])
+    assert np.flatnonzero(costs).tolist() == sorted(lower.tolist())
+
+
+def test_a_body_goes_to_where_its_joints_were_seen() -> None:
+    local = relaxed()
+    raised = local.copy()
+    raised[INDEX["leftUpperArm"]] = rotations.exp(np.array([0.0, -0.5, 0.4]))
+    goal = posed(ROOT + [0.05, 0.0, 0.03], raised).joints
+    arm = [INDEX[n] for n in ("leftLowerArm", "leftHand")]
+    everything = np.arange(N_JOINTS)
+    term = JointTerm(BODY, seen_at(goal, 0.0, everything)).trusting
+    root, there = settled(term, ROOT, local)
+    reached = posed(root, there).joints
+    assert np.linalg.norm(reached[arm] - goal[arm], axis=1).max() < 0.05
+
+
+def test_a_joint_that_is_elsewhere_hardly_pulls() -> None:
+    local = relaxed()
+    joints_m = posed(ROOT, local).joints
+    moved = joints_m.copy()
+    moved[INDEX["leftHand"], 0] += 1.5
+    _, _, robust = system(JointTerm(BODY, seen_at(moved)), ROOT, local)
+    _, _, trusting = system(JointTerm(BODY, seen_at(moved)).trusting, ROOT, local)
+    assert np.abs(robust).max() < 0.02 * np.abs(trusting).max()
+
+
+@pytest.mark.parametrize("turn_rad", [0.0, 0.9, -2.5, 3.0])
+def test_which_way_the_trunk_was_seen_to_face(turn_rad: float) -> None:
+    local = relaxed()
+    turned = local.copy()
+    turned[0] = rotations.exp(np.array([0.0, turn_rad, 0.0]))
+    goal = posed(ROOT, turned).joints
+    trunk = np.array([INDEX[s + j] for j in ("UpperArm", "UpperLeg") for s in ("left", "right")])
+    here_m = posed(ROOT, local).joints
+    assert JointTerm(BODY, seen_at(goal, 0.0, trunk)).turn_rad(here_m) == pytest.approx(
+        turn_rad, abs=0.02
+    )
+    nothing = [
+        replace(one, joints=one.joints[:0], xy=one.xy[:0]) for one in seen_at(goal, 0.0, trunk)
+    ]
+    assert JointTerm(BODY, nothing).turn_rad(here_m) == 0.0

@@ -1,0 +1,75 @@
+"""What cameras see of a person's joints: near the true ones, and told as rays."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.skeleton import INDEX, local_from_global
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter
+from mocapd.geometry.camera_model import to_camera
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.world import World, rig_of
+from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_views import JointViews
+from mocapd.trackers.flex.params import Params
+from mocapd.types import Frame, FrameSet
+from tests.sim import small
+
+pytestmark = pytest.mark.kernels
+
+T_NS = 1_000_000_000
+
+
+def test_joints_of_somebody_are_seen_where_they_are() -> None:
+    table = small.table()
+    for camera in table["cameras"]:
+        camera |= {"size_px": [320, 240], "dropped": 0.0, "clock_offset_s": 0.0}
+    for light in table["lights"]:
+        light["events"] = []
+    table["motion"] = {
+        "keyframes": [{"t_s": 0.0, "pose": "goalpost", "at_m": [0.1, 0.1], "yaw_deg": 10.0}]
+    }
+    table["clothes"] = {"shirt": "plain", "top_srgb": [150, 60, 60]}
+    table["body"] = {"whole": True}
+    scenario = small.scenario(**table)
+    world, rig = World(scenario), rig_of(scenario)
+    renderers = camera_renderers(world)
+    body = build_model(world.shape.stature_m, full_body())
+    fitter = Fitter(body, rig.cameras, [1] * len(rig.cameras), FitParams())
+    cameras = CameraViews(fitter, Params())
+    cameras.reset()
+    levels = np.ones(len(table["lights"]))
+    for k in range(22):
+        cameras.look(_set({r.camera.name: r.picture(None, levels, k) for r in renderers}, k))
+        cameras.mark_body(None)
+        cameras.learn_background()
+    cameras.look(_set({r.camera.name: r.frame(0) for r in renderers}, 30))
+    truth = world.at(renderers[0].exposure_s(0))
+    state = MotionState(
+        truth.pose.root_m + [0.06, 0.0, -0.05], local_from_global(world.skeleton, truth.pose.quats_xyzw),
+        np.zeros(body.n_pose), np.ones(body.n_shape), initial_information(body.space),
+    )  # fmt: skip
+    (term,) = JointViews(len(rig.cameras), world.shape.stature_m, Params().joints).look(
+        fitter, state, cameras
+    )
+    assert len(term.seen) == len(rig.cameras)
+    off_cm = []
+    for one in term.seen:
+        there = to_camera(one.camera, truth.joints_m)
+        z = there[one.joints, 2]
+        off_cm.append(100.0 * np.linalg.norm(one.xy * z[:, None] - there[one.joints, :2], axis=1))
+        assert {INDEX["head"], INDEX["hips"], INDEX["leftHand"]} <= set(one.joints.tolist())
+    assert np.median(np.concatenate(off_cm)) < 5.0
+    assert np.percentile(np.concatenate(off_cm), 90) < 15.0
+    unheeded = replace(Params().joints, term=replace(Params().joints.term, weight=0.0))
+    assert JointViews(2, 1.7, unheeded).look(fitter, state, cameras) == ()
+
+
+def _set(pictures: dict[str, np.ndarray], k: int) -> FrameSet:
+    t_ns = T_NS + k * 33_000_000
+    return FrameSet(t_ns, {n: Frame(n, k, t_ns, p) for n, p in pictures.items()}, 0)
