@@ -111,8 +111,6 @@ class Params:
 
     # with the upper body known from another tracker
     guided_iterations: int = 3
-    guided_joint_turns: int = (
-        3  # from one look for joints to the next: it takes a quarter of a step
-    )
+    guided_joint_turns: int = 2  # from one look for joints to the next
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03
