@@ -130,6 +130,7 @@ class FlexTracker:
         self._find.reset()
         self._others.reset()
         self._turn = 0
+        self._led_steps = 0
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """Learn the background from a recording, before its first step. Raises ConfigError as `step` does."""
@@ -249,6 +250,7 @@ class FlexTracker:
             cameras.seed_background()
         self._stand_before()
         is_first = not cameras.know_appearance
+        self._led_steps = self._led_steps + 1 if known is not None else 0
         fitter = self._silhouettes if is_first else self._fitter
         if is_first:
             views = cameras.silhouettes(predicted)
@@ -260,7 +262,8 @@ class FlexTracker:
         terms: tuple[PoseTerm, ...] = (self._floor,)
         seen: tuple[JointTerm, ...] = ()
         if not is_first:
-            if self._turn % p.guided_joint_turns == 1:
+            # legs that were just found are told as found: what moves them far must wait
+            if self._turn % p.guided_joint_turns == 1 and self._led_steps > p.guided_joint_after:
                 seen = self._joints.look(fitter, predicted, cameras)
             terms = (*self._terms(predicted, views, frames, LEGS), *seen)
         self.probe("distances")
