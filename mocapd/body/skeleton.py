@@ -15,20 +15,24 @@ PARENTS = np.array([INDEX[PARENT_OF[n]] if n in PARENT_OF else -1 for n in NAMES
 N_JOINTS = len(NAMES)
 
 
+def _other_side(name: str) -> str:
+    if name.startswith("left"):
+        return "right" + name[4:]
+    return "left" + name[5:] if name.startswith("right") else name
+
+
+OTHER_SIDE = np.array(
+    [INDEX[_other_side(name)] for name in NAMES]
+)  # (J,) of a left joint the right one
+
+
 @cache
 def mean_proportions() -> Floats:
     """T-pose joint centres (J,3) as fractions of stature, made symmetric about x = 0."""
     joints = json.loads(asset_path("body_proportions.json").read_text())["joints"]
     rest = np.array([joints[name]["mean"] for name in NAMES])
-    mirror = np.array([INDEX[_other_side(name)] for name in NAMES])
-    symmetric: Floats = 0.5 * (rest + rest[mirror] * np.array([-1.0, 1.0, 1.0]))
+    symmetric: Floats = 0.5 * (rest + rest[OTHER_SIDE] * np.array([-1.0, 1.0, 1.0]))
     return symmetric
-
-
-def _other_side(name: str) -> str:
-    if name.startswith("left"):
-        return "right" + name[4:]
-    return "left" + name[5:] if name.startswith("right") else name
 
 
 def standard_skeleton(stature_m: float) -> Skeleton:

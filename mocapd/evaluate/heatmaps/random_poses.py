@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.bones import NAMES
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import (
     INDEX,
     N_JOINTS,
+    OTHER_SIDE,
     global_from_local,
     joint_positions,
     local_from_global,
@@ -27,10 +27,6 @@ _OF_CLIP, _OF_TWO = 0.35, 0.5
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 _ARMS = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])  # of a rotation, at x = 0
-_SWAPPED = [
-    INDEX[name.replace("left", "right") if "left" in name else name.replace("right", "left")]
-    for name in NAMES
-]
 # of the trunk and the head, in the chest's frame above the hips [m]: no arm is in there
 _TRUNK_M, _TRUNK_FROM_TO_M = (0.17, 0.14), (-0.2, 0.5)
 _HEAD_M, _HEAD_RADIUS_M = np.array([0.0, 0.65, 0.03]), 0.14
@@ -55,7 +51,7 @@ def random_pose(
     if kind < _OF_CLIP:
         quats, turned = _of_clip(rng, clips, shutter_s)
         if rng.uniform() < 0.5:
-            quats, turned = quats[_SWAPPED] * _MIRROR, turned[_SWAPPED] * [1.0, -1.0, -1.0]
+            quats, turned = quats[OTHER_SIDE] * _MIRROR, turned[OTHER_SIDE] * [1.0, -1.0, -1.0]
     else:
         quats = _of_two(rng, skeleton, clips) if kind < _OF_TWO else _made_up(rng, skeleton)
         turned = _swings(rng, shutter_s) if rng.uniform() < 0.5 else np.zeros((N_JOINTS, 3))

@@ -32,7 +32,7 @@ from mocapd.sim.renderer import CameraRenderer, figure_of, furnished_set
 from mocapd.sim.scenario import Scenario, load_scenario
 from mocapd.sim.world import World, light_levels
 from mocapd.types import Bytes, Camera, Floats, Pose
-from mocapd.vision.heatmaps.joint_network import JOINTS, MIDDLE
+from mocapd.vision.heatmaps.joint_network import JOINTS, MIDDLE, STATURE_M
 
 PICTURE_PX, SIDE_M = 128, 3.0  # of somebody 1.75 m tall
 _SCENES_A_FILE, _PEOPLE_A_SCENE, _POSES, _POSES_A_LIGHT = 4, 3, 24, 8
@@ -121,7 +121,7 @@ def _example(
     there_m = to_camera(camera, joints_m)
     if there_m[:, 2].min() < _NEAREST_M:
         return None
-    size = stature_m / 1.75
+    size = stature_m / STATURE_M
     middle_m = there_m[0] + MIDDLE * (there_m[INDEX["neck"]] - there_m[0])
     middle_px = middle_m[:2] / middle_m[2] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
     scale = PICTURE_PX / (SIDE_M * size * camera.K[0, 0] / middle_m[2])

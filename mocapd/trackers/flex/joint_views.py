@@ -1,7 +1,6 @@
 """What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -34,18 +33,17 @@ _GREY = (127.5, 127.5, 127.5)
 class JointViews:
     """One network for each camera."""
 
-    def __init__(
-        self, count: int, stature_m: float, params: JointViewParams, path: Path | None = None
-    ) -> None:
-        """count: of cameras; path: as `JointNetwork`."""
-        self._networks = [JointNetwork(path) for _ in range(count)]
+    def __init__(self, count: int, stature_m: float, params: JointViewParams) -> None:
+        """count: of cameras."""
+        looked_at = count if params.term.weight > 0.0 else 0
+        self._networks = [JointNetwork() for _ in range(looked_at)]
         self._size, self._params = stature_m / STATURE_M, params
 
     def look(
         self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
     ) -> tuple[JointTerm, ...]:
         """The joints of a body that is expected here, as a term of its fit; none where they do not count."""
-        if self._params.term.weight == 0.0:
+        if not self._networks:
             return ()
         here_m, _ = fitter.joints(predicted)
 

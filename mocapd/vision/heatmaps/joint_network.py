@@ -7,7 +7,6 @@ in random clothes, rooms and lights (`training/` in the checkout, `mocapd.evalua
 """
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -46,11 +45,10 @@ class SeenJoints:
 class JointNetwork:
     """The network with buffers of its own; used by one thread."""
 
-    def __init__(self, path: Path | None = None) -> None:
-        """path: of the trained network, the one that comes with mocapd when None."""
-        file = path if path is not None else asset_path(_FILE)
+    def __init__(self) -> None:
+        """Read the trained network that comes with mocapd."""
         # half the time of OpenCV's newer engine for a network this small
-        self._net = cv2.dnn.readNetFromONNX(str(file), cv2.dnn.ENGINE_CLASSIC)
+        self._net = cv2.dnn.readNetFromONNX(str(asset_path(_FILE)), cv2.dnn.ENGINE_CLASSIC)
         self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
 
     def look(self, picture: Bytes, background: Singles, known: Bytes) -> SeenJoints:

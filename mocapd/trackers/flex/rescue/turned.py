@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.bones import NAMES
-from mocapd.body.skeleton import PARENTS
+from mocapd.body.skeleton import OTHER_SIDE, PARENTS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
@@ -14,9 +13,6 @@ from mocapd.types import Floats
 _LEFT_TO_RIGHT = np.diag([-1.0, 1.0, 1.0])
 _ROUND = np.diag([-1.0, 1.0, -1.0])
 MIRRORED, UNDER_LIMBS = 0, 1  # the two of `turned_round`
-_ACROSS = np.array([
-    NAMES.index({"left": "right" + name[4:], "righ": "left" + name[5:]}.get(name[:4], name)) for name in NAMES
-])  # fmt: skip
 
 
 def turned_round(
@@ -27,7 +23,7 @@ def turned_round(
     along = along_m * (1.0, 0.0, 1.0)
     along = along / np.linalg.norm(along)
     mirror = np.eye(3) - 2.0 * np.outer(along, along)
-    across = rotations.to_matrix(fitter.joints(state)[1])[_ACROSS]
+    across = rotations.to_matrix(fitter.joints(state)[1])[OTHER_SIDE]
     return (
         _posed(state, mirror @ across @ _LEFT_TO_RIGHT),
         _posed(state, across @ _ROUND),
