@@ -201,12 +201,17 @@ def main() -> int:
     parser.add_argument("pictures", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--minutes", type=float, default=45.0)
+    parser.add_argument(
+        "--onwards", type=Path, help="weights (OUT.pt of an earlier run) to go on from"
+    )
     args = parser.parse_args()
     torch.manual_seed(0)
     pictures = Pictures(args.pictures)
     network = Network().to(memory_format=torch.channels_last)
+    if args.onwards is not None:
+        network.load_state_dict(torch.load(args.onwards))
     optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-3)
-    begin_s, step, usual_cm = time.monotonic(), 0, torch.zeros(JOINTS)
+    begin_s, step, usual_cm, usual_loss = time.monotonic(), 0, torch.zeros(JOINTS), 0.0
     while (done := (time.monotonic() - begin_s) / (60.0 * args.minutes)) < 1.0:
         for group in optimiser.param_groups:
             group["lr"] = (
@@ -223,10 +228,13 @@ def main() -> int:
         optimiser.step()
         step += 1
         usual_cm += min(0.02, 1.0 / step) * (off_cm - usual_cm) if step > 1 else off_cm
+        usual_loss += min(0.02, 1.0 / step) * (loss.item() - usual_loss)
         if step % 100 == 0:
             sys.stdout.write(
-                f"{100 * done:3.0f} % loss {loss.item():.2f}, off by {usual_cm.mean():.1f} cm\n"
+                f"{100 * done:3.0f} % loss {usual_loss:.2f}, off by {usual_cm.mean():.1f} cm\n"
             )
+            sys.stdout.flush()
+    torch.save(network.state_dict(), args.out.with_suffix(".pt"))
     network.eval()
     torch.onnx.export(
         network, (torch.zeros(1, 4, INPUT_PX, INPUT_PX),), str(args.out), opset_version=17, dynamo=False,

@@ -24,8 +24,13 @@ from mocapd.types import Floats, Pose, Skeleton
 
 # Shares of poses: as in a clip; of two clips; the others are made up
 _OF_CLIP, _OF_TWO = 0.35, 0.5
+# Shares of made-up arms, each with those before it: both forwards (in a squat), like a named pose
+_FORWARDS, _FORWARDS_SUNK, _LIKE_NAMED = 0.1, 0.4, 0.45
+_KICKS, _LUNGES, _TIPTOES = 0.25, 0.12, 0.3  # shares of lifted feet; of feet that stand; of squats
+_FOOT_M = 0.18  # from the ankle to the toes
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 _ARMS = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+_FEET = [INDEX[side + joint] for side in SIDES for joint in ("Foot", "Toes")]
 _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])  # of a rotation, at x = 0
 # of the trunk and the head, in the chest's frame above the hips [m]: no arm is in there
 _TRUNK_M, _TRUNK_FROM_TO_M = (0.17, 0.14), (-0.2, 0.5)
@@ -58,9 +63,9 @@ def random_pose(
     quats = rotations.canonical(quats)
     half, whole = (rotations.multiply(rotations.exp(share * turned), quats) for share in (0.5, 1.0))
     joints_m = joint_positions(skeleton, Pose(np.zeros(3), quats))
-    lowest_m = min(joints_m[INDEX[side + "Foot"], 1] for side in SIDES)
+    lowest_m = (joints_m - skeleton.rest_m)[_FEET, 1].min()
     jump_m = rng.uniform(0.0, 0.25) if rng.uniform() < 0.08 else 0.0
-    root_m = np.array([0.0, jump_m + skeleton.rest_m[INDEX["leftFoot"], 1] - lowest_m, 0.0])
+    root_m = np.array([0.0, jump_m - lowest_m, 0.0])
     way_m = rng.normal(0.0, 0.5, 3) * shutter_s
     return MovingPose(
         Pose(root_m - 0.5 * way_m, quats),
@@ -94,12 +99,15 @@ def _of_two(rng: np.random.Generator, skeleton: Skeleton, clips: Sequence[Motion
 
 def _made_up(rng: np.random.Generator, skeleton: Skeleton) -> Floats:
     """Arms anywhere, the hips down to a deep squat, a foot lifted."""
-    if rng.uniform() < 0.35:
+    sunk = rng.uniform(0.0, 0.68) if rng.uniform() < 0.45 else rng.uniform(0.0, 0.08)
+    arms = rng.uniform()
+    if arms < (_FORWARDS_SUNK if sunk > 0.15 else _FORWARDS):
+        left, right = _forwards(rng)
+    elif arms < _LIKE_NAMED:
         left, right = _like_named(rng)
     else:
         left = _like_named(rng)[0] if rng.uniform() < 0.2 else _any_arm(rng, 1.0)
         right = _like_named(rng)[1] if rng.uniform() < 0.2 else _any_arm(rng, -1.0)
-    sunk = rng.uniform(0.0, 0.62) if rng.uniform() < 0.45 else rng.uniform(0.0, 0.08)
     forwards_deg = rng.normal(0.0, 9.0) + sunk * rng.uniform(0.0, 70.0)
     if rng.uniform() < 0.12:
         forwards_deg += rng.uniform(0.0, 60.0)
@@ -137,6 +145,22 @@ def _like_named(rng: np.random.Generator) -> tuple[ArmDirections, ArmDirections]
     return about(pose.left), about(pose.right)
 
 
+def _forwards(rng: np.random.Generator) -> tuple[ArmDirections, ArmDirections]:
+    """Both arms in front, stretched or bent, towards each other or apart: so people squat, reach and hold things."""
+    down, bent = rng.normal(-0.1, 0.4), rng.uniform(0.0, 1.2) * (rng.uniform() < 0.6)
+    inwards, spread = rng.uniform(-0.2, 0.8), rng.normal(0.05, 0.25)
+    raised = rng.normal(0.1, 0.35)
+
+    def arm(outwards: float) -> ArmDirections:
+        upper = _unit(
+            np.array([outwards * spread, down - 0.5 * bent, 1.0]) + rng.normal(0.0, 0.1, 3)
+        )
+        fore = _unit(np.array([-outwards * inwards * bent, raised * bent, 1.0]))
+        return _direction(upper), _direction(_unit(upper + 1.5 * bent * fore))
+
+    return arm(1.0), arm(-1.0)
+
+
 def _any_arm(rng: np.random.Generator, outwards: float) -> ArmDirections:
     """Directions of upper arm and forearm that are in nothing."""
     while True:
@@ -170,18 +194,33 @@ def _place_feet(
         rotations.to_matrix(rotations.exp(np.array([0.0, yaw_rad, 0.0]))),
     )
     lifted = SIDES[rng.integers(2)] if rng.uniform() < 0.3 else None
-    apart_m, step_m = abs(rng.normal(0.0, 0.14)), rng.normal(0.0, 0.14)
+    apart_m, step_m = abs(rng.normal(0.0, 0.1 + 0.15 * sunk)), rng.normal(0.0, 0.14)
+    if rng.uniform() < _LUNGES:
+        step_m = rng.normal(0.0, 0.4)
+    turned_rad = rng.normal(0.15, 0.2) + sunk * rng.uniform(0.0, 0.9)
+    splay_rad = sunk * rng.uniform(-0.3, 3.5)  # knees point as far between there and the feet
+    heel_m = rng.uniform(0.0, 0.25) * sunk if rng.uniform() < _TIPTOES else 0.0
     for side, outwards in zip(SIDES, (1.0, -1.0), strict=True):
         joints = [INDEX[side + bone] for bone in _LEGS]
         hip, knee, ankle = rest_m[joints[:3]]
         ahead_m = outwards * step_m * (rng.uniform() < 0.8) + 0.05 * sunk
         off_m = np.array([outwards * apart_m, 0.0, ahead_m]) + rng.normal(0.0, [0.03, 0.0, 0.03])
+        splayed = rotations.exp(
+            np.array([0.0, outwards * (splay_rad + rng.normal(0.0, 0.15)), 0.0])
+        )
+        forwards = rotations.rotate(splayed, hips[:, 2])
+        raised_m = 0.0 if side == lifted else heel_m + 0.02 * abs(rng.normal()) * sunk
+        off_m[1] += raised_m
         if side == lifted:
-            off_m += [rng.normal(0.0, 0.2), rng.uniform(0.03, 0.8), rng.normal(0.1, 0.35)]
+            off_m += (
+                [rng.normal(0.0, 0.25), rng.uniform(0.2, 0.9), rng.uniform(0.3, 0.9)]
+                if rng.uniform() < _KICKS
+                else [rng.normal(0.0, 0.2), rng.uniform(0.03, 0.8), rng.normal(0.1, 0.35)]
+            )
         at_m = heading @ (np.array([ankle[0], 0.0, ankle[2]]) + off_m) + [0.0, ankle[1], 0.0]
-        foot_rad = yaw_rad + outwards * rng.normal(0.15, 0.2)
+        foot_rad = yaw_rad + outwards * (turned_rad + rng.normal(0.0, 0.1))
         R = leg_rotations(
-            root_m + hips @ (hip - rest_m[0]), knee - hip, ankle - knee, at_m, hips[:, 2], foot_rad
+            root_m + hips @ (hip - rest_m[0]), knee - hip, ankle - knee, at_m, forwards, foot_rad
         )
         if not np.isfinite(R).all():
             return False
@@ -189,6 +228,9 @@ def _place_feet(
             R[2] = R[1] @ rotations.to_matrix(
                 rotations.exp(np.array([rng.uniform(-0.2, 0.8), 0.0, 0.0]))
             )
+        elif raised_m > 0.0:
+            tipped = np.array([np.arcsin(min(raised_m / _FOOT_M, 1.0)), 0.0, 0.0])
+            R[2] = R[2] @ rotations.to_matrix(rotations.exp(tipped))
         quats[joints] = rotations.from_matrix(R[[0, 1, 2, 2]])
     return True
 

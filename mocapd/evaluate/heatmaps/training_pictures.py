@@ -32,7 +32,8 @@ from mocapd.sim.renderer import CameraRenderer, figure_of, furnished_set
 from mocapd.sim.scenario import Scenario, load_scenario
 from mocapd.sim.world import World, light_levels
 from mocapd.types import Bytes, Camera, Floats, Pose
-from mocapd.vision.heatmaps.joint_network import JOINTS, MIDDLE, STATURE_M
+from mocapd.vision.heatmaps.joint_network import JOINTS, STATURE_M
+from mocapd.vision.heatmaps.person_crop import crop_about, middle_of
 
 PICTURE_PX, SIDE_M = 128, 3.0  # of somebody 1.75 m tall
 _SCENES_A_FILE, _PEOPLE_A_SCENE, _POSES, _POSES_A_LIGHT = 4, 3, 24, 8
@@ -122,16 +123,14 @@ def _example(
     if there_m[:, 2].min() < _NEAREST_M:
         return None
     size = stature_m / STATURE_M
-    middle_m = there_m[0] + MIDDLE * (there_m[INDEX["neck"]] - there_m[0])
-    middle_px = middle_m[:2] / middle_m[2] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
-    scale = PICTURE_PX / (SIDE_M * size * camera.K[0, 0] / middle_m[2])
-    corner = PICTURE_PX / 2 - 0.5 - scale * middle_px
-    M = np.array([[scale, 0.0, corner[0]], [0.0, scale, corner[1]]])
+    middle_m = middle_of(there_m[0], there_m[INDEX["neck"]])
+    crop = crop_about(camera, middle_m, SIDE_M * size, PICTURE_PX)
+    M, square = crop.affine, (PICTURE_PX, PICTURE_PX)
     crops = [
-        cv2.warpAffine(one, M, (PICTURE_PX, PICTURE_PX), flags=cv2.INTER_LINEAR, borderValue=_GREY)
+        cv2.warpAffine(one, M, square, flags=cv2.INTER_LINEAR, borderValue=_GREY)
         for one in (shown, empty)
     ]
-    uv = project(camera, joints_m)[_JOINTS] * scale + corner
+    uv = project(camera, joints_m)[_JOINTS] * crop.scale + crop.corner_px
     farther = (there_m[_JOINTS, 2] - there_m[0, 2]) / size
     return Example(np.concatenate(crops, axis=2), uv, farther)
 

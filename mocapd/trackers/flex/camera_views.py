@@ -155,6 +155,13 @@ class CameraViews:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
         self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
 
+    def renew_before(self, turn: int) -> None:
+        """Renew what stands before each background, now and then everywhere, where something may have been uncovered."""
+        looks_round = turn % self._params.uncovered_turns == 0
+        self.stand_before(everywhere=looks_round)
+        if looks_round:
+            self.take_uncovered()
+
     def take_uncovered(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
 
@@ -270,6 +277,10 @@ class CameraViews:
         for i in self.present:
             camera = self.each[i]
             camera.background.seed(camera.picture, camera.body)
+
+    def names(self, views: Sequence[View]) -> tuple[str, ...]:
+        """Of the cameras of these views."""
+        return tuple(self.each[v.index].name for v in views)
 
     def evidence(self, views: list[View]) -> tuple[Mapping[str, Bytes], Mapping[str, Roi]]:
         """What was classified, and where in the frames, by camera."""

@@ -12,16 +12,16 @@ from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
 from mocapd.trackers.flex.camera_views import CameraView, CameraViews
 from mocapd.trackers.flex.joint_view_params import JointViewParams
-from mocapd.types import Floats
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.joint_network import (
     CELLS,
     INPUT_PX,
     JOINTS,
-    MIDDLE,
     SIDE_M,
     STATURE_M,
     JointNetwork,
 )
+from mocapd.vision.heatmaps.person_crop import PersonCrop, crop_about, middle_of
 
 _JOINTS = np.array([INDEX[name] for name in JOINTS])
 _HIPS, _NECK = INDEX["hips"], INDEX["neck"]
@@ -64,18 +64,14 @@ class JointViews:
         p, size, drawing = self._params, self._size, fitter.drawings[index]
         camera, k = drawing.camera, drawing.image_scale
         in_camera = to_camera(camera, there_m)
-        middle = in_camera[_HIPS] + MIDDLE * (in_camera[_NECK] - in_camera[_HIPS])
+        middle = middle_of(in_camera[_HIPS], in_camera[_NECK])
         if middle[2] < _NEAREST_M:
             return None
-        focal = np.array([camera.K[0, 0], camera.K[1, 1]])
-        at_px = (middle[:2] / middle[2] * focal + camera.K[:2, 2] + 0.5) / k - 0.5
-        side_px = SIDE_M * size * focal[0] / k / middle[2]
-        scale = INPUT_PX / side_px
-        corner = INPUT_PX / 2 - 0.5 - scale * at_px
-        seen = self._networks[index].look(*_crop(view, scale, corner))
+        crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
+        seen = self._networks[index].look(*_cut_out(view, crop))
         crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
-        frame_px = ((crop_px - corner) / scale + 0.5) * k - 0.5
-        xy = undistort(camera.dist, (frame_px - camera.K[:2, 2]) / focal)
+        frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
+        xy = undistort(camera.dist, (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]])
         # what moved until this camera's own exposure
         moved_m = in_camera - to_camera(camera, here_m)
         xy = xy - moved_m[_JOINTS, :2] / middle[2]
@@ -92,16 +88,18 @@ class JointViews:
         )  # fmt: skip
 
 
-def _crop(
-    view: CameraView, scale: float, corner: Floats
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    M = np.array([[scale, 0.0, corner[0]], [0.0, scale, corner[1]]])
-    size = (INPUT_PX, INPUT_PX)
+def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
+    """The picture, the background, and where that is known."""
+    M, size = crop.affine, (INPUT_PX, INPUT_PX)
     room, known = view.background.known_room()
     picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     there = cv2.warpAffine(known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
-    return picture, background, there
+    return (
+        np.asarray(picture, np.uint8),
+        np.asarray(background, np.float32),
+        np.asarray(there, np.uint8),
+    )
 
 
 def _inverse(spread_cells2: Floats, p: JointViewParams) -> Floats:

@@ -1,17 +1,28 @@
 """What another tracker knows of the body: taken over as a whole, or its upper body held while legs and head are fitted."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import upper_body
 from mocapd.body.regions import Region
 from mocapd.body.skeleton import N_JOINTS, local_from_global
+from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
-from mocapd.trackers.flex.memory import Proportions
+from mocapd.trackers.base import Probe
+from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.memory import Followed, Proportions, is_believed, velocity_of
 from mocapd.trackers.flex.params import Params
-from mocapd.types import Floats, Pose, Skeleton
+from mocapd.trackers.flex.pose_terms import PoseTerms
+from mocapd.trackers.flex.rescue.other_poses import OtherPoses
+from mocapd.trackers.flex.wardrobe import Wardrobe
+from mocapd.types import Floats, FrameSet, Pose, Skeleton
 
 TAKEN_OVER_S = 0.1  # another tracker's body is held as loosely as a prediction over this time
 LEGS = (Region.LEG, Region.FOOT)  # regions that a guide does not know
@@ -58,3 +69,100 @@ def guided_information(params: Params, prediction_sd: Floats, dt_s: float) -> Fl
     held[:3] = params.guided_sd_m**-2
     held[3 : upper_body().n_pose] = params.guided_sd_rad**-2
     return np.diag(held + 1.0 / (prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+
+
+class LegsBelow:
+    """Legs below, and a head above, an upper body that another tracker leads. Remembers since when it knows the legs."""
+
+    def __init__(
+        self,
+        params: Params,
+        skeleton: Skeleton,
+        cameras: CameraViews,
+        wardrobe: Wardrobe,
+        silhouettes: Fitter,
+        terms: PoseTerms,
+        others: OtherPoses,
+    ) -> None:
+        """silhouettes: a fitter whose body is of one colour. The rest is shared with whoever tracks without a guide."""
+        self._params, self._skeleton, self._silhouettes = params, skeleton, silhouettes
+        self._cameras, self._wardrobe = cameras, wardrobe
+        self._terms, self._others = terms, others
+        self.reset()
+
+    def reset(self) -> None:
+        """No legs were seen."""
+        self._found_ns = -nanoseconds(self._params.guided_joint_after_s)
+
+    def follow(
+        self,
+        known: Followed | None,
+        upper: Pose,
+        wearer: Proportions,
+        frames: FrameSet,
+        turn: int,
+        probe: Probe,
+    ) -> tuple[Followed | None, list[View]]:
+        """One frame; one without evidence leaves `known` at its old time."""
+        p, cameras, model = self._params, self._cameras, self._silhouettes.model
+        last = known.state if known is not None else standing_below(model, upper, wearer)
+        dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else TAKEN_OVER_S
+        predicted = predicted_below(model, self._skeleton, p, last, dt_s, upper, wearer)
+        cameras.mark_body(predicted)
+        if cameras.are_new:
+            cameras.seed_background()
+        cameras.renew_before(turn)
+        probe("background")
+        if known is None:
+            self._found_ns = frames.t_ns
+        is_first = not cameras.know_appearance
+        views = (
+            cameras.silhouettes(predicted)
+            if is_first
+            else cameras.classified(predicted, marked=True)
+        )
+        probe("classify")
+        if not views:
+            return known, views
+        held = guided_information(p, self._wardrobe.fitter.prediction_sd, dt_s)
+        # legs that were not seen before have a way to go
+        iterations = p.guided_iterations if known is not None else p.start.iterations
+        changed: tuple[str, ...] = ()
+        if is_first:
+            fit = self._silhouettes.fit(
+                predicted, views, dt_s, iterations, learn_shape=False, fine=1, motion=held,
+                terms=(self._terms.floor,),
+            )  # fmt: skip
+            if fit.explained >= p.learn_explained:
+                self._wardrobe.learn_first(fit.state, cameras)
+        else:
+            fitter = self._wardrobe.fitter
+            seen = self._seen_joints(predicted, frames.t_ns, turn)
+            probe("joints")
+            measured = self._terms.measured(fitter, predicted, views, frames, turn, LEGS)
+            terms: tuple[PoseTerm, ...] = (*measured, *seen)
+            probe("distances")
+            fit = fitter.fit(
+                predicted, views, dt_s, iterations, learn_shape=False, rendered=True, fine=1, motion=held,
+                terms=terms,
+            )  # fmt: skip
+            probe("fit")
+            fit, changed = self._others.other_legs(
+                self._wardrobe.dressed, fit, views, dt_s, turn, terms, seen, held
+            )
+            probe("legs")
+        if not is_believed(fit, p):
+            return known, views
+        velocity = np.zeros(model.n_pose)
+        if known is not None:
+            velocity = velocity_of(model, p, fit, last, dt_s, changed)
+        state = replace(fit.state, velocity=velocity)
+        return Followed(frames.t_ns, state, fit, cameras.names(views), changed), views
+
+    def _seen_joints(self, predicted: MotionState, t_ns: int, turn: int) -> tuple[JointTerm, ...]:
+        p = self._params
+        # legs that were just found are told as found: what moves them far must wait
+        is_new = t_ns - self._found_ns <= nanoseconds(p.guided_joint_after_s)
+        if turn % p.guided_joint_turns != 1 or is_new:
+            return ()
+        return self._terms.joints(self._wardrobe.fitter, predicted, self._cameras)

@@ -41,6 +41,13 @@ def of_wearer(known: Followed, wearer: Proportions) -> Followed:
     )
 
 
+def is_believed(fit: Fit, params: Params) -> bool:
+    """Whether enough of the body agrees with the pictures."""
+    # every second pixel was counted
+    enough = 2.0 * fit.matched.sum() >= params.least_body_px
+    return fit.explained >= params.live_explained and bool(enough)
+
+
 def velocity_of(
     model: BodyModel,
     params: Params,

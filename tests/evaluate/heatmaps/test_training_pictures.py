@@ -21,8 +21,8 @@ def test_people_stand_on_the_floor_or_just_above_it(tmp_path: Path) -> None:
     for _ in range(60):
         pose = random_pose(rng, skeleton, clips, 0.02)
         joints_m = joint_positions(skeleton, pose.opened)
-        feet_m = joints_m[[INDEX["leftFoot"], INDEX["rightFoot"]], 1]
-        lowest_m.append(feet_m.min() - skeleton.rest_m[INDEX["leftFoot"], 1])
+        feet = [INDEX[side + joint] for side in ("left", "right") for joint in ("Foot", "Toes")]
+        lowest_m.append((joints_m - skeleton.rest_m)[feet, 1].min())
         across = joints_m[INDEX["leftUpperLeg"]] - joints_m[INDEX["rightUpperLeg"]]
         faces.append(np.arctan2(across[2], across[0]))
         away_m = joint_positions(skeleton, pose.closed) - joints_m

@@ -1,0 +1,44 @@
+"""What holds a pose beside the regions of the pictures: the floor, distances, and joints that were seen."""
+
+from collections.abc import Collection, Sequence
+
+from mocapd.body.model import BodyModel
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_views import JointViews
+from mocapd.trackers.flex.params import Params
+from mocapd.trackers.texture_distance import texture_distances
+from mocapd.types import FrameSet
+
+
+class PoseTerms:
+    """The terms of a body's fits; a network for each camera."""
+
+    def __init__(self, model: BodyModel, cameras: int, params: Params) -> None:
+        """cameras: how many there are."""
+        self.floor = FloorTerm(model, params.floor)
+        self._joints = JointViews(cameras, model.stature_m, params.joints)
+        self._params = params.distances
+
+    def joints(
+        self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
+    ) -> tuple[JointTerm, ...]:
+        """Where the network sees those of the body that is expected here."""
+        return self._joints.look(fitter, predicted, cameras)
+
+    def measured(
+        self,
+        fitter: Fitter,
+        drawn: MotionState,
+        views: Sequence[View],
+        frames: FrameSet,
+        turn: int,
+        only: Collection[int] = (),
+    ) -> tuple[PoseTerm, ...]:
+        """The floor, and distances of all regions or of these only, of a body that was drawn last into every view."""
+        distances = texture_distances(fitter, drawn, views, frames, turn, self._params, only)
+        return (self.floor, *distances)

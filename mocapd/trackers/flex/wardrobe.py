@@ -1,0 +1,62 @@
+"""What the wearer looks like, as it was learned, and the fitter that tells no more regions apart than that."""
+
+from collections.abc import Sequence
+
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.looks.look import ALL_DIFFER, Dressed, DressedFitters, Look, look_of
+from mocapd.trackers.flex.memory import Followed
+from mocapd.trackers.flex.params import Params
+
+
+class Wardrobe:
+    """The look of whoever is tracked; that of nobody at first."""
+
+    def __init__(self, fitters: DressedFitters, params: Params) -> None:
+        self._fitters, self._params = fitters, params
+        self.dressed: Dressed = fitters.of(ALL_DIFFER)
+
+    @property
+    def fitter(self) -> Fitter:
+        """Of the present look."""
+        return self.dressed.fitter
+
+    def forget(self, cameras: CameraViews) -> None:
+        """Nobody's look is known."""
+        self._dress(ALL_DIFFER, cameras)
+
+    def learn_first(self, state: MotionState, cameras: CameraViews) -> None:
+        """Learn the look of somebody who was found."""
+        self._dress(ALL_DIFFER, cameras)
+        cameras.learn_first_appearance(state)
+        seen = [cameras.each[i].appearance for i in cameras.present]
+        look = look_of(seen, self._params.alike)
+        for camera in cameras.each:
+            camera.appearance.join(look)
+        self._dress(look, cameras)
+
+    def _dress(self, look: Look, cameras: CameraViews) -> None:
+        self.dressed = self._fitters.of(look)
+        cameras.fitter = self.dressed.fitter
+
+
+def learn_on(
+    cameras: CameraViews,
+    seen: Followed | None,
+    views: Sequence[View],
+    nobody: bool,
+    turn: int,
+    every: int,
+    params: Params,
+) -> None:
+    """Learn the look of a body that agrees well, in one of `every` cameras in turn, and the background beside it, or
+    everywhere when nobody is known."""
+    if seen is not None and seen.fit.explained >= params.learn_explained:
+        cameras.learn_appearance(seen.state, views[turn % every :: every])
+    if nobody and turn % params.absorb_turns:
+        # what stays for long is furniture that was moved
+        cameras.mark_unknown()
+    elif nobody:
+        cameras.mark_body(None)
+    cameras.learn_background()
