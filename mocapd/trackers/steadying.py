@@ -1,7 +1,7 @@
 """What is told follows what was found, the more slowly the less the pictures confirm it.
 
 A limb that the pictures hardly confirm is often wrong, and what is wrong moves as no limb does: from one pose that looks
-right to the next. What is well confirmed is told as it was found.
+right to the next. What is well confirmed is told nearly as it was found.
 """
 
 from collections.abc import Collection
@@ -28,12 +28,12 @@ _SHORTEST_TICKS = 0.1  # frames of one time are told apart a little
 class SteadyingParams:
     """How much of the way to what was found is gone in a usual frame, and how fast a bone turns at most."""
 
-    sure: float = 1.0  # confidence from which on it is all of the way
-    doubtful: float = 0.3  # confidence up to which it is the least
-    least: float = 0.25
-    trust_s: float = 0.7  # who was not confirmed at all is fully believed no sooner
-    sure_rad_s: float = 15.0
-    doubtful_rad_s: float = 3.0
+    sure: float = 1.2  # confidence at which it were all of the way; a little is always held back
+    doubtful: float = 0.2  # confidence up to which it is the least
+    least: float = 0.3
+    trust_s: float = 0.4  # who was not confirmed at all is fully believed no sooner
+    sure_rad_s: float = 17.0
+    doubtful_rad_s: float = 6.0
     settles_s: float = (
         0.4  # who was just found is told as found: there is nothing better to hold on to
     )

@@ -10,7 +10,7 @@ from mocapd.body.pose_space import SIDES
 from mocapd.fit.motion_state import MotionState, step_between
 from mocapd.fit.solver import Fit
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex.rescue.other_poses import WHOLE
+from mocapd.trackers.flex.rescue.seen_pose import WHOLE
 from mocapd.types import Floats
 
 

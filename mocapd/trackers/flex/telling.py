@@ -10,7 +10,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.trackers.flex.confidence import joint_confidence
 from mocapd.trackers.flex.memory import Followed
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex.rescue.other_poses import WHOLE
+from mocapd.trackers.flex.rescue.seen_pose import WHOLE
 from mocapd.trackers.steadying import Told, behind, steadied
 from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import grown

@@ -22,13 +22,12 @@ from mocapd.trackers.flex.rescue.legs import (
     with_hips_below_chest,
     with_legs_exchanged,
 )
-from mocapd.trackers.flex.rescue.seen_pose import seen_pose, starts_as_seen
+from mocapd.trackers.flex.rescue.seen_pose import WHOLE, seen_pose, starts_as_seen
 from mocapd.trackers.flex.rescue.turn_watch import TurnWatch
 from mocapd.trackers.flex.rescue.turned import MIRRORED, UNDER_LIMBS, turned_round
 from mocapd.types import Floats, FrameSet
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-WHOLE = "whole"  # as a part that changed: all of the body
 _TURNS_S = 0.4  # a body that is turned round is held as loosely as a prediction over this time
 
 Terms = Sequence[PoseTerm]
@@ -115,22 +114,25 @@ class OtherPoses:
         seen: Sequence[JointTerm],
         motion: Floats | None,
     ) -> tuple[Fit, tuple[str, ...]]:
-        """The fit, or one that begins where the joints were seen, and the limbs that changed over; motion: of every fit,
+        """The fit, or one that begins where the joints were seen, and the parts that changed over; motion: of every fit,
         where an upper body leads and legs alone may change."""
-        p = self._params.seen_pose
-        held = [one for one in terms if not one.is_measured and one not in seen]
-        for one in seen:
-            starts, limbs = starts_as_seen(fitter, fit, one, held, p, legs_alone=motion is not None)
-            better = cheapest_fit(
-                fit, starts,
-                lambda start: fitter.fit(
-                    start, views, dt_s, p.fit_iterations, learn_shape=False, fine=1, motion=motion, terms=terms
-                ),
-                lambda fitted: fitted.cost_for_any_pose, p.gain,
+        if not seen:
+            return fit, ()
+        p, (joints,) = self._params.seen_pose, seen
+        held = [one for one in terms if not one.is_measured and one is not joints]
+        starts = starts_as_seen(fitter, fit, joints, held, p, legs_alone=motion is not None)
+        tried: list[Fit] = []
+
+        def begun(start: MotionState) -> Fit:
+            one = fitter.fit(
+                start, views, dt_s, p.fit_iterations, learn_shape=False, fine=1, motion=motion, terms=terms
             )  # fmt: skip
-            if better is not fit:
-                return better, limbs
-        return fit, ()
+            tried.append(one)
+            return one
+
+        states = [start for start, _ in starts]
+        better = cheapest_fit(fit, states, begun, lambda one: one.cost_for_any_pose, p.gain)
+        return (fit, ()) if better is fit else (better, starts[tried.index(better)][1])
 
     def other_legs(
         self,

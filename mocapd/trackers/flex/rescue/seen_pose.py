@@ -26,6 +26,8 @@ _LIMBS = {
     )
 }
 
+WHOLE = "whole"  # as a part that changed: all of the body
+
 
 @dataclass(frozen=True, slots=True)
 class SeenPoseParams:
@@ -47,9 +49,10 @@ def starts_as_seen(
     held: Sequence[PoseTerm],
     params: SeenPoseParams,
     legs_alone: bool = False,
-) -> tuple[list[MotionState], tuple[str, ...]]:
-    """Where a fit may begin anew: with the limbs that are far from there as they were seen, with all of the body; and these
-    limbs. held: what else holds the pose that the joints say; legs_alone: the rest of the body is known."""
+) -> list[tuple[MotionState, tuple[str, ...]]]:
+    """Where a fit may begin anew, and the parts of the body that change by that: with the limbs that are far from there as
+    they were seen, with all of the body. held: what else holds the pose that the joints say; legs_alone: the rest of the
+    body is known."""
     p, costs = params, seen.costs(fitter.joints(fit.state)[0])
     far = {
         name: costs[joints].sum()
@@ -58,7 +61,7 @@ def starts_as_seen(
     }
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
-        return [], ()
+        return []
     there = seen_pose(fitter, fit.state, seen, held, p)
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
@@ -66,16 +69,16 @@ def starts_as_seen(
         for name, cost in far.items()
         if cost - costs_there[_LIMBS[name][1]].sum() > p.limb_cost
     )
-    starts = []
+    starts: list[tuple[MotionState, tuple[str, ...]]] = []
     if limbs:
         local = fit.state.local_xyzw.copy()
         for name in limbs:
             bones = _LIMBS[name][0]
             local[bones] = there.local_xyzw[bones]
-        starts.append(replace(fit.state, local_xyzw=local))
+        starts.append((replace(fit.state, local_xyzw=local), limbs))
     if whole and costs.sum() - costs_there.sum() > p.whole_cost:
-        starts.append(there)
-    return starts, limbs
+        starts.append((there, (WHOLE,)))
+    return starts
 
 
 def seen_pose(
