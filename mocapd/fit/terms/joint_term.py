@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
-from mocapd.body.skeleton import INDEX
+from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.terms.joint_rows_kernels import pull_at_joints
 from mocapd.geometry.camera_model import from_camera, to_camera
 from mocapd.types import Camera, Floats, Ints
@@ -67,22 +67,29 @@ class JointTerm:
                 out[one.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
         return out
 
+    def places_m(self, hips_m: Floats) -> Floats:
+        """Where each joint (J,3) of a body with its hips at hips_m (3,) was seen, on average of the cameras; NaN: nowhere."""
+        total, count = np.zeros((N_JOINTS, 3)), np.zeros(N_JOINTS)
+        for one in self.seen:
+            z = to_camera(one.camera, hips_m[None])[0, 2] + one.farther_m
+            rays = np.concatenate([one.xy, np.ones((len(z), 1))], axis=1)
+            total[one.joints] += from_camera(one.camera, rays * z[:, None])
+            count[one.joints] += 1.0
+        out: Floats = (
+            np.where(count > 0.0, 1.0, np.nan)[:, None] * total / np.maximum(count, 1.0)[:, None]
+        )
+        return out
+
     def turn_rad(self, joints_m: Floats) -> float:
         """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too
         little of its trunk was."""
+        there_m = self.places_m(joints_m[0])
         seen, mine = np.zeros(3), np.zeros(3)
-        for one in self.seen:
-            place = {int(joint): k for k, joint in enumerate(one.joints)}
-            hips_z = to_camera(one.camera, joints_m[:1])[0, 2]
-            for left, right in _TRUNK:
-                if left in place and right in place:
-                    ends = [place[left], place[right]]
-                    rays = np.concatenate([one.xy[ends], np.ones((2, 1))], axis=1)
-                    there_m = from_camera(
-                        one.camera, rays * (hips_z + one.farther_m[ends])[:, None]
-                    )
-                    seen += there_m[0] - there_m[1]
-                    mine += joints_m[left] - joints_m[right]
+        for left, right in _TRUNK:
+            across = there_m[left] - there_m[right]
+            if np.isfinite(across).all():
+                seen += across
+                mine += joints_m[left] - joints_m[right]
         turn = np.arctan2(mine[2], mine[0]) - np.arctan2(seen[2], seen[0])
         return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if seen.any() else 0.0
 

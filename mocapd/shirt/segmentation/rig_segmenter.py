@@ -6,6 +6,7 @@ import numpy as np
 
 from mocapd.body.shirt_patches import SLEEVE_PATCHES, standard_shirt
 from mocapd.clock import seconds
+from mocapd.each import in_turn
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
@@ -50,7 +51,7 @@ class RigSegmenter:
         mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
         for i, frame in mine:
             check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
-        self._each(lambda one: self.each[one[0]].look(one[1].pixels), mine)
+        in_turn(lambda one: self.each[one[0]].look(one[1].pixels), mine)
         return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
 
     def views(
@@ -99,7 +100,8 @@ class RigSegmenter:
                 )
             segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
 
-        self._each(learn, views)
+        # in turn: it takes less than a thread needs to wake
+        in_turn(learn, views)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:
         """Follow the background, in all of the picture when nobody is known."""
@@ -110,7 +112,7 @@ class RigSegmenter:
                 segmenter.mark_body(None, (0, 0, 0, 0))
             segmenter.learn_background()
 
-        self._each(learn, present)
+        in_turn(learn, present)
 
     def roi_px(self, view: View) -> Roi:
         """A view's region in pixels of the frame itself."""

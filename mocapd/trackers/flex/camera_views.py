@@ -1,6 +1,7 @@
 """What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -20,6 +21,8 @@ from mocapd.vision.foreground_kernels import BEFORE, stands
 from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.room_background import RoomBackground
 from mocapd.vision.uncovered import brightness_edges
+
+T = TypeVar("T")
 
 _ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
 _LINE = np.ones((3, 3), np.uint8)
@@ -140,16 +143,15 @@ class CameraViews:
 
     def mark_body(self, state: MotionState | None) -> None:
         """Where somebody is expected, drawn into every present picture."""
+        self._each(lambda i: self._mark(i, state), self.present)
 
-        def mark(i: int) -> None:
-            drawing, dt_s = self.fitter.drawings[i], self.present[i]
-            roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
-            if state is None or roi is None:
-                self.each[i].mark_body(None, None)
-            else:
-                self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
-
-        self._each(mark, self.present)
+    def _mark(self, i: int, state: MotionState | None) -> None:
+        drawing, dt_s = self.fitter.drawings[i], self.present[i]
+        roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
+        if state is None or roi is None:
+            self.each[i].mark_body(None, None)
+        else:
+            self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
 
     def stand_before(self, everywhere: bool = True) -> None:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
@@ -157,48 +159,64 @@ class CameraViews:
 
     def renew_before(self, turn: int) -> None:
         """Renew what stands before each background, now and then everywhere, where something may have been uncovered."""
+        self._each(lambda i: self._renew_before(i, turn), self.present)
+
+    def _renew_before(self, i: int, turn: int) -> None:
         looks_round = turn % self._params.uncovered_turns == 0
-        self.stand_before(everywhere=looks_round)
+        self.each[i].stand_before(everywhere=looks_round)
         if looks_round:
-            self.take_uncovered()
+            self._take_uncovered(i)
 
     def take_uncovered(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
+        self._each(self._take_uncovered, self.present)
 
-        def take(i: int) -> None:
-            camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
-            if camera.near is not None:
-                x0, y0, x1, y1 = camera.near
-                ids, triangles = self.fitter.drawings[i].last(camera.near)
-                part = self.fitter.model.part[np.maximum(triangles, 0)]
-                arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
-            camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
+    def _take_uncovered(self, i: int) -> None:
+        camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
+        if camera.near is not None:
+            x0, y0, x1, y1 = camera.near
+            ids, triangles = self.fitter.drawings[i].last(camera.near)
+            part = self.fitter.model.part[np.maximum(triangles, 0)]
+            arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
+        camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
 
-        self._each(take, self.present)
+    def prepared(
+        self, state: MotionState, turn: int, also: Callable[[int], T]
+    ) -> tuple[list[View], list[T]]:
+        """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
+        one camera after the other, as threads that wait for each other after every step gain nothing."""
+
+        def prepare(i: int) -> tuple[View | None, T]:
+            self._mark(i, state)
+            self._renew_before(i, turn)
+            return self._classified(i, state, marked=True), also(i)
+
+        done = self._each(prepare, self.present)
+        return [view for view, _ in done if view is not None], [one for _, one in done]
 
     def classified(self, state: MotionState, marked: bool = False) -> list[View]:
         """Every present picture by the regions of the body as predicted, which is drawn last into each; marked:
         `mark_body` did that, with this state and this fitter, and nothing was drawn since."""
+        views = self._each(lambda i: self._classified(i, state, marked), self.present)
+        return [one for one in views if one is not None]
+
+    def _classified(self, i: int, state: MotionState, marked: bool) -> View | None:
         p = self._params
-        soft = int(255 * p.soft)
-
-        def view(i: int) -> View | None:
-            drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
-            roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)
-            if roi is None:
-                return None
-            x0, y0, x1, y1 = roi
-            before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
-            drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
-            ids = camera.appearance.classify(
-                np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
-                before,
-                region_distances(drawn),
-                self._floors[i].near(state.root_m, roi),
-            )
-            return View(i, roi, ids, np.where(before > 0, soft, 255).astype(np.uint8), dt_s)
-
-        return [one for one in self._each(view, self.present) if one is not None]
+        drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
+        roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)
+        if roi is None:
+            return None
+        x0, y0, x1, y1 = roi
+        before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
+        drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
+        ids = camera.appearance.classify(
+            np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+            before,
+            region_distances(drawn),
+            self._floors[i].near(state.root_m, roi),
+        )
+        weights = np.where(before > 0, int(255 * p.soft), 255).astype(np.uint8)
+        return View(i, roi, ids, weights, dt_s)
 
     def silhouettes(self, state: MotionState) -> list[View]:
         """Every present picture by what stands before the background where somebody of unknown colours is expected."""
@@ -219,12 +237,6 @@ class CameraViews:
             roi = self.fitter.drawings[i].region(state, dt_s, self._params.margin_px)
             if roi is not None:
                 self._learn(i, state, dt_s, roi, None)
-
-    def learn_appearance(self, state: MotionState, views: Sequence[View]) -> None:
-        """Learn the colours of a body that agrees with what was classified."""
-        self._each(
-            lambda view: self._learn(view.index, state, view.dt_s, view.roi, view.ids), views
-        )
 
     def _learn(
         self, index: int, state: MotionState, dt_s: float, roi: Roi, ids: Bytes | None
@@ -249,10 +261,15 @@ class CameraViews:
                     dst=camera.body,
                 )
 
-    def learn_background(self) -> None:
-        """Follow each background where nobody is marked; not while somebody who may be a part of it is not found yet."""
+    def learn(self, state: MotionState | None, views: Sequence[View]) -> None:
+        """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
+        nobody is marked; not while somebody who may be a part of it is not found yet."""
+        shows = {view.index: view for view in views}
 
         def learn(i: int) -> None:
+            if state is not None and i in shows:
+                view = shows[i]
+                self._learn(i, state, view.dt_s, view.roi, view.ids)
             camera = self.each[i]
             if not camera.may_hold_body:
                 camera.background.learn(camera.picture, camera.body)

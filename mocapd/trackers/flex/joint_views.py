@@ -1,10 +1,12 @@
 """What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import cv2
 import numpy as np
 
+from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.fit.solver import Fitter
@@ -26,8 +28,14 @@ from mocapd.vision.heatmaps.person_crop import PersonCrop, crop_about, middle_of
 _JOINTS = np.array([INDEX[name] for name in JOINTS])
 _HIPS, _NECK = INDEX["hips"], INDEX["neck"]
 _NEAREST_M = 0.5
+_ITERATIONS = 5  # of undistortion: no joint is known to a thousandth of a pixel
 _CELL_PX = INPUT_PX / CELLS
 _GREY = (127.5, 127.5, 127.5)
+
+
+def unwatched(_camera: int) -> JointRays | None:
+    """No camera is looked at."""
+    return None
 
 
 class JointViews:
@@ -39,12 +47,12 @@ class JointViews:
         self._networks = [JointNetwork() for _ in range(looked_at)]
         self._size, self._params = stature_m / STATURE_M, params
 
-    def look(
+    def watch(
         self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
-    ) -> tuple[JointTerm, ...]:
-        """The joints of a body that is expected here, as a term of its fit; none where they do not count."""
+    ) -> Callable[[int], JointRays | None]:
+        """What looks at a camera by its index for the joints of a body that is expected here."""
         if not self._networks:
-            return ()
+            return unwatched
         here_m, _ = fitter.joints(predicted)
 
         def see(i: int) -> JointRays | None:
@@ -54,8 +62,12 @@ class JointViews:
                 there_m, _ = fitter.joints(replace(predicted, root_m=root_m, local_xyzw=local))
             return self._rays(fitter, i, cameras.each[i], here_m, there_m)
 
-        seen = [one for one in fitter.each(see, cameras.present) if one is not None]
-        return (JointTerm(fitter.model, seen, self._params.term),)
+        return see
+
+    def term(self, model: BodyModel, seen: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
+        """What the cameras saw as a term of the fit; none where they do not count or nothing was looked at."""
+        there = [one for one in seen if one is not None]
+        return (JointTerm(model, there, self._params.term),) if there else ()
 
     def _rays(
         self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
@@ -71,7 +83,8 @@ class JointViews:
         seen = self._networks[index].look(*_cut_out(view, crop))
         crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
-        xy = undistort(camera.dist, (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]])
+        distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
+        xy = undistort(camera.dist, distorted, _ITERATIONS)
         # what moved until this camera's own exposure
         moved_m = in_camera - to_camera(camera, here_m)
         xy = xy - moved_m[_JOINTS, :2] / middle[2]

@@ -1,6 +1,8 @@
 """What another tracker knows of the body: taken over as a whole, or its upper body held while legs and head are fitted."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,12 +13,12 @@ from mocapd.body.skeleton import N_JOINTS, local_from_global
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState, moved
-from mocapd.fit.solver import Fitter, View
-from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.joint_term import JointRays
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe
 from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_views import unwatched
 from mocapd.trackers.flex.memory import Followed, Proportions, is_believed, velocity_of
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.pose_terms import PoseTerms
@@ -71,6 +73,25 @@ def guided_information(params: Params, prediction_sd: Floats, dt_s: float) -> Fl
     return np.diag(held + 1.0 / (prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
 
 
+class _Guided(NamedTuple):
+    """One frame set, and what is known before it is looked at."""
+
+    predicted: MotionState
+    frames: FrameSet
+    turn: int
+    dt_s: float
+    held: Floats
+    iterations: int
+
+
+class _Found(NamedTuple):
+    """What came of it, and the parts of the body that were found elsewhere."""
+
+    fit: Fit
+    views: list[View]
+    changed: tuple[str, ...] = ()
+
+
 class LegsBelow:
     """Legs below, and a head above, an upper body that another tracker leads. Remembers since when it knows the legs."""
 
@@ -108,61 +129,74 @@ class LegsBelow:
         last = known.state if known is not None else standing_below(model, upper, wearer)
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3) if known is not None else TAKEN_OVER_S
         predicted = predicted_below(model, self._skeleton, p, last, dt_s, upper, wearer)
-        cameras.mark_body(predicted)
-        if cameras.are_new:
-            cameras.seed_background()
-        cameras.renew_before(turn)
-        probe("background")
         if known is None:
             self._found_ns = frames.t_ns
-        is_first = not cameras.know_appearance
-        views = (
-            cameras.silhouettes(predicted)
-            if is_first
-            else cameras.classified(predicted, marked=True)
-        )
-        probe("classify")
-        if not views:
-            return known, views
-        held = guided_information(p, self._wardrobe.fitter.prediction_sd, dt_s)
+        if cameras.are_new:
+            cameras.mark_body(predicted)
+            cameras.seed_background()
         # legs that were not seen before have a way to go
         iterations = p.guided_iterations if known is not None else p.start.iterations
-        changed: tuple[str, ...] = ()
-        if is_first:
-            fit = self._silhouettes.fit(
-                predicted, views, dt_s, iterations, learn_shape=False, fine=1, motion=held,
-                terms=(self._terms.floor,),
-            )  # fmt: skip
-            if fit.explained >= p.learn_explained:
-                self._wardrobe.learn_first(fit.state, cameras)
-        else:
-            fitter = self._wardrobe.fitter
-            seen = self._seen_joints(predicted, frames.t_ns, turn)
-            probe("joints")
-            measured = self._terms.measured(fitter, predicted, views, frames, turn, LEGS)
-            terms: tuple[PoseTerm, ...] = (*measured, *seen)
-            probe("distances")
-            fit = fitter.fit(
-                predicted, views, dt_s, iterations, learn_shape=False, rendered=True, fine=1, motion=held,
-                terms=terms,
-            )  # fmt: skip
-            probe("fit")
-            fit, changed = self._others.other_legs(
-                self._wardrobe.dressed, fit, views, dt_s, turn, terms, seen, held
-            )
-            probe("legs")
-        if not is_believed(fit, p):
-            return known, views
+        held = guided_information(p, self._wardrobe.fitter.prediction_sd, dt_s)
+        one = _Guided(predicted, frames, turn, dt_s, held, iterations)
+        found = self._fitted(one, probe) if cameras.know_appearance else self._outlined(one)
+        if found is None or not is_believed(found.fit, p):
+            return known, [] if found is None else found.views
         velocity = np.zeros(model.n_pose)
         if known is not None:
-            velocity = velocity_of(model, p, fit, last, dt_s, changed)
-        state = replace(fit.state, velocity=velocity)
-        return Followed(frames.t_ns, state, fit, cameras.names(views), changed), views
+            velocity = velocity_of(model, p, found.fit, last, dt_s, found.changed)
+        state = replace(found.fit.state, velocity=velocity)
+        names = cameras.names(found.views)
+        return Followed(frames.t_ns, state, found.fit, names, found.changed), found.views
 
-    def _seen_joints(self, predicted: MotionState, t_ns: int, turn: int) -> tuple[JointTerm, ...]:
+    def _outlined(self, one: _Guided) -> _Found | None:
+        """Somebody whose look is not known yet, by what stands before the background; it is learned then."""
+        p, cameras = self._params, self._cameras
+        cameras.mark_body(one.predicted)
+        cameras.renew_before(one.turn)
+        views = cameras.silhouettes(one.predicted)
+        if not views:
+            return None
+        fit = self._silhouettes.fit(
+            one.predicted, views, one.dt_s, one.iterations, learn_shape=False, fine=1, motion=one.held,
+            terms=(self._terms.floor,),
+        )  # fmt: skip
+        if fit.explained >= p.learn_explained:
+            self._wardrobe.learn_first(fit.state, cameras)
+        return _Found(fit, views)
+
+    def _fitted(self, one: _Guided, probe: Probe) -> _Found | None:
+        """Somebody whose look is known."""
+        fitter, terms = self._wardrobe.fitter, self._terms
+        views, rays = self._cameras.prepared(one.predicted, one.turn, self._watch(one))
+        probe("cameras")
+        if not views:
+            return None
+        seen = terms.joints.term(fitter.model, rays)
+        measured = terms.measured(fitter, one.predicted, views, one.frames, one.turn, LEGS)
+        probe("distances")
+        fit = fitter.fit(
+            one.predicted, views, one.dt_s, one.iterations, learn_shape=False, rendered=True, fine=1,
+            motion=one.held, terms=(*measured, *seen),
+        )  # fmt: skip
+        probe("fit")
+        fit, changed = self._others.other_legs(
+            self._wardrobe.dressed,
+            fit,
+            views,
+            one.dt_s,
+            one.turn,
+            (*measured, *seen),
+            seen,
+            one.held,
+        )
+        probe("legs")
+        return _Found(fit, views, changed)
+
+    def _watch(self, one: _Guided) -> Callable[[int], JointRays | None]:
+        """What looks for joints, in the frames that do."""
         p = self._params
         # legs that were just found are told as found: what moves them far must wait
-        is_new = t_ns - self._found_ns <= nanoseconds(p.guided_joint_after_s)
-        if turn % p.guided_joint_turns != 1 or is_new:
-            return ()
-        return self._terms.joints(self._wardrobe.fitter, predicted, self._cameras)
+        is_new = one.frames.t_ns - self._found_ns <= nanoseconds(p.guided_joint_after_s)
+        if one.turn % p.guided_joint_turns != 1 or is_new:
+            return unwatched
+        return self._terms.joints.watch(self._wardrobe.fitter, one.predicted, self._cameras)

@@ -6,9 +6,7 @@ from mocapd.body.model import BodyModel
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
-from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
-from mocapd.trackers.flex.camera_views import CameraViews
 from mocapd.trackers.flex.joint_views import JointViews
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.texture_distance import texture_distances
@@ -21,14 +19,8 @@ class PoseTerms:
     def __init__(self, model: BodyModel, cameras: int, params: Params) -> None:
         """cameras: how many there are."""
         self.floor = FloorTerm(model, params.floor)
-        self._joints = JointViews(cameras, model.stature_m, params.joints)
+        self.joints = JointViews(cameras, model.stature_m, params.joints)
         self._params = params.distances
-
-    def joints(
-        self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
-    ) -> tuple[JointTerm, ...]:
-        """Where the network sees those of the body that is expected here."""
-        return self._joints.look(fitter, predicted, cameras)
 
     def measured(
         self,

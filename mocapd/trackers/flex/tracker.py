@@ -17,12 +17,12 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved
 from mocapd.fit.solver import Fitter, View
-from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
 from mocapd.trackers.depth_views import with_depths
 from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_views import unwatched
 from mocapd.trackers.flex.led import TAKEN_OVER_S, LegsBelow, taken_over
 from mocapd.trackers.flex.looks.look import DressedFitters
 from mocapd.trackers.flex.memory import (
@@ -109,12 +109,14 @@ class FlexTracker:
             return  # nobody at the origin is in any picture
         fitter, frames = self._wardrobe.fitter, FrameSet(0, black, 0)
         views = with_depths(fitter, somebody, views, frames, self.params.depths)
-        seen = self._terms.joints(fitter, somebody, cameras)
+        joints = self._terms.joints
+        watched = map(joints.watch(fitter, somebody, cameras), cameras.present)
+        seen = joints.term(self._model, watched)
         terms = (*self._terms.measured(fitter, somebody, views, frames, self._turn), *seen)
         fit = fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
         still, usual_sd = somebody.velocity, fitter.prediction_sd
         predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
-        cameras.learn_appearance(somebody, views)
+        cameras.learn(somebody, views)
         self._others.rehearse(self._wardrobe.dressed, somebody, views, seen)
 
     def reset(self, near: BodyState | None = None) -> None:
@@ -203,21 +205,18 @@ class FlexTracker:
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
         root, local = moved(self._model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
-        self._cameras.mark_body(predicted)
-        self._cameras.renew_before(self._turn)
-        self.probe("background")
-        views = self._cameras.classified(predicted, marked=True)
-        self.probe("classify")
+        # each of the two takes long: joints in frames without depths
+        with_joints = self._turn % p.depth_turns != 0
+        joints = self._terms.joints
+        watch = joints.watch(fitter, predicted, self._cameras) if with_joints else unwatched
+        views, rays = self._cameras.prepared(predicted, self._turn, watch)
+        self.probe("cameras")
         if not views:
             return known, views
-        seen: tuple[JointTerm, ...] = ()
-        # each of the two takes long: joints in frames without depths
-        if self._turn % p.depth_turns:
-            seen = self._terms.joints(fitter, predicted, self._cameras)
-            self.probe("joints")
-        else:
+        seen = joints.term(self._model, rays)
+        if not with_joints:
             views = with_depths(fitter, predicted, views, frames, p.depths)
-        self.probe("depths")
+            self.probe("depths")
         confirmed, columns = known.fit.confirmed_arms, self._model.space.columns
         motion = predicted_information(
             known.fit.covariance, last.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,

@@ -52,11 +52,10 @@ def learn_on(
 ) -> None:
     """Learn the look of a body that agrees well, in one of `every` cameras in turn, and the background beside it, or
     everywhere when nobody is known."""
-    if seen is not None and seen.fit.explained >= params.learn_explained:
-        cameras.learn_appearance(seen.state, views[turn % every :: every])
     if nobody and turn % params.absorb_turns:
         # what stays for long is furniture that was moved
         cameras.mark_unknown()
     elif nobody:
         cameras.mark_body(None)
-    cameras.learn_background()
+    agrees = seen is not None and seen.fit.explained >= params.learn_explained
+    cameras.learn(seen.state if seen is not None and agrees else None, views[turn % every :: every])

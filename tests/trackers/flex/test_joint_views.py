@@ -11,10 +11,12 @@ from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry.camera_model import to_camera
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World, rig_of
 from mocapd.trackers.flex.camera_views import CameraViews
+from mocapd.trackers.flex.joint_view_params import JointViewParams
 from mocapd.trackers.flex.joint_views import JointViews
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Frame, FrameSet
@@ -47,16 +49,14 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
     for k in range(22):
         cameras.look(_set({r.camera.name: r.picture(None, levels, k) for r in renderers}, k))
         cameras.mark_body(None)
-        cameras.learn_background()
+        cameras.learn(None, [])
     cameras.look(_set({r.camera.name: r.frame(0) for r in renderers}, 30))
     truth = world.at(renderers[0].exposure_s(0))
     state = MotionState(
         truth.pose.root_m + [0.06, 0.0, -0.05], local_from_global(world.skeleton, truth.pose.quats_xyzw),
         np.zeros(body.n_pose), np.ones(body.n_shape), initial_information(body.space),
     )  # fmt: skip
-    (term,) = JointViews(len(rig.cameras), world.shape.stature_m, Params().joints).look(
-        fitter, state, cameras
-    )
+    (term,) = _looked(Params().joints, fitter, state, cameras)
     assert len(term.seen) == len(rig.cameras)
     off_cm = []
     for one in term.seen:
@@ -67,7 +67,14 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
     assert np.median(np.concatenate(off_cm)) < 5.0
     assert np.percentile(np.concatenate(off_cm), 90) < 15.0
     unheeded = replace(Params().joints, term=replace(Params().joints.term, weight=0.0))
-    assert JointViews(2, 1.7, unheeded).look(fitter, state, cameras) == ()
+    assert _looked(unheeded, fitter, state, cameras) == ()
+
+
+def _looked(
+    params: JointViewParams, fitter: Fitter, state: MotionState, cameras: CameraViews
+) -> tuple[JointTerm, ...]:
+    joints = JointViews(len(cameras.each), fitter.model.stature_m, params)
+    return joints.term(fitter.model, map(joints.watch(fitter, state, cameras), cameras.present))
 
 
 def _set(pictures: dict[str, np.ndarray], k: int) -> FrameSet:

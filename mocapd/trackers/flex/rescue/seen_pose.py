@@ -1,12 +1,13 @@
 """The pose that the network's joints say: where a limb, or which way the body faces, is far from it, that is tried."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
+from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter
 from mocapd.fit.terms.joint_term import JointTerm
@@ -62,7 +63,8 @@ def starts_as_seen(
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
         return []
-    there = seen_pose(fitter, fit.state, seen, held, p)
+    lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
+    there = seen_pose(fitter, fit.state, seen, held, p, lost)
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
@@ -87,14 +89,30 @@ def seen_pose(
     seen: JointTerm,
     held: Sequence[PoseTerm],
     params: SeenPoseParams,
+    limbs: Collection[str] = (),
 ) -> MotionState:
-    """What the joints alone say, from this state on."""
+    """What the joints alone say, from this state on, but with these limbs bent as they say."""
     turn_rad = seen.turn_rad(fitter.joints(state)[0])
     if abs(turn_rad) > params.turned_rad:
         local = state.local_xyzw.copy()
         local[0] = rotations.multiply(rotations.exp(np.array([0.0, turn_rad, 0.0])), local[0])
         state = replace(state, local_xyzw=rotations.canonical(local))
+    state = _bent(fitter, state, seen, limbs)
     terms = (*held, seen.trusting)
     return fitter.fit(
         state, (), params.loose_s, params.iterations, learn_shape=False, terms=terms
     ).state
+
+
+def _bent(
+    fitter: Fitter, state: MotionState, seen: JointTerm, limbs: Collection[str]
+) -> MotionState:
+    joints_m, globals_xyzw = fitter.joints(state)
+    places_m = seen.places_m(joints_m[0])
+    local = state.local_xyzw.copy()
+    for name in limbs:
+        limb = LIMBS[name]
+        bent = bent_towards(limb, fitter.model.rest_m, joints_m, globals_xyzw, places_m)
+        if bent is not None:
+            local[[limb.upper, limb.lower]] = bent
+    return replace(state, local_xyzw=rotations.canonical(local))
