@@ -67,19 +67,21 @@ class ArmSearch:
         refit = partial(
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
         )  # fmt: skip
+        exchanges = p.exchange and know_depths(views)
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
             tries = self._candidates(fit.state, arm, views, turn)
             scores = self._scores(fit.state, arm, views, tries, empty)
-            best = best_poses(tries[:, 1:], scores, p.arm_fits)
+            # an exchange takes as long as another fit
+            best = best_poses(tries[:, 1:], scores, p.arm_fits - exchanges)
             starts = [with_limb(fit.state, arm, tries[n]) for n in best]
             cost = partial(self._cost, arm, tries[0], views, empty)
             better = cheapest_fit(fit, starts, refit, cost, p.arm_gain)
             if better is not fit:
                 fit = better
                 changed.append(side)
-        if p.exchange and know_depths(views):
+        if exchanges:
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
             far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
             exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, p.arm_gain)

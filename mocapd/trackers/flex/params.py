@@ -111,7 +111,7 @@ class Params:
 
     # with the upper body known from another tracker
     guided_iterations: int = 3
-    guided_joint_turns: int = 2  # from one look for joints to the next
+    guided_joint_turns: int = 3  # from one look for joints to the next
     guided_joint_after_s: float = 1.0  # since the legs were found
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03

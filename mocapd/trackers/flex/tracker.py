@@ -163,7 +163,7 @@ class FlexTracker:
             known, views = self._legs_below.follow(
                 known, upper.pose, wearer, frames, self._turn, self.probe
             )
-        return self._end(known, views, frames, shape, every=2)
+        return self._end(known, views, frames, shape, every=4)
 
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Proportions, Followed | None]:
         """The wearer of this step, and what is known of the last one."""
