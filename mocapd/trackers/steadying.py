@@ -28,7 +28,7 @@ _SHORTEST_TICKS = 0.1  # frames of one time are told apart a little
 class SteadyingParams:
     """How much of the way to what was found is gone in a usual frame, and how fast a bone turns at most."""
 
-    sure: float = 1.2  # confidence at which it were all of the way; a little is always held back
+    sure: float = 1.3  # confidence at which it were all of the way; a little is always held back
     doubtful: float = 0.2  # confidence up to which it is the least
     least: float = 0.3
     trust_s: float = 0.4  # who was not confirmed at all is fully believed no sooner
