@@ -100,7 +100,7 @@ class RigSegmenter:
                 )
             segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
 
-        # in turn: it takes less than a thread needs to wake
+        # in turn, as the steps before and after: two threads take longer (docs/decisions/joint-heatmaps.md)
         in_turn(learn, views)
 
     def learn_background(self, present: dict[int, float], nobody: bool) -> None:

@@ -184,7 +184,7 @@ class CameraViews:
         self, state: MotionState, turn: int, also: Callable[[int], T]
     ) -> tuple[list[View], list[T]]:
         """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
-        one camera after the other, as threads that wait for each other after every step gain nothing."""
+        each camera all in one go, as threads that wait for each other after every step gain nothing."""
 
         def prepare(i: int) -> tuple[View | None, T]:
             self._mark(i, state)
@@ -194,13 +194,13 @@ class CameraViews:
         done = self._each(prepare, self.present)
         return [view for view, _ in done if view is not None], [one for _, one in done]
 
-    def classified(self, state: MotionState, marked: bool = False) -> list[View]:
-        """Every present picture by the regions of the body as predicted, which is drawn last into each; marked:
-        `mark_body` did that, with this state and this fitter, and nothing was drawn since."""
-        views = self._each(lambda i: self._classified(i, state, marked), self.present)
+    def classified(self, state: MotionState) -> list[View]:
+        """Every present picture by the regions of the body as predicted, which is drawn last into each."""
+        views = self._each(lambda i: self._classified(i, state), self.present)
         return [one for one in views if one is not None]
 
-    def _classified(self, i: int, state: MotionState, marked: bool) -> View | None:
+    def _classified(self, i: int, state: MotionState, marked: bool = False) -> View | None:
+        """marked: the state was drawn last, to mark the body."""
         p = self._params
         drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
         roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)

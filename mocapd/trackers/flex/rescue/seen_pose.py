@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
 from mocapd.fit.motion_state import MotionState
@@ -13,19 +12,6 @@ from mocapd.fit.solver import Fit, Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
-
-# Of each limb: the bones whose rotations are taken, and the joints that tell whether it is there
-_LIMBS = {
-    f"{side}_{limb}": (
-        np.array([INDEX[side + bone] for bone in bones]),
-        np.array([INDEX[side + joint] for joint in joints]),
-    )
-    for side in SIDES
-    for limb, bones, joints in (
-        ("arm", ("Shoulder", "UpperArm", "LowerArm"), ("LowerArm", "Hand")),
-        ("leg", ("UpperLeg", "LowerLeg", "Foot"), ("LowerLeg", "Foot")),
-    )
-}
 
 WHOLE = "whole"  # as a part that changed: all of the body
 
@@ -55,11 +41,8 @@ def starts_as_seen(
     they were seen, with all of the body. held: what else holds the pose that the joints say; legs_alone: the rest of the
     body is known."""
     p, costs = params, seen.costs(fitter.joints(fit.state)[0])
-    far = {
-        name: costs[joints].sum()
-        for name, (_, joints) in _LIMBS.items()
-        if not legs_alone or name.endswith("leg")
-    }
+    may_change = {n: one for n, one in LIMBS.items() if not legs_alone or n.endswith("leg")}
+    far = {name: costs[[one.lower, one.end]].sum() for name, one in may_change.items()}
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
         return []
@@ -68,14 +51,14 @@ def starts_as_seen(
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
-        for name, cost in far.items()
-        if cost - costs_there[_LIMBS[name][1]].sum() > p.limb_cost
+        for name, one in may_change.items()
+        if far[name] - costs_there[[one.lower, one.end]].sum() > p.limb_cost
     )
     starts: list[tuple[MotionState, tuple[str, ...]]] = []
     if limbs:
         local = fit.state.local_xyzw.copy()
         for name in limbs:
-            bones = _LIMBS[name][0]
+            bones = [INDEX[bone] for bone in fitter.model.space.parts[name].groups]
             local[bones] = there.local_xyzw[bones]
         starts.append((replace(fit.state, local_xyzw=local), limbs))
     if whole and costs.sum() - costs_there.sum() > p.whole_cost:
