@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mocapd.types import Floats, Ints
-from mocapd.vision.raster_kernels import NOTHING, draw, label_triangles, rasterise
+from mocapd.vision.raster_kernels import NOTHING, label_triangles, rasterise
 
 H, W = 30, 40
 
@@ -127,18 +127,22 @@ def test_a_triangle_larger_than_the_picture_fills_it() -> None:
     assert (rasterised(huge, np.ones(3), np.array([[0, 1, 2]], np.int32)) == 0).all()
 
 
-def test_draw_keeps_what_is_nearer_already() -> None:
-    a = front(np.array([[2.0, 2.0], [35.0, 3.0], [4.0, 27.0]]))
-    b = front(np.array([[1.0, 8.0], [38.0, 8.0], [20.0, 29.0]]))
-    xy, depth = np.concatenate([a, b]), np.array([2.0] * 3 + [1.0] * 3)
-    triangles = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
-    together = rasterised(xy, depth, triangles)
-    zbuffer, out = np.empty((H, W), np.float32), np.empty((H, W), np.int32)
-    rasterise(xy, depth, triangles[1:], zbuffer, out)
-    np.testing.assert_array_equal(out == 0, together == 1)
-    out[out == 0] = 7  # a name that `draw` does not give
-    draw(xy, depth, triangles[:1], zbuffer, out)
-    np.testing.assert_array_equal(out, np.choose(together + 1, [NOTHING, 0, 7]))
+def test_of_two_triangles_at_one_place_the_first_is_seen() -> None:
+    one = front(np.array([[2.0, 2.0], [35.0, 3.0], [4.0, 27.0]]))
+    xy = np.concatenate([one, one])
+    seen = rasterised(xy, np.full(6, 1.5), np.array([[0, 1, 2], [3, 4, 5]], np.int32))
+    assert set(np.unique(seen)) == {NOTHING, 0}
+
+
+def test_depths_are_those_of_what_is_seen() -> None:
+    square = front(np.array([[0.0, 0.0], [39.0, 0.0], [0.0, 58.0]]))
+    depth_at, seen = np.empty((H, W), np.float32), np.empty((H, W), np.int32)
+    depth = 1.0 + square[:, 0] / 39.0 + square[:, 1] / 58.0
+    rasterise(square, depth, np.array([[0, 1, 2]], np.int32), depth_at, seen)
+    y, x = np.mgrid[:H, :W]
+    there = seen == 0
+    np.testing.assert_allclose(depth_at[there], (1.0 + x / 39.0 + y / 58.0)[there], rtol=1e-6)
+    assert (depth_at[~there] > 1e6).all()
 
 
 def test_labels_are_those_of_the_triangles() -> None:
