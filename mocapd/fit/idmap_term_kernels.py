@@ -13,6 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import surface_row_of_arrays
+from mocapd.fit.row_products_kernels import add_products
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
 
@@ -323,9 +324,9 @@ def accumulate(
                 rows[n_rows, P] = scale * r
                 n_rows += 1
                 if n_rows == _BLOCK:
-                    square += np.dot(rows.T, rows)
+                    add_products(rows, square)
                     n_rows = 0
-    square += np.dot(rows[:n_rows].T, rows[:n_rows])
+    add_products(rows[:n_rows], square)
     H += square[:P, :P]
     b += square[:P, P]
     return cost
