@@ -117,15 +117,29 @@ _CELL = 8  # px of the grid that tells which colours are within reach
 @njit(cache=True, nogil=True)
 def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
     """Bit k of a cell of _CELL px is set where colour k may be within `radius` [px] of the cell: spares
-    the search where it must fail."""
+    the search where it must fail. Bit 0 tells nothing."""
     h, w = ids.shape
     gh, gw = h // _CELL + 1, w // _CELL + 1
     own = np.zeros((gh, gw), np.int32)
+    flat = ids.ravel()
+    side = np.uint64(_CELL)
     for y in range(h):
-        for x in range(w):
-            k = ids[y, x]
-            if k > 0:
-                own[y // _CELL, x // _CELL] |= np.int32(1) << k
+        cells = own[y // _CELL]
+        row = np.uint64(y * w)
+        for gx in range(np.uint64(w // _CELL)):
+            # most hold nothing; of unsigned places, which need no check, all eight are loaded at once
+            first = row + gx * side
+            some = np.uint8(0)
+            for i in range(side):
+                some |= flat[first + i]
+            if some == 0:
+                continue
+            bits = np.int32(0)
+            for i in range(side):
+                bits |= np.int32(1) << flat[first + i]
+            cells[gx] |= bits
+        for x in range(w // _CELL * _CELL, w):
+            cells[gw - 1] |= np.int32(1) << ids[y, x]
     reach = int(np.ceil(radius / _CELL))
     rows = np.zeros((gh, gw), np.int32)
     for gy in range(gh):
