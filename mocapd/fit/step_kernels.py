@@ -53,11 +53,9 @@ def gauss_newton_step(
     for p in range(n_pose):
         for q in range(n_pose):
             A[p, q] += motion_information[p, q] + rest_information[p, q]
-            g[p] += motion_information[p, q] * away[q]
+    _add_pulls(motion_information, away, g)
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
-    for p in range(n_pose):
-        for q in range(n_pose):
-            g[p] += rest_information[p, q] * away[q]
+    _add_pulls(rest_information, away, g)
     # by which rotation vector, in the world, the hips lean: of Y over to where they point up
     x, y, z, w = local[0, 0], local[0, 1], local[0, 2], local[0, 3]
     A[3, 3] += tilt_information
@@ -86,3 +84,16 @@ def gauss_newton_step(
     for p in range(P):
         g[p] = step[p]
     return g
+
+
+@njit(cache=True, nogil=True)
+def _add_pulls(information: Array, away: Array, g: Array) -> None:
+    """Add information (n,n) times away (n,) to the first of g (P,); n is a multiple of three, and three sums that are made
+    beside each other take a third of the time of one."""
+    for p in range(0, away.shape[0], 3):
+        x, y, z = g[p], g[p + 1], g[p + 2]
+        for q in range(away.shape[0]):
+            x += information[p, q] * away[q]
+            y += information[p + 1, q] * away[q]
+            z += information[p + 2, q] * away[q]
+        g[p], g[p + 1], g[p + 2] = x, y, z
