@@ -6,7 +6,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,6 +158,7 @@ class Fitter:
         self._torso: tuple[Shaped, TorsoSlices] | None = None
         self._offsets = offsets_by_distance(params.first_radius_px)
         self._offsets_r2 = (self._offsets**2).sum(axis=1)
+        self._search = cache(self._searched)
         p = params
         self.prediction_sd = np.concatenate([
             np.full(3, p.root_sd_m),
@@ -223,7 +224,7 @@ class Fitter:
             one = _Pass(
                 state,
                 self.shaper(state.factors),
-                self._search(radius, is_fine, phase=iteration & 1),
+                self._search(radius, is_fine, iteration & 1),
                 n_shape,
                 redraw=not rendered or iteration > 0,
             )
@@ -327,7 +328,7 @@ class Fitter:
             one.n_shape, self.params.row_weight,
         )  # fmt: skip
 
-    def _search(self, radius_px: float, fine: bool, phase: int) -> Search:
+    def _searched(self, radius_px: float, fine: bool, phase: int) -> Search:
         """Half of all pixels, or, not `fine`, a quarter: every second each way."""
         grid_px = 1.0 if fine else 2.0
         n = np.searchsorted(self._offsets_r2, (radius_px / grid_px) ** 2, side="right")

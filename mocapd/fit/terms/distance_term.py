@@ -38,13 +38,14 @@ class DistanceTerm:
 
     def __init__(self, model: BodyModel, measured: MeasuredDistances) -> None:
         self._model, self._measured = model, measured
+        self._information = 1.0 / measured.sd_m**2
         self._row = np.zeros(model.n_pose)
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `PoseTerm`."""
         m, seen = self._model, self._measured
         cost: float = pull_along_rays(
-            seen.triangle, seen.origin_m, seen.rays, seen.distance_m, 1.0 / seen.sd_m**2, _ROBUST_M,
+            seen.triangle, seen.origin_m, seen.rays, seen.distance_m, self._information, _ROBUST_M,
             body.centres, m.triangle_bones, m.triangle_weights, body.rest, m.parents,
             m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, self._row, H, b,
         )  # fmt: skip
