@@ -21,18 +21,18 @@ def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -
     a, b = x - int(x), y - int(y)
     upper_left, upper_right = (1.0 - b) * (1.0 - a), (1.0 - b) * a
     lower_left, lower_right = b * (1.0 - a), b * a
-    side = 2 * half + 1
+    # unsigned places, which need no check
+    side, width, right = np.uint64(2 * half + 1), np.uint64(w), np.uint64(1)
+    pixels, first = grey.ravel(), np.uint64(top * w + left)
     for j in range(side):
-        row, below = grey[top + j, left : left + side], grey[top + j + 1, left : left + side]
-        row_right = grey[top + j, left + 1 : left + 1 + side]
-        below_right = grey[top + j + 1, left + 1 : left + 1 + side]
-        line = out[j * side : (j + 1) * side]
+        here, line = first + j * width, j * side
+        below = here + width
         for i in range(side):
-            line[i] = (
-                upper_left * row[i]
-                + upper_right * row_right[i]
-                + lower_left * below[i]
-                + lower_right * below_right[i]
+            out[line + i] = (
+                upper_left * pixels[here + i]
+                + upper_right * pixels[here + i + right]
+                + lower_left * pixels[below + i]
+                + lower_right * pixels[below + i + right]
             )
     return True
 
