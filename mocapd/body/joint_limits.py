@@ -51,11 +51,12 @@ _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
     # that neutral twist of the upper arm by up to 45 degrees, which tilts the hinge towards z
     "LowerArm": (X, ((-90.0, 90.0), (-155.0, 7.0), (-25.0, 75.0))),
     "neck": (Y, ((-95.0, 75.0), (-88.0, 88.0), (-58.0, 58.0))),
-    # a leg that is lifted to the side turns outwards, and its swing has a part about z beyond 45
-    "UpperLeg": (Y, ((-135.0, 30.0), (-55.0, 60.0), (-35.0, 60.0))),
+    # a leg that is lifted to the side turns outwards, and its swing has a part about z beyond 45; in deep squats of
+    # recorded people, knees apart and the hips tipped back less than the pelvis is, it reaches 125, with a twist of 110
+    "UpperLeg": (Y, ((-135.0, 30.0), (-55.0, 110.0), (-35.0, 125.0))),
     # as at the elbow, the neutral twist of the thigh differs between skeletons
-    "LowerLeg": (Y, ((-10.0, 155.0), (-35.0, 45.0), (-12.0, 12.0))),
-    "Foot": (Z, ((-45.0, 66.0), (-25.0, 30.0), (-45.0, 30.0))),
+    "LowerLeg": (Y, ((-10.0, 155.0), (-35.0, 45.0), (-18.0, 18.0))),
+    "Foot": (Z, ((-60.0, 66.0), (-45.0, 45.0), (-45.0, 30.0))),
 }
 
 
