@@ -1,6 +1,6 @@
 """What another tracker knows of the body: taken over as a whole, or its upper body held while legs and head are fitted."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.joint_term import JointRays
+from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe
 from mocapd.trackers.flex.camera_views import CameraViews
@@ -23,6 +24,7 @@ from mocapd.trackers.flex.memory import Followed, Proportions, is_believed, velo
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.pose_terms import PoseTerms
 from mocapd.trackers.flex.rescue.other_poses import OtherPoses
+from mocapd.trackers.flex.rescue.seen_tries import Anew
 from mocapd.trackers.flex.wardrobe import Wardrobe
 from mocapd.types import Floats, FrameSet, Pose, Skeleton
 
@@ -172,23 +174,21 @@ class LegsBelow:
         if not views:
             return None
         seen = terms.joints.term(fitter.model, rays)
-        measured = terms.measured(fitter, one.predicted, views, one.frames, one.turn, LEGS)
+
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+            return (*terms.measured(fitter, drawn, shown, one.frames, one.turn, LEGS), *seen)
+
+        of_predicted = terms_of(one.predicted, views)
         probe("distances")
         fit = fitter.fit(
             one.predicted, views, one.dt_s, one.iterations, learn_shape=False, rendered=True, fine=1,
-            motion=one.held, terms=(*measured, *seen),
+            motion=one.held, terms=of_predicted,
         )  # fmt: skip
         probe("fit")
-        fit, changed = self._others.other_legs(
-            self._wardrobe.dressed,
-            fit,
-            views,
-            one.dt_s,
-            one.turn,
-            (*measured, *seen),
-            seen,
-            one.held,
-        )
+        fit, views, changed = self._others.other_legs(
+            self._wardrobe.dressed, fit, views, one.dt_s, one.turn, of_predicted, seen,
+            Anew(self._cameras.classified, terms_of), one.held,
+        )  # fmt: skip
         probe("legs")
         return _Found(fit, views, changed)
 

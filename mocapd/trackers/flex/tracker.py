@@ -1,6 +1,6 @@
 """The tracker without a shirt: a whole body before a known background, its look learned, fitted in all views at once."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -36,6 +36,7 @@ from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.person_search import PersonSearch
 from mocapd.trackers.flex.pose_terms import PoseTerms
 from mocapd.trackers.flex.rescue.other_poses import OtherPoses
+from mocapd.trackers.flex.rescue.seen_tries import Anew
 from mocapd.trackers.flex.telling import told_of
 from mocapd.trackers.flex.wardrobe import Wardrobe, learn_on
 from mocapd.trackers.steadying import Told
@@ -223,17 +224,18 @@ class FlexTracker:
             [(columns(f"{s}_arm"), min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
         )  # fmt: skip
 
-        def terms_of(drawn: MotionState) -> tuple[PoseTerm, ...]:
-            return (*self._terms.measured(fitter, drawn, views, frames, self._turn), *seen)
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+            return (*self._terms.measured(fitter, drawn, shown, frames, self._turn), *seen)
 
-        terms = terms_of(predicted)
+        terms = terms_of(predicted, views)
         self.probe("distances")
         fit = fitter.fit(
             predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms,
         )  # fmt: skip
         self.probe("fit")
-        fit, changed = self._others.improve(
-            self._wardrobe.dressed, fit, views, dt_s, frames, self._turn, terms, seen, terms_of, self.probe,
+        fit, views, changed = self._others.improve(
+            self._wardrobe.dressed, fit, views, dt_s, frames, self._turn, terms, seen,
+            Anew(self._cameras.classified, terms_of), self.probe,
         )  # fmt: skip
         if not is_believed(fit, p):
             return known, views

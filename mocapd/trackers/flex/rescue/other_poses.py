@@ -1,6 +1,6 @@
 """Poses out of the fit's reach that pictures bear better: another arm or leg, a body turned round, legs exchanged."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,7 +22,8 @@ from mocapd.trackers.flex.rescue.legs import (
     with_hips_below_chest,
     with_legs_exchanged,
 )
-from mocapd.trackers.flex.rescue.seen_pose import WHOLE, seen_pose, starts_as_seen
+from mocapd.trackers.flex.rescue.seen_pose import WHOLE, seen_pose
+from mocapd.trackers.flex.rescue.seen_tries import Anew, Judged, tried_as_seen
 from mocapd.trackers.flex.rescue.turn_watch import TurnWatch
 from mocapd.trackers.flex.rescue.turned import MIRRORED, UNDER_LIMBS, turned_round
 from mocapd.types import Floats, FrameSet
@@ -73,28 +74,30 @@ class OtherPoses:
         turn: int,
         terms: Terms,
         seen: Sequence[JointTerm],
-        measured: Callable[[MotionState], Terms],
+        anew: Anew,
         probe: Probe,
-    ) -> tuple[Fit, tuple[str, ...]]:
-        """The fit, or a better one, and the parts of the body that changed over.
+    ) -> tuple[Fit, list[View], tuple[str, ...]]:
+        """The fit, or a better one, its views, and the parts of the body that changed over.
 
-        turn: a running number; terms: of the fit; seen: those of them that saw joints; measured: those of another pose, once
-        it is drawn last into every view.
+        turn: a running number; terms: of the fit; seen: those of them that saw joints; anew: for other poses.
         """
-        fit, limbs = self._as_seen(dressed.fitter, fit, views, dt_s, terms, seen, None)
+        found = Judged(fit, views, terms)
+        for joints in seen:
+            found = tried_as_seen(dressed.fitter, found, dt_s, joints, anew, self._params.seen_pose)
+        fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
         fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
-        changed = [*limbs, *(f"{side}_arm" for side in arms)]
+        changed = [*found.changed, *(f"{side}_arm" for side in arms)]
         probe("arms")
         self._facing.look(dressed.fitter, fit.state, views, frames, turn)
         if self._facing.is_turned:
             self._facing.reset()
-            round_ = self._turned(dressed.fitter, fit, views, measured)
+            round_ = self._turned(dressed.fitter, fit, views, anew)
             if round_ is not None:
                 fit = round_
                 changed.append(WHOLE)
         elif self._turning.is_due(turn):
-            other = self._fitted_turned(dressed.fitter, fit, views, measured, UNDER_LIMBS)
+            other = self._fitted_turned(dressed.fitter, fit, views, anew, UNDER_LIMBS)
             if self._turning.is_turned(fit, other):
                 self._turning.reset()
                 fit = other
@@ -102,37 +105,7 @@ class OtherPoses:
         probe("face")
         fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, None)
         probe("legs")
-        return fit, (*changed, *legs)
-
-    def _as_seen(
-        self,
-        fitter: Fitter,
-        fit: Fit,
-        views: Sequence[View],
-        dt_s: float,
-        terms: Terms,
-        seen: Sequence[JointTerm],
-        motion: Floats | None,
-    ) -> tuple[Fit, tuple[str, ...]]:
-        """The fit, or one that begins where the joints were seen, and the parts that changed over; motion: of every fit,
-        where an upper body leads and legs alone may change."""
-        if not seen:
-            return fit, ()
-        p, (joints,) = self._params.seen_pose, seen
-        held = [one for one in terms if not one.is_measured and one is not joints]
-        starts = starts_as_seen(fitter, fit, joints, held, p, legs_alone=motion is not None)
-        tried: list[Fit] = []
-
-        def begun(start: MotionState) -> Fit:
-            one = fitter.fit(
-                start, views, dt_s, p.fit_iterations, learn_shape=False, fine=1, motion=motion, terms=terms
-            )  # fmt: skip
-            tried.append(one)
-            return one
-
-        states = [start for start, _ in starts]
-        better = cheapest_fit(fit, states, begun, lambda one: one.cost_for_any_pose, p.gain)
-        return (fit, ()) if better is fit else (better, starts[tried.index(better)][1])
+        return fit, list(views), (*changed, *legs)
 
     def other_legs(
         self,
@@ -143,12 +116,19 @@ class OtherPoses:
         turn: int,
         terms: Terms,
         seen: Sequence[JointTerm],
+        anew: Anew,
         motion: Floats,
-    ) -> tuple[Fit, tuple[str, ...]]:
+    ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """As `improve`, of the legs alone; motion: of every fit, where an upper body leads."""
-        fit, limbs = self._as_seen(dressed.fitter, fit, views, dt_s, terms, seen, motion)
-        fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, motion)
-        return fit, (*limbs, *legs)
+        found = Judged(fit, views, terms)
+        for joints in seen:
+            found = tried_as_seen(
+                dressed.fitter, found, dt_s, joints, anew, self._params.seen_pose, motion
+            )
+        fit, legs = self._searched_legs(
+            dressed, found.fit, found.views, dt_s, turn, found.terms, motion
+        )
+        return fit, list(found.views), (*found.changed, *legs)
 
     def _searched_legs(
         self,
@@ -204,12 +184,11 @@ class OtherPoses:
         fitter: Fitter,
         fit: Fit,
         views: Sequence[View],
-        measured: Callable[[MotionState], Terms],
+        anew: Anew,
     ) -> Fit | None:
         """The body facing the other way, if the pictures bear it."""
         fits = [
-            self._fitted_turned(fitter, fit, views, measured, way)
-            for way in (MIRRORED, UNDER_LIMBS)
+            self._fitted_turned(fitter, fit, views, anew, way) for way in (MIRRORED, UNDER_LIMBS)
         ]
         best = min(fits, key=lambda one: one.cost)
         return best if best.explained > fit.explained - self._params.turned_loss else None
@@ -219,7 +198,7 @@ class OtherPoses:
         fitter: Fitter,
         fit: Fit,
         views: Sequence[View],
-        measured: Callable[[MotionState], Terms],
+        anew: Anew,
         way: int,
     ) -> Fit:
         """The body facing the other way, in one of the two ways of `turned_round`."""
@@ -227,5 +206,5 @@ class OtherPoses:
         start = turned_round(fitter, fit.state, fit.state.root_m - eye)[way]
         for view in views:
             fitter.drawings[view.index].render(start, view.dt_s, view.roi)
-        iterations, terms = self._params.start.iterations, measured(start)
+        iterations, terms = self._params.start.iterations, anew.measured(start, views)
         return fitter.fit(start, views, _TURNS_S, iterations, learn_shape=False, terms=terms)

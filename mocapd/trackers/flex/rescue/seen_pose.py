@@ -5,14 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.skeleton import INDEX
+from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
+from mocapd.types import Floats
 
+_LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
 WHOLE = "whole"  # as a part that changed: all of the body
 
 
@@ -27,6 +29,9 @@ class SeenPoseParams:
     fit_iterations: int = 4  # of a fit that begins there
     loose_s: float = 0.3  # held as loosely as a prediction over this time
     gain: float = 5.0  # by how much the cost must fall to change over [disagreeing pixels]
+    farther: float = (
+        5.0  # how much more must speak for limbs that are farther away [disagreeing pixels/rad^2]
+    )
 
 
 def starts_as_seen(
@@ -40,8 +45,13 @@ def starts_as_seen(
     """Where a fit may begin anew, and the parts of the body that change by that: with the limbs that are far from there as
     they were seen, with all of the body. held: what else holds the pose that the joints say; legs_alone: the rest of the
     body is known."""
-    p, costs = params, seen.costs(fitter.joints(fit.state)[0])
+    p, joints_m = params, fitter.joints(fit.state)[0]
+    costs = seen.costs(joints_m)
     may_change = {n: one for n, one in LIMBS.items() if not legs_alone or n.endswith("leg")}
+    if legs_exchanged(seen, joints_m, costs, p):
+        may_change = {n: one for n, one in may_change.items() if n.endswith("arm")}
+        if not may_change:
+            return []
     far = {name: costs[[one.lower, one.end]].sum() for name, one in may_change.items()}
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
@@ -64,6 +74,15 @@ def starts_as_seen(
     if whole and costs.sum() - costs_there.sum() > p.whole_cost:
         starts.append((there, (WHOLE,)))
     return starts
+
+
+def legs_exchanged(
+    seen: JointTerm, joints_m: Floats, costs: Floats, params: SeenPoseParams
+) -> bool:
+    """Whether what was seen of the legs is these legs, but each taken for the other, which look alike."""
+    other_m = joints_m.copy()
+    other_m[_LEGS] = joints_m[OTHER_SIDE[_LEGS]]
+    return bool(costs[_LEGS].sum() - seen.costs(other_m)[_LEGS].sum() > params.limb_cost)
 
 
 def seen_pose(

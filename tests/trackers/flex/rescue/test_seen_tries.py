@@ -1,0 +1,122 @@
+"""Limbs that were seen elsewhere: tried there, in pictures classified beside that pose, left where those deny it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX, N_JOINTS, OTHER_SIDE
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import View
+from mocapd.fit.terms.joint_term import JointRays, JointTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import to_camera
+from mocapd.trackers.flex.rescue.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
+from mocapd.trackers.flex.rescue.seen_tries import Anew, Judged, tried_as_seen
+from mocapd.types import Floats
+from tests.trackers.flex.rescue.test_flex_legs import BODY, FITTER, standing
+
+pytestmark = pytest.mark.kernels
+
+PARAMS = SeenPoseParams(whole_cost=1e9)  # limbs alone
+DT_S = 1.0 / 30.0
+LIMBS = np.array([INDEX[s + j] for s in ("left", "right") for j in ("LowerArm", "Hand", "LowerLeg", "Foot")])  # fmt: skip
+HAND, FOOT = INDEX["leftHand"], INDEX["leftFoot"]
+
+
+def seen_at(joints_m: Floats) -> JointTerm:
+    """Both cameras see elbows, hands, knees and feet there."""
+    out = []
+    for drawing in FITTER.drawings:
+        there = to_camera(drawing.camera, joints_m)[LIMBS]
+        n = len(LIMBS)
+        hips_z = to_camera(drawing.camera, joints_m)[0, 2]
+        out.append(
+            JointRays(
+                drawing.camera, LIMBS, there[:, :2] / there[:, 2:], np.tile([400.0, 0.0, 400.0], (n, 1)),
+                there[:, 2] - hips_z, np.full(n, 100.0),
+            )
+        )  # fmt: skip
+    return JointTerm(BODY, out)
+
+
+def with_arm(state: MotionState, rad: float) -> MotionState:
+    local = state.local_xyzw.copy()
+    local[INDEX["leftUpperArm"]] = rotations.exp(np.array([0.0, 0.0, rad]))
+    return replace(state, local_xyzw=local)
+
+
+def kicking(state: MotionState, side: str) -> MotionState:
+    local = state.local_xyzw.copy()
+    local[INDEX[side + "UpperLeg"]] = rotations.exp(np.array([-1.2, 0.0, 0.0]))
+    return replace(state, local_xyzw=local)
+
+
+def drawn(state: MotionState) -> list[View]:
+    """Pictures in which each region is where this body has it."""
+    views = []
+    for i, drawing in enumerate(FITTER.drawings):
+        roi = drawing.region(state, 0.0, 26)
+        assert roi is not None
+        ids = drawing.render(state, 0.0, roi).copy()
+        views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0))
+    return views
+
+
+def nobody(state: MotionState) -> list[View]:
+    return [replace(view, ids=np.zeros_like(view.ids)) for view in drawn(state)]
+
+
+@pytest.mark.parametrize("shown", [drawn, nobody])
+def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
+    shown: Callable[[MotionState], list[View]],
+) -> None:
+    here, there = with_arm(standing(0.0, 0.1), -1.3), with_arm(standing(0.0, 0.1), 0.7)
+    goal_m = FITTER.joints(there)[0]
+    joints = seen_at(goal_m)
+    views = drawn(here)
+    fit = FITTER.fit(here, views, DT_S, 2, learn_shape=False, rendered=True, terms=(joints,))
+
+    def measured(_: MotionState, __: Sequence[View]) -> Sequence[PoseTerm]:
+        return (joints,)
+
+    now = Judged(fit, views, (joints,))
+    found = tried_as_seen(FITTER, now, DT_S, joints, Anew(shown, measured), PARAMS)
+    off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
+    if shown is drawn:
+        assert found.changed == ("left_arm",)
+        assert off_m < 0.15
+    else:
+        assert found is now
+        assert off_m > 0.5
+
+
+def test_legs_that_are_taken_for_each_other_are_no_reason_to_move_them() -> None:
+    here = kicking(standing(0.0, 0.1), "left")
+    here_m = FITTER.joints(here)[0]
+    taken_m = here_m.copy()
+    legs = [INDEX[s + j] for s in ("left", "right") for j in ("UpperLeg", "LowerLeg", "Foot")]
+    taken_m[legs] = here_m[OTHER_SIDE[legs]]
+    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    for seen_m, exchanged in (
+        (here_m, False),
+        (taken_m, True),
+        (FITTER.joints(standing(0.0, 0.1))[0], False),
+    ):
+        seen = seen_at(seen_m)
+        joints_m = FITTER.joints(fit.state)[0]
+        assert legs_exchanged(seen, joints_m, seen.costs(joints_m), PARAMS) is exchanged
+    starts = starts_as_seen(FITTER, fit, seen_at(taken_m), (), PARAMS)
+    assert starts == []
+
+
+def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
+    here, there = standing(0.0, 0.1), kicking(standing(0.0, 0.1), "left")
+    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    goal_m = FITTER.joints(there)[0]
+    ((start, changed), *_) = starts_as_seen(FITTER, fit, seen_at(goal_m), (), PARAMS)
+    assert changed == ("left_leg",)
+    assert len(goal_m) == N_JOINTS
+    assert np.linalg.norm(FITTER.joints(start)[0][FOOT] - goal_m[FOOT]) < 0.15
