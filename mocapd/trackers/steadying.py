@@ -1,16 +1,18 @@
 """What is told follows what was found, the more slowly the less the pictures confirm it.
 
 A limb that the pictures hardly confirm is often wrong, and what is wrong moves as no limb does: from one pose that looks
-right to the next. What is well confirmed is told nearly as it was found.
+right to the next. What is well confirmed is told nearly as it was found. A bone that keeps turning is expected to go on, so
+that what is held back of each step does not leave it behind (an alpha-beta filter: Kalata 1984, The tracking index).
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from mocapd.body.bones import NAMES
-from mocapd.body.skeleton import INDEX
+from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
@@ -34,6 +36,8 @@ class SteadyingParams:
     trust_s: float = 0.4  # who was not confirmed at all is fully believed no sooner
     sure_rad_s: float = 17.0
     doubtful_rad_s: float = 6.0
+    glide: float = 0.7  # of its speed that a bone keeps to the next frame
+    learns: float = 0.5  # of a new speed, at full confidence
     settles_s: float = (
         0.4  # who was just found is told as found: there is nothing better to hold on to
     )
@@ -41,12 +45,15 @@ class SteadyingParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Told:
-    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1; since_ns: when it was first found."""
+    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1; since_ns: when it was first found; as it goes
+    on: turning_rad_s (J,3), moving_m_s (3,)."""
 
     t_ns: int
     pose: Pose
     trust: Floats
     since_ns: int
+    turning_rad_s: Floats = field(default_factory=partial(np.zeros, (N_JOINTS, 3)))
+    moving_m_s: Floats = field(default_factory=partial(np.zeros, 3))
 
 
 def _end_of_bones() -> Ints:
@@ -80,16 +87,30 @@ def steadied(
         return Told(t_ns, found, trust, last.since_ns)
     trust[list(jumped)] = 0.0
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
+    ticks = gap_s / TICK_S
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
     sure = np.clip((trust - p.doubtful) / (p.sure - p.doubtful), 0.0, 1.0)
-    follows = 1.0 - ((1.0 - p.least) * (1.0 - sure)) ** (gap_s / TICK_S)
-    way = rotations.multiply(found.quats_xyzw, rotations.inverse(last.pose.quats_xyzw))
-    turn = follows[:, None] * rotations.log(way)
+    follows = 1.0 - ((1.0 - p.least) * (1.0 - sure)) ** ticks
+    learns = 1.0 - (1.0 - p.learns * np.sqrt(sure)) ** ticks
+
+    turning = p.glide**ticks * last.turning_rad_s
+    turning[list(jumped)] = 0.0
+    expected = rotations.multiply(rotations.exp(gap_s * turning), last.pose.quats_xyzw)
+    way = rotations.log(rotations.multiply(found.quats_xyzw, rotations.inverse(expected)))
+    told = rotations.multiply(rotations.exp(follows[:, None] * way), expected)
+    turn = rotations.log(rotations.multiply(told, rotations.inverse(last.pose.quats_xyzw)))
     most_rad = gap_s * (p.doubtful_rad_s + (p.sure_rad_s - p.doubtful_rad_s) * sure)
     turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
-    root_m = last.pose.root_m + follows[0] * (found.root_m - last.pose.root_m)
-    turned = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
-    return Told(t_ns, Pose(root_m, rotations.canonical(turned)), trust, last.since_ns)
+    told = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
+    turning += learns[:, None] * (turn / gap_s - turning)
+
+    moving = p.glide**ticks * last.moving_m_s
+    expected_m = last.pose.root_m + gap_s * moving
+    root_m = expected_m + follows[0] * (found.root_m - expected_m)
+    moving += learns[0] * ((root_m - last.pose.root_m) / gap_s - moving)
+    return Told(
+        t_ns, Pose(root_m, rotations.canonical(told)), trust, last.since_ns, turning, moving
+    )
 
 
 def behind(uncertainty_m: Floats, told_m: Floats, found_m: Floats) -> Floats:

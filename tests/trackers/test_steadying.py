@@ -1,5 +1,7 @@
 """What is told follows what was found: at once where the pictures confirm it, slowly where they hardly do."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,6 +83,32 @@ def test_a_bone_that_was_found_elsewhere_glides_there() -> None:
     told = steadied(turned(0.0), SURE, 0, None, PARAMS)
     jumped = steadied(turned(1.0), SURE, FRAME_NS, told, PARAMS, [ARM])
     assert 0.0 < rad(jumped) <= PARAMS.doubtful_rad_s / 30.0 + 1e-3
+
+
+def turning(params: SteadyingParams, stops: int) -> list[float]:
+    """How far behind it is told, frame by frame, of an arm that turns by 2 rad/s and stops; hardly sure [rad]."""
+    told, behind_rad = steadied(turned(0.0), 0.7 * SURE, 0, None, params), []
+    for n in range(1, 60):
+        found_rad = 2.0 * min(n, stops) / 30.0
+        told = steadied(turned(found_rad), 0.7 * SURE, n * FRAME_NS, told, params)
+        behind_rad.append(found_rad - rad(told))
+    return behind_rad
+
+
+def test_a_bone_that_keeps_turning_is_less_left_behind_and_stops_with_it() -> None:
+    glides, stays = turning(PARAMS, 30), turning(replace(PARAMS, glide=0.0), 30)
+    assert 0.0 < glides[29] < 0.75 * stays[29]
+    assert min(glides) > -0.5 * stays[29]  # it does not swing far beyond
+    assert abs(glides[-1]) < 1e-3
+
+
+def test_a_bone_that_was_found_elsewhere_does_not_go_on_as_it_went() -> None:
+    told = steadied(turned(0.0), SURE, 0, None, PARAMS)
+    for n in range(1, 20):
+        told = steadied(turned(0.1 * n), SURE, n * FRAME_NS, told, PARAMS)
+    before = rad(told)
+    told = steadied(turned(0.0), SURE, 20 * FRAME_NS, told, PARAMS, [ARM])
+    assert rad(told) < before
 
 
 def test_after_a_gap_it_begins_anew() -> None:

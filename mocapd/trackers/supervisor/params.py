@@ -46,6 +46,12 @@ class Params:
     # colours mistake arms less
     steadying: SteadyingParams = field(
         default_factory=lambda: SteadyingParams(
-            sure=0.6, doubtful=0.0, least=0.4, trust_s=0.7, sure_rad_s=60.0, doubtful_rad_s=15.0
+            sure=0.6,
+            doubtful=0.0,
+            least=0.4,
+            trust_s=0.7,
+            sure_rad_s=60.0,
+            doubtful_rad_s=15.0,
+            glide=0.0,
         )
     )
