@@ -13,7 +13,9 @@ import time
 from pathlib import Path
 
 import numpy as np
+import onnx
 import torch
+from onnx.numpy_helper import to_array
 from torch import Tensor, nn
 from torch.nn import functional as F  # noqa: N812 (its usual name)
 
@@ -193,6 +195,45 @@ def facing_loss(facing: Tensor, uv: Tensor, farther: Tensor) -> Tensor:
     return (facing - wanted).square().sum(1).mean()
 
 
+def take_over(network: Network, exported: Path, x: Tensor) -> None:
+    """Begin with the weights of an exported network, in which each normalisation went into the convolution before it: it is
+    set so that of this batch it gives back what it takes, and adds what that convolution had."""
+    graph = onnx.load(exported).graph
+    known = {one.name: torch.from_numpy(to_array(one).copy()) for one in graph.initializer}
+    convolutions = [node for node in graph.node if node.op_type == "Conv"]
+    weights = iter([[known[name] for name in node.input[1:3]] for node in convolutions])
+    added = torch.zeros(0)
+
+    @torch.no_grad()
+    def set_convolution(module: nn.Conv2d, _: object) -> None:
+        nonlocal added
+        if module is not network.yaw:  # tells nothing but while training, so it is not exported
+            weight, added = next(weights)
+            module.weight.copy_(weight)
+            if module.bias is not None:
+                module.bias.copy_(added)
+
+    @torch.no_grad()
+    def set_normalisation(module: nn.BatchNorm2d, taken: tuple[Tensor]) -> None:
+        variance, mean = torch.var_mean(taken[0], (0, 2, 3), correction=0)
+        module.running_mean.copy_(mean)
+        module.running_var.copy_(variance)
+        module.weight.copy_((variance + module.eps).sqrt())
+        module.bias.copy_(mean + added)
+
+    hooks = [
+        module.register_forward_pre_hook(
+            set_convolution if isinstance(module, nn.Conv2d) else set_normalisation
+        )
+        for module in network.modules()
+        if isinstance(module, (nn.Conv2d, nn.BatchNorm2d))
+    ]
+    with torch.no_grad():
+        network(x)
+    for hook in hooks:
+        hook.remove()
+
+
 def main() -> int:
     """Train and export."""
     parser = argparse.ArgumentParser(
@@ -202,14 +243,14 @@ def main() -> int:
     parser.add_argument("out", type=Path)
     parser.add_argument("--minutes", type=float, default=45.0)
     parser.add_argument(
-        "--onwards", type=Path, help="weights (OUT.pt of an earlier run) to go on from"
+        "--onwards", type=Path, help="a network (OUT of an earlier run) to go on from"
     )
     args = parser.parse_args()
     torch.manual_seed(0)
     pictures = Pictures(args.pictures)
     network = Network().to(memory_format=torch.channels_last)
     if args.onwards is not None:
-        network.load_state_dict(torch.load(args.onwards))
+        take_over(network, args.onwards, torch.cat([pictures.batch()[0] for _ in range(8)]))
     optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-3)
     begin_s, step, usual_cm, usual_loss = time.monotonic(), 0, torch.zeros(JOINTS), 0.0
     while (done := (time.monotonic() - begin_s) / (60.0 * args.minutes)) < 1.0:
@@ -234,7 +275,6 @@ def main() -> int:
                 f"{100 * done:3.0f} % loss {usual_loss:.2f}, off by {usual_cm.mean():.1f} cm\n"
             )
             sys.stdout.flush()
-    torch.save(network.state_dict(), args.out.with_suffix(".pt"))
     network.eval()
     torch.onnx.export(
         network, (torch.zeros(1, 4, INPUT_PX, INPUT_PX),), str(args.out), opset_version=17, dynamo=False,

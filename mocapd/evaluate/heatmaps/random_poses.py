@@ -23,10 +23,15 @@ from mocapd.sim.person_spec import PoseKeyframe
 from mocapd.types import Floats, Pose, Skeleton
 
 # Shares of poses: as in a clip; of two clips; the others are made up
-_OF_CLIP, _OF_TWO = 0.35, 0.5
+_OF_CLIP, _OF_TWO = 0.28, 0.4
 # Shares of made-up arms, each with those before it: both forwards (in a squat), like a named pose
 _FORWARDS, _FORWARDS_SUNK, _LIKE_NAMED = 0.1, 0.4, 0.45
-_KICKS, _LUNGES, _TIPTOES = 0.25, 0.12, 0.3  # shares of lifted feet; of feet that stand; of squats
+# Shares of lifted feet, with those before it: kicked forwards, a leg flung anywhere; of feet that stand; of squats
+_KICKS, _FLUNG, _LUNGES, _TIPTOES = 0.35, 0.65, 0.12, 0.3
+_SQUATS, _KNEES_LEAD = (
+    0.3,
+    0.5,
+)  # hips as far down; share of those whose knees do not heed where the feet point
 _FOOT_M = 0.18  # from the ankle to the toes
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 _ARMS = ("Shoulder", "UpperArm", "LowerArm", "Hand")
@@ -99,7 +104,7 @@ def _of_two(rng: np.random.Generator, skeleton: Skeleton, clips: Sequence[Motion
 
 def _made_up(rng: np.random.Generator, skeleton: Skeleton) -> Floats:
     """Arms anywhere, the hips down to a deep squat, a foot lifted."""
-    sunk = rng.uniform(0.0, 0.68) if rng.uniform() < 0.45 else rng.uniform(0.0, 0.08)
+    sunk = 0.68 * rng.uniform() ** 0.7 if rng.uniform() < 0.45 else rng.uniform(0.0, 0.08)
     arms = rng.uniform()
     if arms < (_FORWARDS_SUNK if sunk > 0.15 else _FORWARDS):
         left, right = _forwards(rng)
@@ -198,32 +203,38 @@ def _place_feet(
     if rng.uniform() < _LUNGES:
         step_m = rng.normal(0.0, 0.4)
     turned_rad = rng.normal(0.15, 0.2) + sunk * rng.uniform(0.0, 0.9)
-    splay_rad = sunk * rng.uniform(-0.3, 3.5)  # knees point as far between there and the feet
+    knees_lead = sunk > _SQUATS and rng.uniform() < _KNEES_LEAD
+    # knees point as far, or between there and the feet
+    splay_rad = rng.uniform(0.6, 2.5) if knees_lead else sunk * rng.uniform(-0.3, 3.5)
     heel_m = rng.uniform(0.0, 0.25) * sunk if rng.uniform() < _TIPTOES else 0.0
+    lifted_as = rng.uniform()
     for side, outwards in zip(SIDES, (1.0, -1.0), strict=True):
         joints = [INDEX[side + bone] for bone in _LEGS]
         hip, knee, ankle = rest_m[joints[:3]]
         ahead_m = outwards * step_m * (rng.uniform() < 0.8) + 0.05 * sunk
         off_m = np.array([outwards * apart_m, 0.0, ahead_m]) + rng.normal(0.0, [0.03, 0.0, 0.03])
-        splayed = rotations.exp(
-            np.array([0.0, outwards * (splay_rad + rng.normal(0.0, 0.15)), 0.0])
-        )
+        knee_rad = outwards * (splay_rad + rng.normal(0.0, 0.15))
+        splayed = rotations.exp(np.array([0.0, knee_rad, 0.0]))
         forwards = rotations.rotate(splayed, hips[:, 2])
         raised_m = 0.0 if side == lifted else heel_m + 0.02 * abs(rng.normal()) * sunk
         off_m[1] += raised_m
         if side == lifted:
             off_m += (
-                [rng.normal(0.0, 0.25), rng.uniform(0.2, 0.9), rng.uniform(0.3, 0.9)]
-                if rng.uniform() < _KICKS
+                [rng.normal(0.0, 0.25), rng.uniform(0.2, 1.3), rng.uniform(0.3, 1.0)]
+                if lifted_as < _KICKS
                 else [rng.normal(0.0, 0.2), rng.uniform(0.03, 0.8), rng.normal(0.1, 0.35)]
             )
         at_m = heading @ (np.array([ankle[0], 0.0, ankle[2]]) + off_m) + [0.0, ankle[1], 0.0]
         foot_rad = yaw_rad + outwards * (turned_rad + rng.normal(0.0, 0.1))
         R = leg_rotations(
-            root_m + hips @ (hip - rest_m[0]), knee - hip, ankle - knee, at_m, forwards, foot_rad
-        )
+            root_m + hips @ (hip - rest_m[0]), knee - hip, ankle - knee, at_m, forwards,
+            yaw_rad + knee_rad if knees_lead else foot_rad,
+        )  # fmt: skip
         if not np.isfinite(R).all():
             return False
+        R[2] = rotations.to_matrix(rotations.exp(np.array([0.0, foot_rad, 0.0])))
+        if side == lifted and _KICKS <= lifted_as < _FLUNG:
+            R[:2] = _flung(rng, hips, outwards)
         if side == lifted:  # a foot in the air hangs on its shank
             R[2] = R[1] @ rotations.to_matrix(
                 rotations.exp(np.array([rng.uniform(-0.2, 0.8), 0.0, 0.0]))
@@ -233,6 +244,20 @@ def _place_feet(
             R[2] = R[2] @ rotations.to_matrix(rotations.exp(tipped))
         quats[joints] = rotations.from_matrix(R[[0, 1, 2, 2]])
     return True
+
+
+def _flung(rng: np.random.Generator, hips: Floats, outwards: float) -> Floats:
+    """Rotations (2,3,3) of thigh and shank below these hips (3,3), as far as legs go."""
+    thigh = np.array(
+        [
+            rng.uniform(-2.2, 0.7),
+            outwards * rng.uniform(-0.5, 0.6),
+            outwards * rng.uniform(-0.4, 1.0),
+        ]
+    )
+    shank = np.array([rng.uniform(0.0, 2.3) * rng.uniform(), 0.0, 0.0])
+    upper = hips @ rotations.to_matrix(rotations.exp(thigh))
+    return np.stack([upper, upper @ rotations.to_matrix(rotations.exp(shank))])
 
 
 def _swings(rng: np.random.Generator, over_s: float) -> Floats:
