@@ -30,14 +30,14 @@ _SHORTEST_TICKS = 0.1  # frames of one time are told apart a little
 class SteadyingParams:
     """How much of the way to what was found is gone in a usual frame, and how fast a bone turns at most."""
 
-    sure: float = 1.3  # confidence at which it were all of the way; a little is always held back
+    sure: float = 1.6  # confidence at which it were all of the way; a little is always held back
     doubtful: float = 0.2  # confidence up to which it is the least
     least: float = 0.3
-    trust_s: float = 0.4  # who was not confirmed at all is fully believed no sooner
+    trust_s: float = 0.45  # who was not confirmed at all is fully believed no sooner
     sure_rad_s: float = 17.0
-    doubtful_rad_s: float = 6.0
+    doubtful_rad_s: float = 5.3
     glide: float = 0.7  # of its speed that a bone keeps to the next frame
-    learns: float = 0.5  # of a new speed, at full confidence
+    learns: float = 0.65  # of a new speed, at full confidence
     settles_s: float = (
         0.4  # who was just found is told as found: there is nothing better to hold on to
     )
@@ -45,8 +45,8 @@ class SteadyingParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Told:
-    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1; since_ns: when it was first found; as it goes
-    on: turning_rad_s (J,3), moving_m_s (3,)."""
+    """A pose as it was told at t_ns; trust (J,): in each bone's direction, 0..1; since_ns: when it was first found;
+    turning_rad_s (J,3), moving_m_s (3,): as it goes on."""
 
     t_ns: int
     pose: Pose
