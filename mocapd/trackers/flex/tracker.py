@@ -149,7 +149,9 @@ class FlexTracker:
                 self._near = None
             else:
                 known, views = self._start(wearer, frames)
-        return self._end(known, views, frames, shape)
+        # depths and arms that are searched for make their frames long enough
+        taught = views if self._turn % self.params.depth_turns else []
+        return self._end(known, views, frames, shape, taught)
 
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
         """Track one frame set whose upper body another tracker knows: legs and head alone are fitted. Raises as `step`,
@@ -164,7 +166,7 @@ class FlexTracker:
             known, views = self._legs_below.follow(
                 known, upper.pose, wearer, frames, self._turn, self.probe
             )
-        return self._end(known, views, frames, shape, every=4)
+        return self._end(known, views, frames, shape, views[self._turn % 4 :: 4])
 
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Proportions, Followed | None]:
         """The wearer of this step, and what is known of the last one."""
@@ -184,16 +186,16 @@ class FlexTracker:
         views: list[View],
         frames: FrameSet,
         shape: BodyShape,
-        every: int = 1,
+        taught: list[View],
     ) -> Track:
-        """Judge, learn (in one of `every` cameras), and tell."""
+        """Judge, learn (the look in the views `taught`), and tell."""
         evidence = known is not None and known.t_ns == frames.t_ns
         tracking = self._tracking.step(frames.t_ns, evidence)
         if tracking is Tracking.LOST and not evidence:
             known = None
         self._known = known
         learn_on(
-            self._cameras, known if evidence else None, views, known is None, self._turn, every, self.params
+            self._cameras, known if evidence else None, taught, known is None, self._turn, self.params
         )  # fmt: skip
         self.probe("learn")
         return self._track(tracking, frames, views, shape)

@@ -47,15 +47,14 @@ def learn_on(
     views: Sequence[View],
     nobody: bool,
     turn: int,
-    every: int,
     params: Params,
 ) -> None:
-    """Learn the look of a body that agrees well, in one of `every` cameras in turn, and the background beside it, or
-    everywhere when nobody is known."""
+    """Learn the look of a body that agrees well in these views, and the background beside it, or everywhere when nobody is
+    known."""
     if nobody and turn % params.absorb_turns:
         # what stays for long is furniture that was moved
         cameras.mark_unknown()
     elif nobody:
         cameras.mark_body(None)
     agrees = seen is not None and seen.fit.explained >= params.learn_explained
-    cameras.learn(seen.state if seen is not None and agrees else None, views[turn % every :: every])
+    cameras.learn(seen.state if seen is not None and agrees else None, views)

@@ -15,7 +15,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
-from mocapd.trackers.flex.rescue.seen_pose import SeenPoseParams, starts_as_seen
+from mocapd.trackers.flex.rescue.seen_pose import WHOLE, SeenPoseParams, starts_as_seen
 from mocapd.types import Floats
 
 _LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper, limb.lower)])
@@ -51,7 +51,11 @@ def tried_as_seen(
     """The cheapest of the present fit and those that begin where the joints were seen. motion: of every fit, where an upper
     body leads and legs alone may change."""
     held = [one for one in now.terms if not one.is_measured and one is not joints]
-    best, least = now, now.fit.cost_for_any_pose - params.gain
+    best, gained = now, params.gain
+
+    def cost_of(fit: Fit) -> float:
+        return float(joints.costs(fitter.joints(fit.state)[0]).sum())
+
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
     for start, changed in starts_as_seen(
         fitter, now.fit, joints, held, params, legs_alone=motion is not None
@@ -64,7 +68,9 @@ def tried_as_seen(
             start, views, dt_s, params.fit_iterations, learn_shape=False, rendered=True, fine=1, motion=motion, terms=terms
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
-        cost = fit.cost_for_any_pose + params.farther * away_rad2
-        if cost < least:
-            best, least = Judged(fit, views, terms, changed), cost
+        gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - params.farther * away_rad2
+        if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
+            gain -= cost_of(now.fit) - cost_of(fit)
+        if gain > gained:
+            best, gained = Judged(fit, views, terms, changed), gain
     return best
