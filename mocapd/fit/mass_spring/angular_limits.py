@@ -35,6 +35,8 @@ _COLLAR_DEG = 15.0, 22.0
 _GIRDLE_DEG = 35.0, 25.0
 # Knees bend in the plane that the thigh's twist gives, up to 60 degrees to either side; neutral twists differ by 15.
 _KNEE_SIDE_DEG = 75.0
+# Thighs of deep squats swing twice as far aside; points that may, too, lead the particles astray.
+_THIGH_ASIDE_DEG = 60.0
 # straighter than that a limb has no side: joints overstretch by 7 to 10, and points are noisy
 _STRAIGHT_DEG = 10.0
 _BENT_MOST_DEG = 155.0
@@ -85,6 +87,7 @@ def swings() -> Swings:
         others = [(axis + 1) % 3, (axis + 2) % 3]
         rows.append((points, frame, axis, sign, np.tan(low[others] / 2), np.tan(high[others] / 2)))
 
+    most_aside = np.radians(_THIGH_ASIDE_DEG)
     girdle = np.radians([_GIRDLE_DEG[0], 0.0, _GIRDLE_DEG[1]])
     add((*SHOULDER, NECK, NECK), UPPER, Y, 1.0, -girdle, girdle)
     low, high = limits.lower_rad[group("neck")], limits.upper_rad[group("neck")]
@@ -99,7 +102,8 @@ def swings() -> Swings:
         high = limits.upper_rad[g] + [0.0, to_side, up if s == 0 else 0.0]
         add((SHOULDER[s], SHOULDER[s], ELBOW[s], ELBOW[s]), UPPER, X, outward, low, high)
         g = group(side + "UpperLeg")
-        low, high = limits.lower_rad[g], limits.upper_rad[g]
+        low, high = limits.lower_rad[g].copy(), limits.upper_rad[g].copy()
+        low[Z], high[Z] = np.maximum(low[Z], -most_aside), np.minimum(high[Z], most_aside)
         add((HIP[s], HIP[s], KNEE[s], KNEE[s]), LOWER, Y, -1.0, low, high)
     points, frame, axis, sign, lower, upper = zip(*rows, strict=True)
     return Swings(
