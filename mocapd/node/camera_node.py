@@ -2,7 +2,6 @@
 
 import logging
 import secrets
-import threading
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -18,6 +17,7 @@ from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params
 from mocapd.errors import ConfigError, MocapdError
+from mocapd.latch import Latch
 from mocapd.node.imperfections import Imperfections, PoorWay, Way
 from mocapd.node.node_access import check_pairing, node_session_config, takes_orders
 from mocapd.node.node_camera import NodeCamera
@@ -59,7 +59,7 @@ class CameraNode:
         self._run = secrets.randbits(48)
         self._plugs, self._suspension = PlugEvents(self._look_again), SuspensionWatch()
         self._opened = ExitStack()
-        self._over = threading.Event()
+        self._over = Latch()
         self._death: BaseException | None = None
         self.cameras = tuple(
             NodeCamera(

@@ -1,6 +1,5 @@
 """The composition root: outputs that live from start to stop, and under them one session after another."""
 
-import threading
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -12,6 +11,7 @@ from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError
+from mocapd.latch import Latch
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Facing
@@ -58,7 +58,7 @@ class Service:
         self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
         self._running = RunningSession(config, session, self.bodies, self.died)
         self._earlier: Metrics | None = None  # of all sessions before
-        self._ended = threading.Event()
+        self._ended = Latch()
         self._death: BaseException | None = None
         self._started_unix_ns = 0
         self._told: dict[str, tuple[object, ...]] = {}  # the cameras' troubles

@@ -1,6 +1,5 @@
 """What `mocapd record` runs: from the daemon's stream into a file, until told to end."""
 
-import threading
 import time
 from functools import partial
 from pathlib import Path
@@ -12,6 +11,7 @@ from mocapd.app.recordings.published import Published, PublishedStream
 from mocapd.app.status_line import StatusLine
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
+from mocapd.latch import Latch
 from mocapd.outputs.mcap.recording_writer import RecordingWriter
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
 from mocapd.types import Camera, Rig
@@ -33,7 +33,7 @@ class Recorder:
         """pictures: None for frames alone; seconds: how long, None: until `end`."""
         self._stream, self._writer, self._pictures = stream, writer, pictures
         self._seconds = seconds
-        self._ended = threading.Event()
+        self._ended = Latch()
         self._calibration: CalibrationInfo | None = None
         self._rest: RestSkeleton | None = None
         self._attached = False

@@ -15,6 +15,7 @@ import msgspec
 
 from mocapd.clock import NS_PER_S, monotonic_ns, unix_from_monotonic_ns
 from mocapd.errors import InputError, MocapdError
+from mocapd.latch import Latch
 from mocapd.outputs.base import Sink
 from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
@@ -55,7 +56,7 @@ class Replay:
     ) -> None:
         self._reader, self._sinks, self._instance = reader, tuple(sinks), instance
         self._params, self._clock = params, clock
-        self._ended = threading.Event()
+        self._ended = Latch()
         self._error: MocapdError | None = None
         self._over = False
         self._thread = threading.Thread(target=self._run, name="replay", daemon=True)

@@ -9,6 +9,7 @@ from mocapd.capture.base import Source
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.errors import MocapdError
+from mocapd.latch import Latch
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.service import Snapshot, ThreadDiedError
@@ -46,7 +47,7 @@ class OwnHost:
         in; moved: see SetupCameras. Raises ConfigError or InputError."""
         if step is StepName.COLOUR:  # of which the calibration may say that there is none
             draft = replace(draft, has_shirt=True)
-        self._over = threading.Event()
+        self._over = Latch()
         self._saved = threading.Event()
         self._death: BaseException | None = None
         self._cameras = OpenCameras(draft.cameras, self.died, sources, settings.bundler)

@@ -1,0 +1,55 @@
+"""What is over once and for all wakes everybody, also when a signal handler tells it at the worst of moments."""
+
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+from mocapd.latch import Latch
+
+# A timer interrupts the waiting thread some thousand times, at any instruction
+INTERRUPTED = """
+import signal, time
+from mocapd.latch import Latch
+told = 0
+def handler(*_):
+    global latch, told
+    told += 1
+    latch.set()
+latch = Latch()
+signal.signal(signal.SIGALRM, handler)
+signal.setitimer(signal.ITIMER_REAL, 0.0002, 0.0002)
+end = time.monotonic() + 1.0
+while time.monotonic() < end:
+    latch = Latch()
+    while not latch.wait(0.00001):
+        pass
+signal.setitimer(signal.ITIMER_REAL, 0.0)
+print(told)
+"""
+
+
+def test_a_signal_handler_may_tell_it_while_it_is_waited_for() -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED], check=True, capture_output=True, timeout=60.0, text=True
+    )  # fmt: skip
+    assert int(run.stdout) > 100
+
+
+def test_everybody_who_waits_is_woken() -> None:
+    latch = Latch()
+    with ThreadPoolExecutor(3) as pool:
+        waiting = [pool.submit(latch.wait, 30.0) for _ in range(3)]
+        began_s = time.monotonic()
+        latch.set()
+        assert all(one.result() for one in waiting)
+    assert time.monotonic() - began_s < 10.0
+    assert latch.wait(0.0)
+    assert latch.is_set()
+
+
+def test_who_is_told_nothing_waits_no_longer_than_asked() -> None:
+    latch = Latch()
+    assert not latch.wait(0.01)
+    assert not latch.wait(-1.0)
+    assert not latch.is_set()
