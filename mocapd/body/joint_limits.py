@@ -56,6 +56,7 @@ _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
     "UpperLeg": (Y, ((-135.0, 30.0), (-55.0, 110.0), (-35.0, 125.0))),
     # as at the elbow, the neutral twist of the thigh differs between skeletons
     "LowerLeg": (Y, ((-10.0, 155.0), (-35.0, 45.0), (-18.0, 18.0))),
+    # recorded feet turn up by 60 and aside by 45 where the heels are up
     "Foot": (Z, ((-60.0, 66.0), (-45.0, 45.0), (-45.0, 30.0))),
 }
 

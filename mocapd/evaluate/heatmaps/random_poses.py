@@ -28,10 +28,8 @@ _OF_CLIP, _OF_TWO = 0.28, 0.4
 _FORWARDS, _FORWARDS_SUNK, _LIKE_NAMED = 0.1, 0.4, 0.45
 # Shares of lifted feet, with those before it: kicked forwards, a leg flung anywhere; of feet that stand; of squats
 _KICKS, _FLUNG, _LUNGES, _TIPTOES = 0.35, 0.65, 0.12, 0.3
-_SQUATS, _KNEES_LEAD = (
-    0.3,
-    0.5,
-)  # hips as far down; share of those whose knees do not heed where the feet point
+_SQUATS = 0.3  # hips as far down
+_KNEES_LEAD = 0.5  # share of squats whose knees do not heed where the feet point
 _FOOT_M = 0.18  # from the ankle to the toes
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 _ARMS = ("Shoulder", "UpperArm", "LowerArm", "Hand")

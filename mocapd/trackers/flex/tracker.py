@@ -150,7 +150,7 @@ class FlexTracker:
             else:
                 known, views = self._start(wearer, frames)
         # depths and arms that are searched for make their frames long enough
-        taught = views if self._turn % self.params.depth_turns else []
+        taught = [] if self._measures_depths else views
         return self._end(known, views, frames, shape, taught)
 
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
@@ -166,6 +166,7 @@ class FlexTracker:
             known, views = self._legs_below.follow(
                 known, upper.pose, wearer, frames, self._turn, self.probe
             )
+        # with two cameras: the look is learned in one of them, in two of four frames
         return self._end(known, views, frames, shape, views[self._turn % 4 :: 4])
 
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Proportions, Followed | None]:
@@ -200,6 +201,11 @@ class FlexTracker:
         self.probe("learn")
         return self._track(tracking, frames, views, shape)
 
+    @property
+    def _measures_depths(self) -> bool:
+        """Whether this frame does, where cameras look from one side; the others look for joints, and learn."""
+        return self._turn % self.params.depth_turns == 0
+
     # --- stages ---
 
     def _follow(self, known: Followed, frames: FrameSet) -> tuple[Followed, list[View]]:
@@ -209,7 +215,7 @@ class FlexTracker:
         root, local = moved(self._model, last, dt_s, p.prediction_damping)
         predicted = replace(last, root_m=root, local_xyzw=local)
         # each of the two takes long: joints in frames without depths
-        with_joints = self._turn % p.depth_turns != 0
+        with_joints = not self._measures_depths
         joints = self._terms.joints
         watch = joints.watch(fitter, predicted, self._cameras) if with_joints else unwatched
         views, rays = self._cameras.prepared(predicted, self._turn, watch)

@@ -81,9 +81,7 @@ class OtherPoses:
 
         turn: a running number; terms: of the fit; seen: those of them that saw joints; anew: for other poses.
         """
-        found = Judged(fit, views, terms)
-        for joints in seen:
-            found = tried_as_seen(dressed.fitter, found, dt_s, joints, anew, self._params.seen_pose)
+        found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, None)
         fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
         fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
@@ -120,15 +118,25 @@ class OtherPoses:
         motion: Floats,
     ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """As `improve`, of the legs alone; motion: of every fit, where an upper body leads."""
-        found = Judged(fit, views, terms)
-        for joints in seen:
-            found = tried_as_seen(
-                dressed.fitter, found, dt_s, joints, anew, self._params.seen_pose, motion
-            )
+        found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, motion)
         fit, legs = self._searched_legs(
             dressed, found.fit, found.views, dt_s, turn, found.terms, motion
         )
         return fit, list(found.views), (*found.changed, *legs)
+
+    def _as_seen(
+        self,
+        fitter: Fitter,
+        now: Judged,
+        dt_s: float,
+        seen: Sequence[JointTerm],
+        anew: Anew,
+        motion: Floats | None,
+    ) -> Judged:
+        """See `tried_as_seen`; as it is in frames that saw no joints."""
+        for joints in seen:
+            now = tried_as_seen(fitter, now, dt_s, joints, anew, self._params.seen_pose, motion)
+        return now
 
     def _searched_legs(
         self,

@@ -47,22 +47,25 @@ def starts_as_seen(
     body is known."""
     p, joints_m = params, fitter.joints(fit.state)[0]
     costs = seen.costs(joints_m)
-    may_change = {n: one for n, one in LIMBS.items() if not legs_alone or n.endswith("leg")}
-    if legs_exchanged(seen, joints_m, costs, p):
-        may_change = {n: one for n, one in may_change.items() if n.endswith("arm")}
-        if not may_change:
-            return []
-    far = {name: costs[[one.lower, one.end]].sum() for name, one in may_change.items()}
+    far = {
+        name: costs[[one.lower, one.end]].sum()
+        for name, one in LIMBS.items()
+        if not legs_alone or name.endswith("leg")
+    }
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
         return []
+    if legs_exchanged(seen, joints_m, costs, p):
+        far = {name: cost for name, cost in far.items() if name.endswith("arm")}
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
+    if not lost:
+        return []
     there = seen_pose(fitter, fit.state, seen, held, p, lost)
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
-        for name, one in may_change.items()
-        if far[name] - costs_there[[one.lower, one.end]].sum() > p.limb_cost
+        for name, cost in far.items()
+        if cost - costs_there[[LIMBS[name].lower, LIMBS[name].end]].sum() > p.limb_cost
     )
     starts: list[tuple[MotionState, tuple[str, ...]]] = []
     if limbs:

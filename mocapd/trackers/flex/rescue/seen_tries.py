@@ -46,7 +46,7 @@ def tried_as_seen(
     joints: JointTerm,
     anew: Anew,
     params: SeenPoseParams,
-    motion: Floats | None = None,
+    motion: Floats | None,
 ) -> Judged:
     """The cheapest of the present fit and those that begin where the joints were seen. motion: of every fit, where an upper
     body leads and legs alone may change."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.skeleton import INDEX, N_JOINTS, OTHER_SIDE
+from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import View
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
@@ -83,7 +83,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         return (joints,)
 
     now = Judged(fit, views, (joints,))
-    found = tried_as_seen(FITTER, now, DT_S, joints, Anew(shown, measured), PARAMS)
+    found = tried_as_seen(FITTER, now, DT_S, joints, Anew(shown, measured), PARAMS, None)
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
     if shown is drawn:
         assert found.changed == ("left_arm",)
@@ -118,5 +118,4 @@ def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
     goal_m = FITTER.joints(there)[0]
     ((start, changed), *_) = starts_as_seen(FITTER, fit, seen_at(goal_m), (), PARAMS)
     assert changed == ("left_leg",)
-    assert len(goal_m) == N_JOINTS
     assert np.linalg.norm(FITTER.joints(start)[0][FOOT] - goal_m[FOOT]) < 0.15
