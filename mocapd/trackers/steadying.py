@@ -6,8 +6,8 @@ that what is held back of each step does not leave it behind (an alpha-beta filt
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import astuple, dataclass, field, replace
+from functools import cache, partial
 
 import numpy as np
 
@@ -22,25 +22,46 @@ _LEADS_TO = {
     "Shoulder": "UpperArm", "UpperArm": "LowerArm", "LowerArm": "Hand",
     "UpperLeg": "LowerLeg", "LowerLeg": "Foot", "neck": "head",
 }  # fmt: skip
+_KINDS = ("trunk", "upper_arm", "forearm", "thigh", "shank")
+_KIND_OF = {
+    "UpperArm": "upper_arm", "LowerArm": "forearm", "Hand": "forearm",
+    "UpperLeg": "thigh", "LowerLeg": "shank", "Foot": "shank", "Toes": "shank",
+}  # fmt: skip
 _ANEW_S = 0.5  # after a longer gap nothing is left to follow from
 _SHORTEST_TICKS = 0.1  # frames of one time are told apart a little
 
 
 @dataclass(frozen=True, slots=True)
-class SteadyingParams:
-    """How much of the way to what was found is gone in a usual frame, and how fast a bone turns at most."""
+class Following:
+    """How much of the way to what was found bones of one kind go in a usual frame."""
 
-    sure: float = 1.6  # confidence at which it were all of the way; a little is always held back
-    doubtful: float = 0.2  # confidence up to which it is the least
-    least: float = 0.3
-    trust_s: float = 0.45  # who was not confirmed at all is fully believed no sooner
-    sure_rad_s: float = 17.0
-    doubtful_rad_s: float = 5.3
-    glide: float = 0.7  # of its speed that a bone keeps to the next frame
+    sure: float  # confidence at which it were all of the way; a little is always held back
+    doubtful: float  # confidence up to which it is the least
+    least: float
+    doubtful_rad_s: float  # how fast a bone turns then, at most
+    power: float = 1.0  # above 1, what lies between is rather doubtful than sure
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyingParams:
+    """How what is told follows. At the same confidence an arm is twice as wrong as a leg, and jumps twice as far."""
+
+    trunk: Following = Following(1.6, 0.25, 0.25, 5.4)
+    upper_arm: Following = Following(1.1, 0.0, 0.17, 3.0, power=3.0)
+    forearm: Following = Following(1.1, 0.0, 0.15, 4.0, power=3.0)
+    thigh: Following = Following(2.5, 0.2, 0.43, 9.5)
+    shank: Following = Following(2.0, 0.15, 0.3, 8.5)
+    trust_s: float = 0.35  # who was not confirmed at all is fully believed no sooner
+    sure_rad_s: float = 20.0
+    glide: float = 0.75  # of its speed that a bone keeps to the next frame
     learns: float = 0.65  # of a new speed, at full confidence
     settles_s: float = (
         0.4  # who was just found is told as found: there is nothing better to hold on to
     )
+
+    def with_all(self, bones: Following) -> "SteadyingParams":
+        """The same with bones of every kind following like these."""
+        return replace(self, trunk=bones, upper_arm=bones, forearm=bones, thigh=bones, shank=bones)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,17 +77,26 @@ class Told:
     moving_m_s: Floats = field(default_factory=partial(np.zeros, 3))
 
 
-def _end_of_bones() -> Ints:
-    """(J,) the joint that each bone leads to, whose confidence tells how well the bone's direction is known."""
-    ends = []
+def _of_bones() -> tuple[Ints, Ints]:
+    """(J,) the joint that each bone leads to, whose confidence tells how well the bone's direction is known; (J,) its place
+    in _KINDS."""
+    ends, kinds = [], []
     for name in NAMES:
         side = next((s for s in ("left", "right") if name.startswith(s)), "")
         bone = name.removeprefix(side)
         ends.append(INDEX[side + _LEADS_TO.get(bone, bone)])
-    return np.array(ends)
+        kinds.append(_KINDS.index(_KIND_OF.get(bone, "trunk")))
+    return np.array(ends), np.array(kinds)
 
 
-_END_OF_BONE = _end_of_bones()
+_END_OF_BONE, _KIND_OF_BONE = _of_bones()
+
+
+@cache
+def _following(params: SteadyingParams) -> Floats:
+    """(5,J) the numbers of a `Following`, for each bone."""
+    kinds = np.array([astuple(getattr(params, kind)) for kind in _KINDS], np.float64)
+    return np.ascontiguousarray(kinds[_KIND_OF_BONE].T)
 
 
 def steadied(
@@ -89,8 +119,9 @@ def steadied(
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
     ticks = gap_s / TICK_S
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
-    sure = np.clip((trust - p.doubtful) / (p.sure - p.doubtful), 0.0, 1.0)
-    follows = 1.0 - ((1.0 - p.least) * (1.0 - sure)) ** ticks
+    all_sure, doubtful, least, doubtful_rad_s, power = _following(p)
+    sure = np.clip((trust - doubtful) / (all_sure - doubtful), 0.0, 1.0) ** power
+    follows = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
     learns = 1.0 - (1.0 - p.learns * np.sqrt(sure)) ** ticks
 
     turning = p.glide**ticks * last.turning_rad_s
@@ -99,7 +130,7 @@ def steadied(
     way = rotations.log(rotations.multiply(found.quats_xyzw, rotations.inverse(expected)))
     told = rotations.multiply(rotations.exp(follows[:, None] * way), expected)
     turn = rotations.log(rotations.multiply(told, rotations.inverse(last.pose.quats_xyzw)))
-    most_rad = gap_s * (p.doubtful_rad_s + (p.sure_rad_s - p.doubtful_rad_s) * sure)
+    most_rad = gap_s * (doubtful_rad_s + (p.sure_rad_s - doubtful_rad_s) * sure)
     turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
     told = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
     turning += learns[:, None] * (turn / gap_s - turning)

@@ -46,7 +46,7 @@ def test_what_is_hardly_confirmed_follows_slowly_and_gets_there() -> None:
     path = [rad(told) for told in followed(turned(1.0), DOUBTFUL, 60)]
     steps = np.diff([0.0, *path])
     assert (steps > 0.0).all()
-    assert steps.max() <= PARAMS.doubtful_rad_s / 30.0 + 1e-6
+    assert steps.max() <= PARAMS.upper_arm.doubtful_rad_s / 30.0 + 1e-6
     assert path[-1] == pytest.approx(1.0, abs=1e-3)
 
 
@@ -57,6 +57,18 @@ def test_each_bone_by_the_joint_that_it_leads_to() -> None:
     assert rad(told) < 0.4 * 0.4
     (told,) = followed(turned(0.4, FOREARM), elbow_hidden, 1)
     assert rad(told, FOREARM) > 0.65 * 0.4
+
+
+def test_of_the_same_confidence_legs_are_followed_closer_than_arms() -> None:
+    half = np.full(N_JOINTS, 0.5)
+    bones = [INDEX["left" + bone] for bone in ("LowerArm", "UpperArm", "LowerLeg", "UpperLeg")]
+    told = []
+    for bone in bones:
+        path = steadied(turned(0.0, bone), half, 0, None, PARAMS)
+        for n in range(1, 3):
+            path = steadied(turned(0.5, bone), half, n * FRAME_NS, path, PARAMS)
+        told.append(rad(path, bone))
+    assert max(told[:2]) < min(told[2:]) < 0.5
 
 
 def test_no_bone_turns_faster_than_people_turn() -> None:
@@ -82,7 +94,7 @@ def test_trust_comes_back_bit_by_bit() -> None:
 def test_a_bone_that_was_found_elsewhere_glides_there() -> None:
     told = steadied(turned(0.0), SURE, 0, None, PARAMS)
     jumped = steadied(turned(1.0), SURE, FRAME_NS, told, PARAMS, [ARM])
-    assert 0.0 < rad(jumped) <= PARAMS.doubtful_rad_s / 30.0 + 1e-3
+    assert 0.0 < rad(jumped) <= PARAMS.upper_arm.doubtful_rad_s / 30.0 + 1e-3
 
 
 def turning(params: SteadyingParams, stops: int) -> list[float]:

@@ -11,6 +11,7 @@ from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.section import FlexSection
 from mocapd.trackers.flex.tracker import FlexTracker
 from mocapd.trackers.known import known_rig, stature_m
+from mocapd.trackers.steadying import Following
 from mocapd.trackers.tracking_state import TrackingStateParams
 from mocapd.vision.face.lbp_cascade import frontal_faces
 
@@ -70,10 +71,7 @@ def params_of(section: FlexSection | None) -> Params:
         soft_joints = replace(usual.fit, limit_sd_rad=_SOFT_RAD, collision_sd_m=_SOFT_M)
         params = replace(params, fit=soft_joints)
     if not section.steady:
-        params = replace(
-            params,
-            steadying=replace(
-                usual.steadying, least=1.0, doubtful_rad_s=_SOFT_RAD, sure_rad_s=_SOFT_RAD
-            ),
-        )
+        at_once = Following(sure=1.0, doubtful=0.0, least=1.0, doubtful_rad_s=_SOFT_RAD)
+        steadying = replace(usual.steadying, sure_rad_s=_SOFT_RAD).with_all(at_once)
+        params = replace(params, steadying=steadying)
     return params

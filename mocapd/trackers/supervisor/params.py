@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.trackers.steadying import SteadyingParams
+from mocapd.trackers.steadying import Following, SteadyingParams
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +45,7 @@ class Params:
     # arms that hardly a picture confirms, of who knows the upper body alone: more mildly than without the shirt, whose
     # colours mistake arms less
     steadying: SteadyingParams = field(
-        default_factory=lambda: SteadyingParams(
-            sure=0.6,
-            doubtful=0.0,
-            least=0.4,
-            trust_s=0.7,
-            sure_rad_s=60.0,
-            doubtful_rad_s=15.0,
-            glide=0.0,
+        default_factory=lambda: SteadyingParams(trust_s=0.7, sure_rad_s=60.0, glide=0.0).with_all(
+            Following(sure=0.6, doubtful=0.0, least=0.4, doubtful_rad_s=15.0)
         )
     )
