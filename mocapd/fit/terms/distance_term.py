@@ -6,8 +6,6 @@ the surface with stereo points; here each point knows the triangle that it was l
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
@@ -39,7 +37,6 @@ class DistanceTerm:
     def __init__(self, model: BodyModel, measured: MeasuredDistances) -> None:
         self._model, self._measured = model, measured
         self._information = 1.0 / measured.sd_m**2
-        self._row = np.zeros(model.n_pose)
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `PoseTerm`."""
@@ -47,6 +44,6 @@ class DistanceTerm:
         cost: float = pull_along_rays(
             seen.triangle, seen.origin_m, seen.rays, seen.distance_m, self._information, _ROBUST_M,
             body.centres, m.triangle_bones, m.triangle_weights, body.rest, m.parents,
-            m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, self._row, H, b,
+            m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
         )  # fmt: skip
         return cost

@@ -36,7 +36,6 @@ class FloorTerm:
         self._model, self._params = model, params if params is not None else FloorParams()
         # a picture shows how high a shoe is, and hardly whether its heel is up
         self._feet = np.array([INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")])
-        self._row = np.zeros(model.n_pose)
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `PoseTerm`."""
@@ -44,6 +43,6 @@ class FloorTerm:
         cost: float = stand_on_floor(
             self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.standing_sd_m**2),
             p.together_m, p.jump_m, body.rest, m.parents, m.joint_of_group, m.group_of_joint,
-            m.share_of_joint, posed.R, posed.joints, self._row, H, b,
+            m.share_of_joint, posed.R, posed.joints, H, b,
         )  # fmt: skip
         return cost

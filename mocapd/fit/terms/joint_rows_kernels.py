@@ -31,7 +31,6 @@ def pull_at_joints(
     share_of_joint: Array,
     R: Array,
     joints: Array,
-    rows: Array,
     H: Array,
     b: Array,
 ) -> float:
@@ -39,7 +38,7 @@ def pull_at_joints(
     farther_m (N,); the robust cost (Geman-McClure).
 
     information (N,3): xx, xy, yy across the ray [1/m^2]; depth_information (N,); weights: of the cost, how many standard
-    deviations leave a quarter of the weight, and of depth beside place. rows (4,n_pose) is scratch.
+    deviations leave a quarter of the weight, and of depth beside place.
     """
     weight, robust2, depth_weight = weights[0], weights[1] * weights[1], weights[2]
     carrier, whole = np.empty(1, np.int32), np.ones(1)
@@ -50,6 +49,7 @@ def pull_at_joints(
         hips_z += camera_R[2, i] * joints[0, i]
     cost = 0.0
     across = np.empty((2, 3))
+    rows = np.empty((4, 3 + 3 * joint_of_group.shape[0]))
     for n in range(seen.shape[0]):
         joint = seen[n]
         carrier[0] = max(parents[joint], 0)  # a joint is a point of the bone above it

@@ -51,7 +51,6 @@ class JointTerm:
     ) -> None:
         self._model, self.seen = model, seen
         self._params = params if params is not None else JointTermParams()
-        self._rows = np.zeros((4, model.n_pose))
 
     @property
     def trusting(self) -> "JointTerm":
@@ -101,7 +100,7 @@ class JointTerm:
             cost += pull_at_joints(
                 one.joints, one.xy, one.information, one.farther_m, one.depth_information,
                 (p.weight, p.robust, p.depth_weight), one.camera.R, one.camera.t_m, body.rest, m.parents,
-                m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, self._rows, H, b,
+                m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
             )  # fmt: skip
         return cost
 

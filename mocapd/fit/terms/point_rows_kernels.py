@@ -37,7 +37,6 @@ def stand_on_floor(
     share_of_joint: Array,
     R: Array,
     joints: Array,
-    row: Array,
     H: Array,
     b: Array,
 ) -> float:
@@ -45,12 +44,13 @@ def stand_on_floor(
 
     heights_m (F,): of those of one who stands; information: of what is under the floor and of what is on it;
     together_m: by how much more than the lowest one may be up and still stand; jump_m: height at which
-    standing has lost half of its weight. row (n_pose,) is scratch.
+    standing has lost half of its weight.
     """
     up = np.array([0.0, 1.0, 0.0])
     carrier, whole = np.empty(1, np.int32), np.ones(1)
     nothing = np.zeros((0, 3))
     no_rest = np.zeros((0, rest.shape[0], 3))
+    row = np.empty(3 + 3 * joint_of_group.shape[0])
     lowest = np.inf
     for f in range(feet.shape[0]):
         lowest = min(lowest, joints[feet[f], 1] - heights_m[f])
@@ -91,17 +91,16 @@ def pull_along_rays(
     share_of_joint: Array,
     R: Array,
     joints: Array,
-    row: Array,
     H: Array,
     b: Array,
 ) -> float:
     """Add a row for each triangle (N,) whose distance from origin (3,) along rays (N,3) was measured; the robust cost.
 
-    A residual of robust_m has a quarter of its weight (Geman-McClure). centres (T,3) of the triangles in the T-pose;
-    row (n_pose,) is scratch.
+    A residual of robust_m has a quarter of its weight (Geman-McClure). centres (T,3) of the triangles in the T-pose.
     """
     nothing = np.zeros((0, 3))
     no_rest = np.zeros((0, rest.shape[0], 3))
+    row = np.empty(3 + 3 * joint_of_group.shape[0])
     cost = 0.0
     for n in range(triangle.shape[0]):
         t = triangle[n]
