@@ -16,6 +16,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
+from mocapd.trackers.steadying_kernels import follow
 from mocapd.types import Floats, Ints, Pose
 
 _LEADS_TO = {
@@ -119,29 +120,26 @@ def steadied(
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
     ticks = gap_s / TICK_S
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
-    all_sure, doubtful, least, doubtful_rad_s, power = _following(p)
-    sure = np.clip((trust - doubtful) / (all_sure - doubtful), 0.0, 1.0) ** power
-    follows = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
-    learns = 1.0 - (1.0 - p.learns * np.sqrt(sure)) ** ticks
-
-    turning = p.glide**ticks * last.turning_rad_s
+    turning = last.turning_rad_s.copy()
     turning[list(jumped)] = 0.0
-    expected = rotations.multiply(rotations.exp(gap_s * turning), last.pose.quats_xyzw)
-    way = rotations.log(rotations.multiply(found.quats_xyzw, rotations.inverse(expected)))
-    told = rotations.multiply(rotations.exp(follows[:, None] * way), expected)
-    turn = rotations.log(rotations.multiply(told, rotations.inverse(last.pose.quats_xyzw)))
-    most_rad = gap_s * (doubtful_rad_s + (p.sure_rad_s - doubtful_rad_s) * sure)
-    turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
-    told = rotations.multiply(rotations.exp(turn), last.pose.quats_xyzw)
-    turning += learns[:, None] * (turn / gap_s - turning)
+    told, follows, learned = np.empty((N_JOINTS, 4)), np.empty(N_JOINTS), np.empty(N_JOINTS)
+    follow(
+        found.quats_xyzw, last.pose.quats_xyzw, trust, _following(p), gap_s, ticks, p.glide, p.learns, p.sure_rad_s,
+        turning, told, follows, learned,
+    )  # fmt: skip
 
     moving = p.glide**ticks * last.moving_m_s
     expected_m = last.pose.root_m + gap_s * moving
     root_m = expected_m + follows[0] * (found.root_m - expected_m)
-    moving += learns[0] * ((root_m - last.pose.root_m) / gap_s - moving)
-    return Told(
-        t_ns, Pose(root_m, rotations.canonical(told)), trust, last.since_ns, turning, moving
-    )
+    moving += learned[0] * ((root_m - last.pose.root_m) / gap_s - moving)
+    return Told(t_ns, Pose(root_m, told), trust, last.since_ns, turning, moving)
+
+
+def rehearse() -> None:
+    """Tell once for nothing: who is found first must not wait for the kernel to be compiled or loaded."""
+    rest = Pose(np.zeros(3), np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)))
+    params, sure = SteadyingParams(settles_s=0.0), np.ones(N_JOINTS)
+    steadied(rest, sure, nanoseconds(TICK_S), Told(0, rest, sure, 0), params)
 
 
 def behind(uncertainty_m: Floats, told_m: Floats, found_m: Floats) -> Floats:

@@ -4,11 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.trackers.steadying import SteadyingParams, Told, behind, steadied
+from mocapd.trackers.steadying_kernels import follow
 from mocapd.types import Floats, Pose
+from tests.trackers import naive_steadying
 
 ARM, FOREARM, ELBOW = INDEX["leftUpperArm"], INDEX["leftLowerArm"], INDEX["leftLowerArm"]
 FRAME_NS = 33_333_333
@@ -146,3 +150,22 @@ def test_who_was_just_found_is_told_as_found_until_settled() -> None:
     settled = round(usual.settles_s * 30.0)
     np.testing.assert_allclose(behind_rad[: settled - 1], 0.0, atol=1e-9)
     assert behind_rad[settled + 2] > 0.05
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_bones_one_by_one_go_as_the_formula_says(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    last = rotations.canonical(rotations.exp(rng.normal(0.0, 0.8, (N_JOINTS, 3))))
+    found = rotations.multiply(rotations.exp(rng.normal(0.0, 0.5, (N_JOINTS, 3))), last)
+    turning, trust = rng.normal(0.0, 3.0, (N_JOINTS, 3)), rng.random(N_JOINTS)
+    following = np.array([
+        rng.uniform(1.0, 2.5, N_JOINTS), rng.uniform(0.0, 0.3, N_JOINTS), rng.uniform(0.1, 0.5, N_JOINTS),
+        rng.uniform(2.0, 10.0, N_JOINTS), rng.choice([1.0, 3.0], N_JOINTS),
+    ])  # fmt: skip
+    gap_s = float(rng.uniform(0.003, 0.2))
+    how = (trust, following, gap_s, 30.0 * gap_s, 0.75, 0.65, 20.0)
+    told, now = naive_steadying.followed(found, last, *how, turning)
+    out, shares = np.empty((N_JOINTS, 4)), (np.empty(N_JOINTS), np.empty(N_JOINTS))
+    follow(found, last, *how, turning, out, *shares)
+    assert out == pytest.approx(told, abs=1e-9)
+    assert turning == pytest.approx(now, abs=1e-7)

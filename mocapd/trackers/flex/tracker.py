@@ -19,6 +19,7 @@ from mocapd.fit.motion_state import MotionState, initial_information, known_of, 
 from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
+from mocapd.trackers import steadying
 from mocapd.trackers.base import Probe, Track, lost_body, no_time_passes, require_stature, unprobed
 from mocapd.trackers.depth_views import with_depths
 from mocapd.trackers.flex.camera_views import CameraViews
@@ -99,6 +100,7 @@ class FlexTracker:
             one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
             for one in self.rig.cameras
         }
+        steadying.rehearse()
         self.reset()
         cameras.look(FrameSet(0, black, 0))
         cameras.mark_body(somebody)

@@ -6,6 +6,7 @@ from functools import partial
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import nanoseconds
+from mocapd.trackers import steadying
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.steadying import Told
 from mocapd.trackers.supervisor.choice import Claim, chosen
@@ -92,6 +93,7 @@ class Supervisor:
         self._glider = Glider(self.params)
         for one in self.candidates:
             one.tracker.probe = partial(self._heard, one.name)
+        steadying.rehearse()
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
