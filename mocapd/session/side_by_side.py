@@ -1,13 +1,17 @@
-"""Half of the cameras in a thread of its own, so that a frame set takes little longer than a frame."""
+"""A second thread for a tracker: half of its cameras, so that a frame set takes little longer than a frame, and what can be
+done before all is known.
+
+Whoever waits for work that nobody began yet does it: a processor that slept wakes late.
+"""
 
 import os
 from collections.abc import Callable, Iterable
-from functools import cache, partial
+from functools import cache
 from queue import SimpleQueue
-from threading import Thread
-from typing import TypeVar
+from threading import Lock, Thread, get_ident
+from typing import Any, Generic, NamedTuple, TypeVar, cast
 
-from mocapd.each import Each, in_turn
+from mocapd.each import Aside, Each, at_once, in_turn
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -15,45 +19,89 @@ R = TypeVar("R")
 
 def each_camera() -> Each:
     """See Each; in turn where there is one processor."""
-    return side_by_side if len(os.sched_getaffinity(0)) > 1 else in_turn
+    return side_by_side if _are_two() else in_turn
+
+
+def aside() -> Aside:
+    """See Aside; at once where there is one processor."""
+    return in_other_thread if _are_two() else at_once
 
 
 def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
-    """See Each. The caller does the first half."""
-    things = list(of)
-    if len(things) < 2:
+    """See Each. The caller does the first half, or all of it in the other thread."""
+    things, other = list(of), _other()
+    if len(things) < 2 or get_ident() == other.ident:
         return in_turn(work, things)
     half = (len(things) + 1) // 2
-    done: SimpleQueue[list[R] | BaseException] = SimpleQueue()
-    _other().put(partial(_do, work, things[half:], done))
+    job = _Job(lambda: in_turn(work, things[half:]))
+    other.jobs.put(job)
     try:
         mine = in_turn(work, things[:half])
     finally:
-        others = done.get()
-    if isinstance(others, BaseException):
-        raise others
-    return mine + others
+        job.end()
+    return mine + job.result()
 
 
-def _do(
-    work: Callable[[T], R], of: Iterable[T], done: "SimpleQueue[list[R] | BaseException]"
-) -> None:
-    """Tell what came of it, or what was raised."""
-    try:
-        done.put(in_turn(work, of))
-    except BaseException as error:  # noqa: BLE001 - raised where it was asked for
-        done.put(error)
+def in_other_thread(work: Callable[[], None]) -> Callable[[], None]:
+    """See Aside."""
+    job = _Job(work)
+    _other().jobs.put(job)
+    return job.result
+
+
+class _Job(Generic[R]):
+    """Work that is done once, by who comes first: the other thread, or who waits for it."""
+
+    def __init__(self, work: Callable[[], R]) -> None:
+        self._work, self._begun, self._over = work, Lock(), Lock()
+        self._over.acquire()
+        self._result: R | None = None
+        self._error: BaseException | None = None
+
+    def do(self) -> None:
+        """Unless somebody began."""
+        if not self._begun.acquire(blocking=False):
+            return
+        try:
+            self._result = self._work()
+        except BaseException as error:  # noqa: BLE001 - raised where it was asked for
+            self._error = error
+        finally:
+            self._over.release()
+
+    def end(self) -> None:
+        """Return when it is done."""
+        self.do()
+        with self._over:
+            pass
+
+    def result(self) -> R:
+        """What came of it when it is done; raises what it raised."""
+        self.end()
+        if self._error is not None:
+            raise self._error
+        return cast(R, self._result)
+
+
+class _Other(NamedTuple):
+    jobs: "SimpleQueue[_Job[Any]]"
+    ident: int | None
 
 
 @cache
-def _other() -> "SimpleQueue[Callable[[], None]]":
-    """What one thread does for all trackers of the process: a pipeline steps one at a time. Bare queues, as the twenty halves
-    of a frame set would wait half a millisecond for an executor's futures."""
-    jobs: SimpleQueue[Callable[[], None]] = SimpleQueue()
-    Thread(target=_serve, args=(jobs,), name="cameras", daemon=True).start()
-    return jobs
+def _other() -> _Other:
+    """What one thread does for all trackers of the process: a pipeline steps one at a time. A bare queue and bare locks, as
+    the twenty halves of a frame set would wait half a millisecond for an executor's futures."""
+    jobs: SimpleQueue[_Job[Any]] = SimpleQueue()
+    thread = Thread(target=_serve, args=(jobs,), name="cameras", daemon=True)
+    thread.start()
+    return _Other(jobs, thread.ident)
 
 
-def _serve(jobs: "SimpleQueue[Callable[[], None]]") -> None:
+def _serve(jobs: "SimpleQueue[_Job[Any]]") -> None:
     while True:
-        jobs.get()()
+        jobs.get().do()
+
+
+def _are_two() -> bool:
+    return len(os.sched_getaffinity(0)) > 1

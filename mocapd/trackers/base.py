@@ -62,6 +62,11 @@ class Tracker(Protocol):
 class GuidedTracker(Tracker, Protocol):
     """A tracker of whole bodies that another one, which sees the upper body better, can lead."""
 
+    def prepare(self, frames: FrameSet) -> None:
+        """What can be done of one frame set before the upper body of it is known. Once, if at all, before it is stepped with
+        these frames, and perhaps in another thread; the probe hears nothing. Raises as a step does."""
+        ...
+
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
         """One frame set, whose upper body another tracker knows (upper has a pose): it is held there; legs and
         head are this tracker's. What is known then is gone on from by a plain `step`."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mocapd.calibration.record import Calibration
-from mocapd.each import Each, in_turn
+from mocapd.each import Aside, Each, at_once, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
@@ -43,7 +43,8 @@ class Resources:
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
     that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
     must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
-    each tracker, by name, as usual where absent; each: of a tracker's cameras;
+    each tracker, by name, as usual where absent; each: of a tracker's cameras; aside: what it
+    can do before it knows all;
     now_ns: a clock, by which work that would take too long at one frame set goes on at the next; for recordings it
     stands still, as they wait as long as it takes.
     """
@@ -55,6 +56,7 @@ class Resources:
     tracking: TrackingStateParams | None = None
     sections: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
+    aside: Aside = at_once
     now_ns: Callable[[], int] = no_time_passes
 
 
@@ -191,7 +193,8 @@ def _auto(calibration: Calibration, section: AutoSection, resources: Resources) 
         if name not in able and len(cameras) >= KINDS[name].least_cameras:
             resources.tell(f"the tracker {name!r} is done without: it {lacking[name]}")
     return Supervisor(
-        [Candidate(build(name, calibration, resources), KINDS[name]) for name in able]
+        [Candidate(build(name, calibration, resources), KINDS[name]) for name in able],
+        aside=resources.aside,
     )
 
 

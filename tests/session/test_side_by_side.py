@@ -2,12 +2,13 @@
 
 import threading
 import time
+from functools import partial
 
 import numpy as np
 import pytest
 
 from mocapd.each import Each, in_turn
-from mocapd.session.side_by_side import side_by_side
+from mocapd.session.side_by_side import in_other_thread, side_by_side
 from mocapd.trackers.flex.build import build_flex_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import Floats
@@ -40,6 +41,47 @@ def test_what_one_raises_is_raised_when_all_are_done(bad: int) -> None:
     left = set(at_work)
     time.sleep(0.1)
     assert at_work == left
+
+
+def test_what_is_done_aside_goes_on_meanwhile_and_is_waited_for() -> None:
+    both, done = threading.Barrier(2), list[int]()
+
+    def work() -> None:
+        both.wait(30.0)
+        done.append(threading.get_ident())
+
+    wait = in_other_thread(work)
+    both.wait(30.0)
+    wait()
+    assert len(done) == 1
+    assert done != [threading.get_ident()]
+
+
+def test_what_fails_aside_is_raised_where_it_is_waited_for() -> None:
+    wait = in_other_thread(partial(int, "nothing"))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="nothing"):
+        wait()
+
+
+def test_whoever_waits_for_work_that_nobody_began_does_it() -> None:
+    go_on, at_work = threading.Event(), threading.Event()
+
+    def long() -> None:
+        at_work.set()
+        go_on.wait(30.0)
+
+    wait = in_other_thread(long)
+    at_work.wait(30.0)
+    # the other thread is busy
+    assert side_by_side(lambda _: threading.get_ident(), range(2)) == [threading.get_ident()] * 2
+    go_on.set()
+    wait()
+
+
+def test_the_other_thread_does_its_own_cameras_in_turn() -> None:
+    who: list[int] = []
+    in_other_thread(lambda: who.extend(side_by_side(lambda _: threading.get_ident(), range(4))))()
+    assert len(set(who)) == 1
 
 
 @pytest.mark.kernels

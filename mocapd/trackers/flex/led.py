@@ -75,6 +75,16 @@ def guided_information(params: Params, prediction_sd: Floats, dt_s: float) -> Fl
     return np.diag(held + 1.0 / (prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
 
 
+class _Ready(NamedTuple):
+    """What was made of the pictures of one frame set before the guide was known: as `drawn`, the body as it goes on from the
+    last ones."""
+
+    frames: FrameSet
+    drawn: MotionState
+    views: list[View]
+    rays: list[JointRays | None]
+
+
 class _Guided(NamedTuple):
     """One frame set, and what is known before it is looked at."""
 
@@ -115,7 +125,20 @@ class LegsBelow:
 
     def reset(self) -> None:
         """No legs were seen."""
+        self._ready: _Ready | None = None
         self._found_ns = -nanoseconds(self._params.guided_joint_after_s)
+
+    def prepare(self, known: Followed, frames: FrameSet, turn: int) -> None:
+        """Classify the pictures without a guide, if the wearer's look is known."""
+        cameras = self._cameras
+        if not cameras.are_new and cameras.know_appearance:
+            dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
+            root, local = moved(
+                self._silhouettes.model, known.state, dt_s, self._params.prediction_damping
+            )
+            drawn = replace(known.state, root_m=root, local_xyzw=local)
+            views, rays = cameras.prepared(drawn, turn, self._watch(drawn, frames, turn))
+            self._ready = _Ready(frames, drawn, views, rays)
 
     def follow(
         self,
@@ -169,7 +192,13 @@ class LegsBelow:
     def _fitted(self, one: _Guided, probe: Probe) -> _Found | None:
         """Somebody whose look is known."""
         fitter, terms = self._wardrobe.fitter, self._terms
-        views, rays = self._cameras.prepared(one.predicted, one.turn, self._watch(one))
+        ready, self._ready = self._ready, None
+        if ready is not None and ready.frames is one.frames:
+            _, drawn, views, rays = ready
+        else:
+            drawn = one.predicted
+            watch = self._watch(drawn, one.frames, one.turn)
+            views, rays = self._cameras.prepared(drawn, one.turn, watch)
         probe("cameras")
         if not views:
             return None
@@ -178,25 +207,27 @@ class LegsBelow:
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
             return (*terms.measured(fitter, drawn, shown, one.frames, one.turn, LEGS), *seen)
 
-        of_predicted = terms_of(one.predicted, views)
+        of_drawn = terms_of(drawn, views)
         probe("distances")
         fit = fitter.fit(
-            one.predicted, views, one.dt_s, one.iterations, learn_shape=False, rendered=True, fine=1,
-            motion=one.held, terms=of_predicted,
+            one.predicted, views, one.dt_s, one.iterations, learn_shape=False, rendered=drawn is one.predicted, fine=1,
+            motion=one.held, terms=of_drawn,
         )  # fmt: skip
         probe("fit")
         fit, views, changed = self._others.other_legs(
-            self._wardrobe.dressed, fit, views, one.dt_s, one.turn, of_predicted, seen,
+            self._wardrobe.dressed, fit, views, one.dt_s, one.turn, of_drawn, seen,
             Anew(self._cameras.classified, terms_of), one.held,
         )  # fmt: skip
         probe("legs")
         return _Found(fit, views, changed)
 
-    def _watch(self, one: _Guided) -> Callable[[int], JointRays | None]:
+    def _watch(
+        self, expected: MotionState, frames: FrameSet, turn: int
+    ) -> Callable[[int], JointRays | None]:
         """What looks for joints, in the frames that do."""
         p = self._params
         # legs that were just found are told as found: what moves them far must wait
-        is_new = one.frames.t_ns - self._found_ns <= nanoseconds(p.guided_joint_after_s)
-        if one.turn % p.guided_joint_turns != 1 or is_new:
+        is_new = frames.t_ns - self._found_ns <= nanoseconds(p.guided_joint_after_s)
+        if turn % p.guided_joint_turns != 1 or is_new:
             return unwatched
-        return self._terms.joints.watch(self._wardrobe.fitter, one.predicted, self._cameras)
+        return self._terms.joints.watch(self._wardrobe.fitter, expected, self._cameras)

@@ -134,6 +134,7 @@ class FlexTracker:
         self._others.reset()
         self._legs_below.reset()
         self._turn = 0
+        self._looked_at: FrameSet | None = None  # of which there was no step yet
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """Learn the background from a recording, before its first step. Raises ConfigError as `step` does."""
@@ -142,6 +143,7 @@ class FlexTracker:
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         wearer, known = self._begin(frames, shape)
+        self.probe("picture")
         views: list[View] = []
         if self._cameras.present:
             if known is not None:
@@ -155,12 +157,20 @@ class FlexTracker:
         taught = [] if self._measures_depths else views
         return self._end(known, views, frames, shape, taught)
 
+    def prepare(self, frames: FrameSet) -> None:
+        """Take the pictures, and classify them by the body as it goes on from the last ones. Raises as `step`."""
+        self._look(frames)
+        known = self._recent(frames)
+        if known is not None and self._cameras.present:
+            self._legs_below.prepare(known, frames, self._turn)
+
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
         """Track one frame set whose upper body another tracker knows: legs and head alone are fitted. Raises as `step`,
         and ValueError for an upper body without a pose."""
         if upper.pose is None:
             raise ValueError("a guide that knows no pose")
         wearer, known = self._begin(frames, shape)
+        self.probe("picture")
         self._near = None
         self._find.give_up()
         views: list[View] = []
@@ -173,15 +183,24 @@ class FlexTracker:
 
     def _begin(self, frames: FrameSet, shape: BodyShape) -> tuple[Proportions, Followed | None]:
         """The wearer of this step, and what is known of the last one."""
+        require_stature(shape, self._model.stature_m)
+        if self._looked_at is not frames:
+            self._look(frames)
+        self._looked_at = None
+        return Proportions(*known_of(shape, self._model.space)), self._recent(frames)
+
+    def _look(self, frames: FrameSet) -> None:
         self._turn += 1
         self._find.times.came(frames.t_ns)
-        require_stature(shape, self._model.stature_m)
         self._cameras.look(frames)
-        self.probe("picture")
+        self._looked_at = frames
+
+    def _recent(self, frames: FrameSet) -> Followed | None:
+        """What is known, unless it is too old to predict from."""
         known = self._known
-        if known is not None and frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
-            known = None  # too old to predict from
-        return Proportions(*known_of(shape, self._model.space)), known
+        if known is None or frames.t_ns - known.t_ns > nanoseconds(_TOO_OLD_S):
+            return None
+        return known
 
     def _end(
         self,

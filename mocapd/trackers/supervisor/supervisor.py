@@ -6,6 +6,7 @@ from functools import partial
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import nanoseconds
+from mocapd.each import Aside, at_once
 from mocapd.trackers import steadying
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.steadying import Told
@@ -26,6 +27,7 @@ from mocapd.trackers.supervisor.standing import Standing, is_well, judged
 from mocapd.trackers.supervisor.steady_arms import with_steady_arms
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
+PREPARED = "prepared"  # the stage in which one who is led is waited for
 GLIDE = "glide"  # the stage of a frame that is told between one speaker's body and the next one's
 
 
@@ -79,8 +81,13 @@ class Supervisor:
 
     name = "auto"
 
-    def __init__(self, candidates: Sequence[Candidate], params: Params | None = None) -> None:
-        """candidates: the one to be preferred first; at least one."""
+    def __init__(
+        self,
+        candidates: Sequence[Candidate],
+        params: Params | None = None,
+        aside: Aside = at_once,
+    ) -> None:
+        """candidates: the one to be preferred first; at least one. aside: what one of them can do before another leads it."""
         self.params = params if params is not None else Params()
         self.probe: Probe = unprobed
         self.candidates = tuple(candidates)
@@ -90,6 +97,7 @@ class Supervisor:
             for one in self.candidates
             if isinstance(one.tracker, GuidedTracker)
         }
+        self._aside, self._prepared = aside, dict[str, Callable[[], None]]()
         self._glider = Glider(self.params)
         for one in self.candidates:
             one.tracker.probe = partial(self._heard, one.name)
@@ -107,6 +115,14 @@ class Supervisor:
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker. Raises ConfigError as its trackers do."""
+        self._begin_aside(frames)
+        try:
+            return self._step(frames, shape)
+        finally:
+            for name in tuple(self._prepared):
+                self._prepared.pop(name)()
+
+    def _step(self, frames: FrameSet, shape: BodyShape) -> Track:
         before = self._bodies()
         for known in self._known.values():
             known.now = False
@@ -135,6 +151,17 @@ class Supervisor:
 
     # --- stages ---
 
+    def _begin_aside(self, frames: FrameSet) -> None:
+        """Who was led in the last frame set, and so may be again, need not wait for who leads."""
+        for one in self.candidates:
+            guided = self._guided.get(one.name)
+            if (
+                guided is not None
+                and self._known[one.name].guided
+                and self._is_due(one, frames.t_ns)
+            ):
+                self._prepared[one.name] = self._aside(partial(guided.prepare, frames))
+
     def _ask(
         self, frames: FrameSet, shape: BodyShape, asked: Callable[[Candidate], bool]
     ) -> BodyShape:
@@ -160,6 +187,10 @@ class Supervisor:
         known, tracker = self._known[one.name], one.tracker
         # who was offered a body looks for it whole, once
         upper = None if known.has_offer else self._guide(one)
+        prepared = self._prepared.pop(one.name, None)
+        if prepared is not None:
+            prepared()
+            self._heard(one.name, PREPARED)
         guided = self._guided.get(one.name)
         known.guided = upper is not None and guided is not None
         if upper is not None and guided is not None:

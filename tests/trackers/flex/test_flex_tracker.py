@@ -105,6 +105,29 @@ def test_led_by_another_tracker_it_keeps_the_upper_body_and_adds_the_legs(
             assert np.median(off_m(track, film.joints_m[number - N_EMPTY])[LEGS]) < 0.10
 
 
+def test_prepared_before_its_guide_is_known_it_finds_the_same(
+    film: PlainFilm, tracker: Stepping
+) -> None:
+    guides = [t.body for t in run(tracker, film.frames)]
+    shape = known_shape(film.known)
+    at_once, prepared = build_flex_tracker(film.known), build_flex_tracker(film.known)
+    led = 0
+    for frame, guide in zip(film.frames, guides, strict=True):
+        if guide.pose is None:
+            for flex in (at_once, prepared):
+                flex.step(frame, shape)
+            continue
+        prepared.prepare(frame)
+        tracks = [flex.step_guided(frame, shape, guide) for flex in (at_once, prepared)]
+        assert tracks[1].body.tracking is tracks[0].body.tracking
+        if led > 12:
+            assert off_m(tracks[1], tracks[0].body.joints_m).max() < 0.10
+        led += 1
+    # whoever led it is gone, and it was prepared all the same
+    prepared.prepare(film.frames[-1])
+    assert prepared.step(film.frames[-1], shape).body.tracking is Tracking.LIVE
+
+
 def test_after_it_was_led_it_goes_on_alone(film: PlainFilm, tracker: Stepping) -> None:
     guides = [t.body for t in run(tracker, film.frames)]
     flex, shape = build_flex_tracker(film.known), known_shape(film.known)

@@ -8,6 +8,7 @@ import numpy as np
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, rest_pose
 from mocapd.clock import nanoseconds, seconds
+from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, unprobed
 from mocapd.trackers.supervisor.kinds import KINDS
@@ -97,7 +98,17 @@ class ScriptedTracker:
 
 
 class ScriptedGuided(ScriptedTracker):
-    """One that can be guided, too."""
+    """One that can be guided, too. prepared: for which times it was; fails_at_s: from when on that fails."""
+
+    def __init__(self, name: str, script: Sequence[Word], confidence: float) -> None:
+        super().__init__(name, script, confidence)
+        self.prepared: list[int] = []
+        self.fails_at_s = float("inf")
+
+    def prepare(self, frames: FrameSet) -> None:
+        if seconds(frames.t_ns) >= self.fails_at_s:
+            raise ConfigError("a frame of another size", self.name, "calibrate again")
+        self.prepared.append(frames.t_ns)
 
     def step_guided(self, frames: FrameSet, shape: BodyShape, upper: BodyState) -> Track:
         self.guided_by[frames.t_ns] = upper

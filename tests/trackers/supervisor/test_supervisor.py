@@ -1,15 +1,17 @@
 """Who speaks and when, and what is told meanwhile: on trackers that say what a script tells them."""
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from mocapd.body.shape import skeleton_of
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.clock import nanoseconds
+from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
-from mocapd.trackers.base import unprobed
+from mocapd.trackers.base import Track, unprobed
 from mocapd.trackers.supervisor.joining import LOWER_BONES, LOWER_JOINTS
 from mocapd.trackers.supervisor.kinds import KINDS, Kind
 from mocapd.trackers.supervisor.params import Params
@@ -349,3 +351,45 @@ def test_one_shape_for_all_and_stages_under_their_trackers_name() -> None:
     one.auto.probe = unprobed
     assert {"colour.look", "flex.look"} <= set(heard)
     assert all(shape is SHAPE for shape in one.colour.shapes + one.flex.shapes)
+
+
+def test_who_is_led_is_prepared_before_each_frame_in_which_that_goes_on() -> None:
+    one = scene((Word(0.0), Word(0.5, LOST), Word(1.0)), ALL_WELL)
+    one.run(1.5)
+    led = sorted(one.flex.guided_by)
+    after_led = [
+        t
+        for t in one.flex.stepped_ns
+        if any(0 < t - before < 1.5 * FRAME_S * 1e9 for before in led)
+    ]
+    assert one.flex.prepared == after_led
+    assert len(led) - 3 < len(one.flex.prepared) < len(one.flex.stepped_ns)
+
+
+def test_what_goes_wrong_aside_is_raised_where_the_frame_is_stepped() -> None:
+    one = scene(ALL_WELL, ALL_WELL)
+    one.flex.fails_at_s = 0.5
+    with pytest.raises(ConfigError, match="another size"):
+        one.run(1.0)
+    assert one.colour.stepped_ns[-1] < nanoseconds(0.5 + 1.5 * FRAME_S)
+
+
+def test_nothing_goes_on_aside_when_a_frame_is_over_whoever_failed() -> None:
+    waited: list[str] = []
+
+    def aside(work: Callable[[], None]) -> Callable[[], None]:
+        waited.append("begun")
+        return lambda: waited.append("ended")
+
+    one = scene(ALL_WELL, ALL_WELL)
+    auto = Supervisor(one.auto.candidates, PARAMS, aside)
+
+    def fails(frames: FrameSet, shape: BodyShape) -> Track:
+        raise ConfigError("a frame of another size", "colour", "calibrate again")
+
+    for k in range(5):
+        auto.step(frame_set(round(k * FRAME_S * 1e9), 2), SHAPE)
+    one.colour.step = fails  # type: ignore[method-assign]
+    with pytest.raises(ConfigError):
+        auto.step(frame_set(round(5 * FRAME_S * 1e9), 2), SHAPE)
+    assert waited == ["begun", "ended"] * 5

@@ -55,7 +55,9 @@ def starts_as_seen(
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
         return []
-    if legs_exchanged(seen, joints_m, costs, p):
+    # who leads knows left and right, and the network does where it sees the trunk as that does
+    knows_sides = legs_alone and abs(seen.turn_rad(joints_m)) < p.turned_rad
+    if not knows_sides and legs_exchanged(seen, joints_m, costs, p):
         far = {name: cost for name, cost in far.items() if name.endswith("arm")}
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
     if not lost:
