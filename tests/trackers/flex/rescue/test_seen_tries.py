@@ -15,7 +15,7 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.trackers.flex.rescue.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
 from mocapd.trackers.flex.rescue.seen_tries import Anew, Judged, tried_as_seen
-from mocapd.types import Floats
+from mocapd.types import Floats, Ints
 from tests.trackers.flex.rescue.test_flex_legs import BODY, FITTER, standing
 
 pytestmark = pytest.mark.kernels
@@ -26,16 +26,19 @@ LIMBS = np.array([INDEX[s + j] for s in ("left", "right") for j in ("LowerArm", 
 HAND, FOOT = INDEX["leftHand"], INDEX["leftFoot"]
 
 
-def seen_at(joints_m: Floats) -> JointTerm:
-    """Both cameras see elbows, hands, knees and feet there."""
+TRUNK = np.array([INDEX[s + j] for s in ("left", "right") for j in ("UpperArm", "UpperLeg")])
+
+
+def seen_at(joints_m: Floats, which: Ints = LIMBS) -> JointTerm:
+    """Both cameras see elbows, hands, knees and feet there, or other joints."""
     out = []
     for drawing in FITTER.drawings:
-        there = to_camera(drawing.camera, joints_m)[LIMBS]
-        n = len(LIMBS)
+        there = to_camera(drawing.camera, joints_m)[which]
+        n = len(which)
         hips_z = to_camera(drawing.camera, joints_m)[0, 2]
         out.append(
             JointRays(
-                drawing.camera, LIMBS, there[:, :2] / there[:, 2:], np.tile([400.0, 0.0, 400.0], (n, 1)),
+                drawing.camera, which, there[:, :2] / there[:, 2:], np.tile([400.0, 0.0, 400.0], (n, 1)),
                 there[:, 2] - hips_z, np.full(n, 100.0),
             )
         )  # fmt: skip
@@ -93,12 +96,17 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         assert off_m > 0.5
 
 
+def with_legs_of_the_other_side(joints_m: Floats) -> Floats:
+    out = joints_m.copy()
+    legs = [INDEX[s + j] for s in ("left", "right") for j in ("UpperLeg", "LowerLeg", "Foot")]
+    out[legs] = joints_m[OTHER_SIDE[legs]]
+    return out
+
+
 def test_legs_that_are_taken_for_each_other_are_no_reason_to_move_them() -> None:
     here = kicking(standing(0.0, 0.1), "left")
     here_m = FITTER.joints(here)[0]
-    taken_m = here_m.copy()
-    legs = [INDEX[s + j] for s in ("left", "right") for j in ("UpperLeg", "LowerLeg", "Foot")]
-    taken_m[legs] = here_m[OTHER_SIDE[legs]]
+    taken_m = with_legs_of_the_other_side(here_m)
     fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
     for seen_m, exchanged in (
         (here_m, False),
@@ -110,6 +118,25 @@ def test_legs_that_are_taken_for_each_other_are_no_reason_to_move_them() -> None
         assert legs_exchanged(seen, joints_m, seen.costs(joints_m), PARAMS) is exchanged
     starts = starts_as_seen(FITTER, fit, seen_at(taken_m), (), PARAMS)
     assert starts == []
+
+
+def test_where_the_upper_body_is_known_legs_are_tried_as_seen_unless_the_trunk_is_seen_turned_too() -> (
+    None
+):
+    here = kicking(standing(0.0, 0.1), "left")
+    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    here_m = FITTER.joints(fit.state)[0]
+    legs_m = with_legs_of_the_other_side(here_m)
+    ((start, changed), *_) = starts_as_seen(
+        FITTER, fit, seen_at(legs_m), (), PARAMS, legs_alone=True
+    )
+    assert set(changed) == {"left_leg", "right_leg"}
+    found_m = FITTER.joints(start)[0]
+    assert np.linalg.norm(found_m[OTHER_SIDE[FOOT]] - here_m[FOOT]) < 0.3  # hips stay
+    turned_m = legs_m.copy()
+    turned_m[TRUNK] = here_m[OTHER_SIDE[TRUNK]]
+    both = seen_at(turned_m, np.concatenate([TRUNK, LIMBS]))
+    assert starts_as_seen(FITTER, fit, both, (), PARAMS, legs_alone=True) == []
 
 
 def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
