@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
+from mocapd.fit.limbs.arm_search import is_uncertain
 from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import unusual_legs
@@ -84,6 +85,7 @@ class OtherPoses:
         found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, None)
         fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
+        is_long = found.tried or any(is_uncertain(one, fit, self._params.limbs) for one in SIDES)
         fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
         changed = [*found.changed, *(f"{side}_arm" for side in arms)]
         probe("arms")
@@ -94,12 +96,13 @@ class OtherPoses:
             if round_ is not None:
                 fit = round_
                 changed.append(WHOLE)
-        elif self._turning.is_due(turn):
+        elif self._turning.is_due(turn, is_long):
             other = self._fitted_turned(dressed.fitter, fit, views, anew, UNDER_LIMBS)
             if self._turning.is_turned(fit, other):
                 self._turning.reset()
                 fit = other
                 changed.append(WHOLE)
+            self._turning.looked(turn)
         probe("face")
         fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, None)
         probe("legs")

@@ -5,7 +5,7 @@ predicted pose any other one loses: an arm before a trunk of its colour could no
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,12 +31,13 @@ class Anew:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Judged:
-    """A fit, what it was judged by, and the parts of the body that were found elsewhere."""
+    """A fit, what it was judged by, and the parts of the body that were found elsewhere; tried: whether others were."""
 
     fit: Fit
     views: Sequence[View]
     terms: Sequence[PoseTerm]
     changed: tuple[str, ...] = ()
+    tried: bool = False
 
 
 def tried_as_seen(
@@ -51,15 +52,15 @@ def tried_as_seen(
     """The cheapest of the present fit and those that begin where the joints were seen. motion: of every fit, where an upper
     body leads and legs alone may change."""
     held = [one for one in now.terms if not one.is_measured and one is not joints]
-    best, gained = now, params.gain
+    gained = params.gain
 
     def cost_of(fit: Fit) -> float:
         return float(joints.costs(fitter.joints(fit.state)[0]).sum())
 
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
-    for start, changed in starts_as_seen(
-        fitter, now.fit, joints, held, params, legs_alone=motion is not None
-    ):
+    starts = starts_as_seen(fitter, now.fit, joints, held, params, legs_alone=motion is not None)
+    best = replace(now, tried=True) if starts else now
+    for start, changed in starts:
         views = anew.classified(start)
         if len(views) < len(now.views):
             continue
@@ -72,5 +73,5 @@ def tried_as_seen(
         if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:
-            best, gained = Judged(fit, views, terms, changed), gain
+            best, gained = Judged(fit, views, terms, changed, tried=True), gain
     return best

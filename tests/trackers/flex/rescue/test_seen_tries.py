@@ -87,13 +87,25 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
 
     now = Judged(fit, views, (joints,))
     found = tried_as_seen(FITTER, now, DT_S, joints, Anew(shown, measured), PARAMS, None)
+    assert found.tried
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
     if shown is drawn:
         assert found.changed == ("left_arm",)
         assert off_m < 0.15
     else:
-        assert found is now
+        assert found.fit is fit
+        assert found.changed == ()
         assert off_m > 0.5
+
+
+def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
+    here = standing(0.0, 0.1)
+    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    now = Judged(fit, drawn(here), ())
+    seen = seen_at(FITTER.joints(fit.state)[0])
+    anew = Anew(drawn, lambda _, __: ())
+    assert tried_as_seen(FITTER, now, DT_S, seen, anew, PARAMS, None) is now
+    assert not now.tried
 
 
 def with_legs_of_the_other_side(joints_m: Floats) -> Floats:

@@ -1,5 +1,6 @@
 """A body that agrees better turned round, time after time, is turned round; one that does so once is not."""
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -19,9 +20,25 @@ def fit(explained: float, cost: float) -> Fit:
     return Fit(standing(), visible, matched, counts, nothing, cost, nothing)
 
 
+def looks(long_turns: Collection[int]) -> list[int]:
+    """At which turns it looks, of 60."""
+    watch, out = TurnWatch(PARAMS), []
+    for turn in range(60):
+        if watch.is_due(turn, turn in long_turns):
+            watch.looked(turn)
+            out.append(turn)
+    return out
+
+
 def test_it_is_looked_for_now_and_then() -> None:
-    watch = TurnWatch(PARAMS)
-    assert [turn for turn in range(40) if watch.is_due(turn)] == [5, 15, 25, 35]
+    assert looks(()) == [11, 21, 31, 41, 51]
+
+
+def test_a_frame_that_takes_long_anyhow_is_left_alone_for_a_while() -> None:
+    assert looks(range(20, 24)) == [11, 25, 35, 45, 55]
+    every = looks(range(60))
+    assert 3 <= len(every) < 5
+    assert max(np.diff(every)) <= PARAMS.latest + 1
 
 
 def test_once_is_chance_and_again_and_again_is_not() -> None:
