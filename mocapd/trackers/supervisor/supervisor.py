@@ -123,6 +123,7 @@ class Supervisor:
                 self._prepared.pop(name)()
 
     def _step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """With what was begun aside."""
         before = self._bodies()
         for known in self._known.values():
             known.now = False
