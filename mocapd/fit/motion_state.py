@@ -68,6 +68,12 @@ def moved(
     return stepped(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
 
 
+def gone_on(model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0) -> MotionState:
+    """The state where it has gone after dt_s, see `moved`."""
+    root, local = moved(model, state, dt_s, damping)
+    return replace(state, root_m=root, local_xyzw=local)
+
+
 def step_between(model: BodyModel, a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> Floats:
     """The pose step (n_pose,) from pose b to pose a, each (root_m, local_xyzw)."""
     out = np.empty(model.n_pose)

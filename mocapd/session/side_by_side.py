@@ -29,8 +29,11 @@ def aside() -> Aside:
 
 def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
     """See Each. The caller does the first half, or all of it in the other thread."""
-    things, other = list(of), _other()
-    if len(things) < 2 or get_ident() == other.ident:
+    things = list(of)
+    if len(things) < 2:
+        return in_turn(work, things)
+    other = _other()
+    if get_ident() == other.ident:
         return in_turn(work, things)
     half = (len(things) + 1) // 2
     job = _Job(lambda: in_turn(work, things[half:]))

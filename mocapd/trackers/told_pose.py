@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, gone_on
 from mocapd.fit.solver import Fit, Fitter
 from mocapd.trackers.blending import Residual, blended
 from mocapd.types import Floats, Pose
@@ -32,8 +32,7 @@ def told_pose(
 ) -> ToldPose:
     """Of a state that was fitted away_s [s] ago; left: of what was shown wrongly before; damping: of its motion."""
     if away_s > 0.0:
-        root, local = moved(fitter.model, state, min(away_s, _GOES_ON_S), damping)
-        state = replace(state, root_m=root, local_xyzw=local)
+        state = gone_on(fitter.model, state, min(away_s, _GOES_ON_S), damping)
     if left is not None:
         root, local = blended(state.root_m, state.local_xyzw, left)
         state = replace(state, root_m=root, local_xyzw=local)

@@ -15,7 +15,7 @@ from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, Pat
 from mocapd.clock import seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, moved, step_between
+from mocapd.fit.motion_state import MotionState, gone_on, step_between
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
@@ -71,14 +71,12 @@ class _Follower:
 
     def sighting(self, fit: Fit, seen: PatchSighting, camera: Camera, dt_s: float) -> PatchSighting:
         """What a camera saw, with the body that all of them see, dt_s later."""
-        root, local = moved(self._model, fit.state, dt_s)
-        joints, quats = self._fitter.joints(replace(fit.state, root_m=root, local_xyzw=local))
+        joints, quats = self._fitter.joints(gone_on(self._model, fit.state, dt_s))
         turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
         return replace(seen, joints_m=to_camera(camera, joints), quats_xyzw=turned)
 
     def _predicted(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
-        root, local = moved(self._model, last, dt_s, _DAMPING)
-        state = replace(last, root_m=root, local_xyzw=local)
+        state = gone_on(self._model, last, dt_s, _DAMPING)
         return self._fitter.fit(state, views, dt_s, _ITERATIONS, learn_shape=False)
 
 

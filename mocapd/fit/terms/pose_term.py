@@ -8,7 +8,7 @@ from mocapd.types import Floats
 
 
 class PoseTerm(Protocol):
-    """What a term must do; it keeps nothing of the poses that it is asked about, and two threads may ask at once.
+    """What a term must do; it keeps nothing of the poses that it is asked about.
 
     is_measured: whether its rows were measured for one pose, so that its cost tells nothing of poses far from that.
     """

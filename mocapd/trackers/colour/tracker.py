@@ -17,10 +17,10 @@ from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import (
     MotionState,
+    gone_on,
     initial_information,
     known_of,
     learned,
-    moved,
     step_between,
 )
 from mocapd.fit.solver import Fit, Fitter, View
@@ -171,8 +171,7 @@ class ColourTracker:
         p, fitter = self.params, self._fitter
         last = known.state
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
-        root, local = moved(fitter.model, last, dt_s, p.prediction_damping)
-        predicted = replace(last, root_m=root, local_xyzw=local)
+        predicted = gone_on(fitter.model, last, dt_s, p.prediction_damping)
         uncertain = tuple(s for s in SIDES if is_uncertain(s, known.fit, p.limbs))
         views = self._segmenters.views(predicted, present, uncertain)
         self.probe("classify")

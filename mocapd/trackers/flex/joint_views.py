@@ -1,14 +1,13 @@
 """What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 import cv2
 import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, gone_on
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
@@ -58,8 +57,7 @@ class JointViews:
         def see(i: int) -> JointRays | None:
             late_s, there_m = cameras.present[i], here_m
             if late_s:
-                root_m, local = moved(fitter.model, predicted, late_s)
-                there_m, _ = fitter.joints(replace(predicted, root_m=root_m, local_xyzw=local))
+                there_m, _ = fitter.joints(gone_on(fitter.model, predicted, late_s))
             return self._rays(fitter, i, cameras.each[i], here_m, there_m)
 
         return see

@@ -12,7 +12,7 @@ from mocapd.body.regions import Region
 from mocapd.body.skeleton import N_JOINTS, local_from_global
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, gone_on, moved
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.fit.terms.pose_term import PoseTerm
@@ -133,10 +133,9 @@ class LegsBelow:
         cameras = self._cameras
         if not cameras.are_new and cameras.know_appearance:
             dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
-            root, local = moved(
+            drawn = gone_on(
                 self._silhouettes.model, known.state, dt_s, self._params.prediction_damping
             )
-            drawn = replace(known.state, root_m=root, local_xyzw=local)
             views, rays = cameras.prepared(drawn, turn, self._watch(drawn, frames, turn))
             self._ready = _Ready(frames, drawn, views, rays)
 

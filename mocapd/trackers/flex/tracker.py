@@ -15,7 +15,7 @@ from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_prior import predicted_information
-from mocapd.fit.motion_state import MotionState, initial_information, known_of, moved
+from mocapd.fit.motion_state import MotionState, gone_on, initial_information, known_of
 from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
@@ -143,7 +143,6 @@ class FlexTracker:
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         wearer, known = self._begin(frames, shape)
-        self.probe("picture")
         views: list[View] = []
         if self._cameras.present:
             if known is not None:
@@ -170,7 +169,6 @@ class FlexTracker:
         if upper.pose is None:
             raise ValueError("a guide that knows no pose")
         wearer, known = self._begin(frames, shape)
-        self.probe("picture")
         self._near = None
         self._find.give_up()
         views: list[View] = []
@@ -187,6 +185,7 @@ class FlexTracker:
         if self._looked_at is not frames:
             self._look(frames)
         self._looked_at = None
+        self.probe("picture")
         return Proportions(*known_of(shape, self._model.space)), self._recent(frames)
 
     def _look(self, frames: FrameSet) -> None:
@@ -233,8 +232,7 @@ class FlexTracker:
         """One frame of tracking; a frame without evidence leaves `known` at its old time."""
         p, fitter, last = self.params, self._wardrobe.fitter, known.state
         dt_s = max(seconds(frames.t_ns - known.t_ns), 1e-3)
-        root, local = moved(self._model, last, dt_s, p.prediction_damping)
-        predicted = replace(last, root_m=root, local_xyzw=local)
+        predicted = gone_on(self._model, last, dt_s, p.prediction_damping)
         # each of the two takes long: joints in frames without depths
         with_joints = not self._measures_depths
         joints = self._terms.joints
