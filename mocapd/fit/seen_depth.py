@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import Roi
-from mocapd.fit.work_rays import pixels_as_delivered, work_rays_in_world
-from mocapd.geometry.camera_model import centre, project
+from mocapd.fit.rays_in_other_kernels import evenly_between, lens_of, shown_on_rays
+from mocapd.fit.work_rays import rays_at, work_rays_in_world
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays
 
@@ -53,8 +54,7 @@ def grid_rays(
 ) -> tuple[Floats, Floats]:
     """Pixels as delivered (N,2), and unit directions (N,3) in the world, of places (N,) in the grid over a region."""
     y, x = (n * GRID_PX + GRID_PX // 2 + corner for n, corner in ((y, roi[1]), (x, roi[0])))
-    directions: Floats = work_rays_in_world(camera, image_scale)[y, x]
-    return pixels_as_delivered(y, x, image_scale), directions
+    return rays_at(work_rays_in_world(camera, image_scale), y, x, image_scale)
 
 
 def seen_depth_m(
@@ -81,14 +81,15 @@ def seen_depth_m(
     origin = centre(camera)
     away_m = float(np.linalg.norm(root_m - origin))
     near_m, far_m = max(away_m - p.nearer_m, _NEAREST_M), away_m + farther_m
-    nearest, farthest = (project(pair.other, origin + r * along) for r in (near_m, far_m))
+    ends = np.empty((len(y), 2, 2))
+    shown_on_rays(lens_of(pair.other), origin, along, np.tile([near_m, far_m], (len(y), 1)), ends)
+    nearest, farthest = ends[:, 0], ends[:, 1]
     length_px = np.linalg.norm(nearest - farthest, axis=1).max(
         initial=0.0, where=~np.isnan(nearest[:, 0])
     )
     places = int(length_px / p.place_px) + 3
-    there = (
-        farthest[:, None] + np.linspace(0.0, 1.0, places)[:, None] * (nearest - farthest)[:, None]
-    )
+    there = np.empty((len(y), places, 2))
+    evenly_between(farthest, nearest, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
 
     def match(mine: slice) -> None:

@@ -5,85 +5,97 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Weights = tuple[np.float32, np.float32, np.float32, np.float32]
 
-
-_TOGETHER = 4  # patches whose sums are added up side by side: each waits for its last addition
+# of a row of a patch: wider than any patch, and a whole number of the processor's vectors
+_LANES = 16
+_FLAT = np.float32(0.03)  # length of a patch less its mean; what has less is of one grey
 
 
 @njit(cache=True, nogil=True)
-def _patch(grey: NDArray[np.uint8], x: float, y: float, half: int, out: Array) -> bool:
-    """Fill out ((2 half + 1)^2,) with the patch about x, y; False where it leaves the picture."""
-    h, w = grey.shape
+def _place(shape: tuple[int, int], x: float, y: float, half: int) -> tuple[int, Weights]:
+    """Where in a picture's pixels, all in one row, the patch about x, y begins, -1 where it leaves the picture; and the
+    weights of the four pixels, two here and two below, that each of its own lies between."""
+    h, w = shape
+    a, b = np.float32(x - np.floor(x)), np.float32(y - np.floor(y))
+    one = np.float32(1.0)
+    weights = ((one - b) * (one - a), (one - b) * a, b * (one - a), b * a)
     if not (x >= half and y >= half and x < w - 1 - half and y < h - 1 - half):
-        return False
-    # pixels of a patch lie alike between those of the picture: the weights of `grey_at` are the same for all
-    left, top = int(x) - half, int(y) - half
-    a, b = x - int(x), y - int(y)
-    upper_left, upper_right = (1.0 - b) * (1.0 - a), (1.0 - b) * a
-    lower_left, lower_right = b * (1.0 - a), b * a
-    # unsigned places, which need no check
-    side, width, right = np.uint64(2 * half + 1), np.uint64(w), np.uint64(1)
-    pixels, first = grey.ravel(), np.uint64(top * w + left)
+        return -1, weights
+    first = (int(y) - half) * w + int(x) - half
+    # whole lanes are read
+    return (first if first + (2 * half + 1) * w + _LANES < h * w else -1), weights
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy", inline="always")
+def _grey_at(
+    pixels: NDArray[np.uint8], here: np.uint64, below: np.uint64, weights: Weights
+) -> np.float32:
+    """Between four pixels, of which two are `here` and right of it, two below."""
+    right = np.uint64(1)
+    return (
+        weights[0] * np.float32(pixels[here])
+        + weights[1] * np.float32(pixels[here + right])
+        + weights[2] * np.float32(pixels[below])
+        + weights[3] * np.float32(pixels[below + right])
+    )
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _centred(
+    pixels: NDArray[np.uint8],
+    width: int,
+    first: int,
+    weights: Weights,
+    within: Singles,
+    out: Singles,
+) -> np.float32:
+    """Fill out (side,_LANES) with the patch that begins `first` in the pixels of a picture, so many a row, less its mean; its
+    length then. within (_LANES,): 1 within a patch's row, else 0."""
+    side, step = out.shape[0], np.uint64(width)
+    total, squares = np.float32(0.0), np.float32(0.0)
     for j in range(side):
-        here, line = first + j * width, j * side
-        below = here + width
-        for i in range(side):
-            out[line + i] = (
-                upper_left * pixels[here + i]
-                + upper_right * pixels[here + i + right]
-                + lower_left * pixels[below + i]
-                + lower_right * pixels[below + i + right]
-            )
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _centred(patch: Array) -> float:
-    """Take its mean from a patch (S,); its length then."""
-    total = 0.0
-    for k in range(patch.shape[0]):
-        total += patch[k]
-    total /= patch.shape[0]
-    squares = 0.0
-    for k in range(patch.shape[0]):
-        patch[k] -= total
-        squares += patch[k] * patch[k]
-    length: float = np.sqrt(squares)
+        here, row = np.uint64(first) + np.uint64(j) * step, out[j]
+        for i in range(np.uint64(_LANES)):
+            row[i] = within[i] * _grey_at(pixels, here + i, here + step + i, weights)
+            total += row[i]
+    mean = total / np.float32(side * side)
+    for j in range(side):
+        row = out[j]
+        for i in range(np.uint64(_LANES)):
+            row[i] -= mean * within[i]
+            squares += row[i] * row[i]
+    length: np.float32 = np.sqrt(squares)
     return length
 
 
-@njit(cache=True, nogil=True)
-def _compared(mine: Array, its: Array, products: Array, lengths: Array) -> None:
-    """Products (4,) of a centred patch (S,) with others (4,S), each less its mean, and lengths (4,) of those."""
-    n = mine.shape[0]
-    one, two, three, four = its[0], its[1], its[2], its[3]
-    a = b = c = d = 0.0
-    for i in range(n):
-        a += one[i]
-        b += two[i]
-        c += three[i]
-        d += four[i]
-    a, b, c, d = a / n, b / n, c / n, d / n
-    a2 = b2 = c2 = d2 = 0.0
-    ma = mb = mc = md = 0.0
-    for i in range(n):
-        m = mine[i]
-        u, v, w, z = one[i] - a, two[i] - b, three[i] - c, four[i] - d
-        a2 += u * u
-        b2 += v * v
-        c2 += w * w
-        d2 += z * z
-        ma += m * u
-        mb += m * v
-        mc += m * w
-        md += m * z
-    products[0], products[1], products[2], products[3] = ma, mb, mc, md
-    lengths[0], lengths[1], lengths[2], lengths[3] = (
-        np.sqrt(a2),
-        np.sqrt(b2),
-        np.sqrt(c2),
-        np.sqrt(d2),
-    )
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _correlation(
+    mine: Singles,
+    pixels: NDArray[np.uint8],
+    width: int,
+    first: int,
+    weights: Weights,
+    within: Singles,
+) -> np.float32:
+    """Of a centred patch (side,_LANES) of length 1 with that which begins `first` in the pixels of another picture; -1 with
+    one that is flat. The rest is as in `_centred`."""
+    side, step = mine.shape[0], np.uint64(width)
+    total, squares, products = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+    for j in range(side):
+        here, row = np.uint64(first) + np.uint64(j) * step, mine[j]
+        for i in range(np.uint64(_LANES)):
+            its = _grey_at(pixels, here + i, here + step + i, weights)
+            inside = its * within[i]
+            total += inside
+            squares += inside * its
+            products += row[i] * its
+    squares -= total * total / np.float32(side * side)
+    if squares < _FLAT * _FLAT:
+        return np.float32(-1.0)
+    alike: np.float32 = products / np.sqrt(squares)
+    return alike
 
 
 @njit(cache=True, nogil=True)
@@ -102,37 +114,33 @@ def match_along_rays(
     """Where along each ray the pictures agree best, by zero-mean normalised cross-correlation of patches.
 
     grey, other (h,w); at_px (N,2): the rays' pixels in the first; there_px (N,K,2): where K places along each ray show
-    in the other, NaN for none. Fills place (N,), 0..K-1 between places, and alike (N,), the correlation there; alike
-    is -1 where the patch has less contrast (standard deviation, grey values), the best place is at an end, or it is
-    not ahead by least_ahead of all places that are `apart` or more from it.
+    in the other, NaN for none; half: at most 7. Fills place (N,), 0..K-1 between places, and alike (N,), the correlation
+    there; alike is -1 where the patch has less contrast (standard deviation, grey values), the best place is at an end,
+    or it is not ahead by least_ahead of all places that are `apart` or more from it.
     """
-    size = (2 * half + 1) ** 2
-    mine, its = np.empty(size), np.zeros((_TOGETHER, size))
-    products, lengths = np.empty(_TOGETHER), np.empty(_TOGETHER)
-    within = np.empty(_TOGETHER, np.bool_)
+    side = 2 * half + 1
+    mine, within = np.zeros((side, _LANES), np.float32), np.zeros(_LANES, np.float32)
+    within[:side] = 1.0
+    own, its = grey.ravel(), other.ravel()
     n_places = there_px.shape[1]
     scores = np.empty(n_places)
     for n in range(at_px.shape[0]):
         place[n], alike[n] = 0.0, -1.0
-        if not _patch(grey, at_px[n, 0], at_px[n, 1], half, mine):
+        first, weights = _place(grey.shape, at_px[n, 0], at_px[n, 1], half)
+        if first < 0:
             continue
-        length = _centred(mine)
-        if length < least_contrast * np.sqrt(float(size)):
+        length = _centred(own, grey.shape[1], first, weights, within, mine)
+        if length < _FLAT or length < least_contrast * side:
             continue
+        mine /= length
         best = 0
-        for first in range(0, n_places, _TOGETHER):
-            together = min(_TOGETHER, n_places - first)
-            for c in range(together):
-                x, y = there_px[n, first + c, 0], there_px[n, first + c, 1]
-                within[c] = _patch(other, x, y, half, its[c])
-            _compared(mine, its, products, lengths)
-            for c in range(together):
-                k = first + c
-                scores[k] = -1.0
-                if within[c] and lengths[c] > 0.0:
-                    scores[k] = products[c] / (length * lengths[c])
-                if scores[k] > scores[best]:
-                    best = k
+        for k in range(n_places):
+            first, weights = _place(other.shape, there_px[n, k, 0], there_px[n, k, 1], half)
+            scores[k] = -1.0
+            if first >= 0:
+                scores[k] = _correlation(mine, its, other.shape[1], first, weights, within)
+            if scores[k] > scores[best]:
+                best = k
         if best == 0 or best == n_places - 1:
             continue
         rival = -1.0

@@ -60,7 +60,7 @@ def test_whole_pixels_equal_the_naive_twin() -> None:
         wanted = naive_match(grey, other, at[n], there[n], 5)
         assert np.argmax(wanted) == 9  # three to the right
         assert abs(place[n] - 9.0) < 0.5
-        assert alike[n] == pytest.approx(wanted.max(), abs=1e-9)
+        assert alike[n] == pytest.approx(wanted.max(), abs=1e-5)  # sums of single precision
 
 
 @pytest.mark.parametrize("z_m", [-0.25, 0.0, 0.2])

@@ -9,11 +9,12 @@ from mocapd.body.shaping import Shaped
 from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.rays_in_other_kernels import distances_of_triangles, lens_of, shown_on_rays
 from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.fit.terms.sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
-from mocapd.fit.work_rays import pixels_as_delivered, work_rays
-from mocapd.geometry.camera_model import centre, project
-from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.fit.work_rays import rays_at, work_rays_in_world
+from mocapd.geometry.camera_model import centre
+from mocapd.types import Bytes, Camera, Ints
 from mocapd.vision.ray_matching_kernels import match_along_rays
 
 _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of what is behind
@@ -51,16 +52,21 @@ def measured_distances(
     the points. What has no texture, or does not look alike, is left out.
     """
     p = params if params is not None else MeasuringParams()
-    y, x = _samples(drawn, drawing.model.part, p, turn)
+    m, posed = drawing.model, drawing.posed
+    y, x = _samples(drawn, m.part, p, turn)
     triangle = drawn[1][y, x].astype(np.int64)
     camera, scale = drawing.camera, drawing.image_scale
     at_y, at_x = y + corner[1], x + corner[0]
-    pixels = pixels_as_delivered(at_y, at_x, scale)
-    origin, along = centre(camera), work_rays(camera, scale)[at_y, at_x] @ camera.R
-    expected_m = np.einsum("ni,ni->n", _places(drawing, body, triangle) - origin, along)
+    world_rays, origin = work_rays_in_world(camera, scale), centre(camera)
+    pixels, along = rays_at(world_rays, at_y, at_x, scale)
+    expected_m = np.empty(len(y))
+    distances_of_triangles(
+        triangle, m.triangle_bones, m.triangle_weights, body.centres, body.rest, posed.R, posed.joints, origin, along,
+        expected_m,
+    )  # fmt: skip
     offsets_m = np.linspace(-p.reach_m, p.reach_m, p.places)
-    points = origin + (expected_m[:, None] + offsets_m)[..., None] * along[:, None]
-    there = project(other, points.reshape(-1, 3)).reshape(len(y), p.places, 2)
+    there = np.empty((len(y), p.places, 2))
+    shown_on_rays(lens_of(other), origin, along, expected_m[:, None] + offsets_m, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
 
     def match(mine: slice) -> None:
@@ -89,16 +95,3 @@ def _samples(
     places = np.empty((int(points.sum()) * N_GROUPS // N_PARTS, 2), np.int64)
     n = spread_over_groups(*drawn, part, _EDGE_PX, points, turn, places)
     return places[:n, 0].copy(), places[:n, 1].copy()
-
-
-def _places(drawing: IdMapRenderer, body: Shaped, triangle: Ints) -> Floats:
-    """Middles (N,3) of triangles in the world, of the body as posed."""
-    m, posed = drawing.model, drawing.posed
-    bones = m.triangle_bones[triangle]
-    turned = np.einsum(
-        "nkij,nkj->nki", posed.R[bones], body.centres[triangle][:, None] - body.rest[bones]
-    )
-    placed: Floats = np.einsum(
-        "nk,nki->ni", m.triangle_weights[triangle], turned + posed.joints[bones]
-    )
-    return placed
