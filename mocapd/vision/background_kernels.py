@@ -40,6 +40,32 @@ def learn_background(
 
 
 @njit(cache=True, nogil=True)
+def learn_unknown(
+    picture: NDArray[np.uint8],
+    body: NDArray[np.uint8],
+    known: int,
+    tolerance: float,
+    mean: NDArray[np.float32],
+    age: NDArray[np.uint8],
+) -> None:
+    """Learn colours that were seen fewer than `known` times in a row, where `body` (h,w) is 0; a look that differs from them
+    by more than tolerance, 0..255, in a channel begins anew. Shapes as of `learn_background`."""
+    h, w = body.shape
+    one = np.float32(1.0)
+    for y in range(h):
+        for x in range(w):
+            if body[y, x] != 0 or age[y, x] >= known:
+                continue
+            for c in range(3):
+                if abs(np.float32(picture[y, x, c]) - mean[y, x, c]) > tolerance:
+                    age[y, x] = 0
+            share = one / (np.float32(age[y, x]) + one)
+            for c in range(3):
+                mean[y, x, c] += share * (np.float32(picture[y, x, c]) - mean[y, x, c])
+            age[y, x] += 1
+
+
+@njit(cache=True, nogil=True)
 def changed(
     picture: NDArray[np.uint8],
     body: NDArray[np.uint8],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.types import Bytes, Floats, Singles
-from mocapd.vision.background_kernels import changed, learn_background
+from mocapd.vision.background_kernels import changed, learn_background, learn_unknown
 from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import (
     BACKGROUND,
@@ -119,6 +119,15 @@ class RoomBackground:
                 picture, body, self._mean, self._age, self._params.rate, phase, _PHASES
             )
         self._looks += 1
+
+    def learn_unknown(self, picture: Bytes, body: Bytes, within: tuple[int, int, int, int]) -> None:
+        """Learn what is not known yet within x0, y0, x1, y1 of a picture (h,w,3), where `body`, of that region, is 0: what
+        stays the same so near to somebody is the room, uncovered at last."""
+        x0, y0, x1, y1 = within
+        here, p = np.s_[y0:y1, x0:x1], self._params
+        learn_unknown(
+            picture[here], body, p.known_looks, p.tolerance, self._mean[here], self._age[here]
+        )
 
     def before(self, picture: Bytes, within: tuple[int, int, int, int] | None = None) -> Bytes:
         """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps.

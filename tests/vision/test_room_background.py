@@ -147,3 +147,29 @@ def test_a_region_alone_is_looked_at_as_the_whole_is() -> None:
     assert (part[6:48, 12:58] == whole[6:48, 12:58]).all()
     assert not part[52:].any()
     assert not background.before(picture, (0, 0, 0, 0)).any()
+
+
+def test_the_room_beside_somebody_who_never_left_is_learned_when_it_stays_the_same() -> None:
+    background, known = RoomBackground(H, W, BackgroundParams()), BackgroundParams().known_looks
+    somebody = np.zeros((H, W), np.uint8)
+    somebody[10:50, 30:50] = 1
+    background.seed(wall(), somebody)
+    inner = np.zeros((H - 20, 30), np.uint8)  # what is drawn of them now, within a region
+    inner[:, 10:20] = 1
+    for seed in range(known):
+        picture = wall(seed)
+        if seed % 2:
+            picture[10:20, 27:37] = 250  # somebody's hand, now and then
+        background.learn_unknown(picture, inner, (25, 10, 55, 50))
+    before = background.before(wall(known))
+    assert (before[20:50, 30:35] == BACKGROUND).all()
+    assert (before[20:50, 45:50] == BACKGROUND).all()
+    assert (before[20:50, 35:45] == UNKNOWN).all()  # they stood there all the time
+    assert (before[12:18, 30:35] == UNKNOWN).all()
+
+
+def test_what_is_known_is_not_learned_so_near_to_somebody() -> None:
+    background = learned()
+    for _ in range(30):
+        background.learn_unknown(np.full((H, W, 3), 250, np.uint8), NOBODY, (0, 0, W, H))
+    assert (background.before(np.full((H, W, 3), 250, np.uint8)) == BEFORE).all()

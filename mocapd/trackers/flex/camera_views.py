@@ -45,7 +45,9 @@ class CameraView:
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
         self.may_hold_body = False  # the background, learned from a recording with somebody in it
-        self.beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self.beside, self.close = (
+            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        )
 
     def reset(self) -> None:
         """Forget background and appearance."""
@@ -72,6 +74,15 @@ class CameraView:
             self.drawn[y0:y1, x0:x1] = here
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
+
+    def learn_background(self, agrees: bool) -> None:
+        """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
+        seen of the background is learned nearer to them."""
+        self.background.learn(self.picture, self.body)
+        if agrees and self.near is not None:
+            x0, y0, x1, y1 = self.near
+            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
+            self.background.learn_unknown(self.picture, body, self.near)
 
     def stand_before(self, everywhere: bool = True) -> None:
         """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
@@ -272,7 +283,7 @@ class CameraViews:
                 self._learn(i, state, view.dt_s, view.roi, view.ids)
             camera = self.each[i]
             if not camera.may_hold_body:
-                camera.background.learn(camera.picture, camera.body)
+                camera.learn_background(agrees=state is not None)
 
         self._each(learn, self.present)
 

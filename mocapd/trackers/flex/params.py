@@ -73,6 +73,7 @@ class Params:
     depth_turns: int = 2  # from one look for depths to the next
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
+    close_px: int = 3  # but what was never known as such, beyond that
     uncovered_turns: int = 10  # from one look for what was uncovered to the next
     absorb_turns: int = 13  # of so many looks one learns what stands before the background, too, while nobody is known
     soft: float = (
