@@ -11,10 +11,12 @@ import numpy as np
 
 from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
+from mocapd.fit.limbs.mirroring_kernels import mirrored_in_depth
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
-from mocapd.types import Camera, Floats
+from mocapd.geometry.camera_model import centre
+from mocapd.types import Floats
 
 _ALIKE = 0.985  # cosine of half the angle between two poses of a bone, 20 degrees
 
@@ -36,53 +38,17 @@ def candidates(
     joints, globals_ = fitter.joints(state)
     upper, lower, end = limb.chain[first : first + 3]
     present = state.local_xyzw[limb.chain[:3]]
-    out = [present]
+    out = [present[None]]
     for view in views:
-        camera = fitter.drawings[view.index].camera
-        for q_upper, q_lower in mirrored_bones(joints, globals_, (upper, lower, end), camera):
-            local = present.copy()
-            local[first] = rotations.multiply(rotations.inverse(globals_[PARENTS[upper]]), q_upper)
-            local[first + 1] = rotations.multiply(rotations.inverse(q_upper), q_lower)
-            out.append(local)
+        mirrored = np.repeat(present[None], 3, axis=0)
+        mirrored_in_depth(
+            joints[[upper, lower, end]], globals_[[upper, lower]], globals_[PARENTS[upper]],
+            centre(fitter.drawings[view.index].camera), mirrored[:, first : first + 2],
+        )  # fmt: skip
+        out.append(mirrored)
     turned = np.repeat(present[None], len(cloud), axis=0)
     turned[:, first : first + 2] = turned_about(present[first : first + 2], cloud)
-    return np.concatenate([np.array(out), turned, library])
-
-
-def mirrored_bones(
-    joints: Floats, globals_: Floats, limb: tuple[int, int, int], camera: Camera
-) -> list[tuple[Floats, Floats]]:
-    """Global rotations (4,) of the two bones between the joints of a limb, either or both mirrored in depth: they project
-    alike."""
-    upper, lower, end = limb
-    a, b = joints[lower] - joints[upper], joints[end] - joints[lower]
-    ray = joints[lower] + camera.R.T @ camera.t_m
-    ray = ray / np.linalg.norm(ray)
-    a_flip, b_flip = a - 2 * (a @ ray) * ray, b - 2 * (b @ ray) * ray
-    return [
-        (
-            rotations.multiply(shortest_turn(a, new_a), globals_[upper]),
-            rotations.multiply(shortest_turn(b, new_b), globals_[lower]),
-        )
-        for new_a, new_b in ((a, b_flip), (a_flip, b), (a_flip, b_flip))
-    ]
-
-
-def shortest_turn(a: Floats, b: Floats) -> Floats:
-    """The smallest rotation (4,) that turns direction a into direction b."""
-    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-    w = 1.0 + a @ b
-    if w < 1e-6:
-        axis = np.cross(a, [1.0, 0.0, 0.0] if abs(a[0]) < 0.9 else [0.0, 1.0, 0.0])
-        return np.append(axis / np.linalg.norm(axis), 0.0)
-    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
-    q = (
-        ay * bz - az * by,
-        az * bx - ax * bz,
-        ax * by - ay * bx,
-        w,
-    )  # np.cross takes twenty times as long
-    return rotations.canonical(np.array(q))
+    return np.concatenate([*out, turned, library])
 
 
 def turned_about(bones_xyzw: Floats, cloud: Floats) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 
 from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
+from mocapd.fit.limbs.reaching_kernels import bend_to, rotations_of_bends
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import GRID_PX, grid_rays
 from mocapd.fit.solver import Fitter, View
@@ -23,7 +24,6 @@ _SKIN_M = 0.03  # a hand's middle is behind its skin
 _BEFORE_M = 0.12  # the rest of the body, at least
 _FOLDED = 0.3  # of an arm's length: nearer to the shoulder no hand is
 _STRETCHED = 1.05
-_LEAST = 1e-6
 
 
 def reaching_poses(
@@ -72,36 +72,25 @@ def poses_to(
     joints_m (J,3), globals_xyzw (J,4): of the body; present_xyzw (3,4): the arm's own, of which the collar stays. The
     forearm bends about its hinge, in the plane of shoulder, elbow and hand.
     """
-    bends = bends_to(hands_m, joints_m, globals_xyzw, arm)
-    return np.concatenate(
-        [bent(*bend, joints_m, globals_xyzw, arm, present_xyzw) for bend in bends]
+    upper, lower = bends_to(hands_m, joints_m, globals_xyzw, arm)
+    return bent(
+        upper.reshape(-1, 3), lower.reshape(-1, 3), joints_m, globals_xyzw, arm, present_xyzw
     )
 
 
 def bends_to(
     hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm
-) -> list[tuple[Floats, Floats]]:
-    """Upper arms and forearms (T,3 each) [m] that bring the hand to each of hands_m (T,3), or as near as it reaches, one pair
-    for each way that the elbow is swivelled; others as `poses_to`."""
+) -> tuple[Floats, Floats]:
+    """Upper arms and forearms (S,T,3 each) [m] that bring the hand to each of hands_m (T,3), or as near as it reaches, for
+    each of S ways that the elbow is swivelled; others as `poses_to`."""
     shoulder, elbow, hand = joints_m[arm.chain[1:4]]
-    upper_m, lower_m = np.linalg.norm(elbow - shoulder), np.linalg.norm(hand - elbow)
-    trunk = globals_xyzw[PARENTS[arm.chain[0]]]
-    way = hands_m - shoulder
-    far_m = np.linalg.norm(way, axis=1)
-    towards = way / np.maximum(far_m, _LEAST)[:, None]
-    far_m = np.clip(far_m, abs(upper_m - lower_m) + 0.02, upper_m + lower_m - 0.005)
-    middle_m = (upper_m**2 - lower_m**2 + far_m**2) / (2.0 * far_m)
-    radius_m = np.sqrt(np.maximum(upper_m**2 - middle_m**2, 0.0))
-    below = _unit(towards * towards[:, 1:2] - [0.0, 1.0, 0.0])
-    beside = np.cross(towards, below)
-    out_of_body = _outwards(arm) * rotations.to_matrix(trunk)[:, 0]
-    beside *= np.where(beside @ out_of_body > 0.0, 1.0, -1.0)[:, None]
-    out = []
-    for swivel in _SWIVELS_RAD:
-        off_line = np.cos(swivel) * below + np.sin(swivel) * beside
-        upper = middle_m[:, None] * towards + radius_m[:, None] * off_line
-        out.append((upper, far_m[:, None] * towards - upper))
-    return out
+    trunk = rotations.to_matrix(globals_xyzw[PARENTS[arm.chain[0]]])
+    upper, lower = np.empty((2, len(_SWIVELS_RAD), len(hands_m), 3))
+    bend_to(
+        hands_m, shoulder, float(np.linalg.norm(elbow - shoulder)), float(np.linalg.norm(hand - elbow)),
+        _outwards(arm) * trunk[:, 0], _SWIVELS_RAD, upper, lower,
+    )  # fmt: skip
+    return upper, lower
 
 
 def bent(
@@ -113,24 +102,15 @@ def bent(
     present_xyzw: Floats,
 ) -> Floats:
     """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `poses_to`."""
-    outwards = _outwards(arm)
     collar = rotations.multiply(globals_xyzw[PARENTS[arm.chain[0]]], present_xyzw[0])
     shoulder, elbow = joints_m[arm.chain[1:3]]
-    x = outwards / np.linalg.norm(elbow - shoulder) * upper
-    z = _unit(lower - (lower * x).sum(axis=1, keepdims=True) * x)
-    bend_rad = np.arctan2((lower * z).sum(axis=1), outwards * (lower * x).sum(axis=1))
-    frame = rotations.from_matrix(np.stack([x, np.cross(z, x), z], axis=2))
     pose = np.repeat(present_xyzw[None], len(upper), axis=0)
-    pose[:, 1] = rotations.multiply(rotations.inverse(collar), frame)
-    pose[:, 2] = rotations.exp(bend_rad[:, None] * [0.0, -outwards, 0.0])
+    rotations_of_bends(
+        upper, lower, _outwards(arm), float(np.linalg.norm(elbow - shoulder)), collar, pose[:, 1:]
+    )
     return pose
 
 
 def _outwards(arm: Arm) -> float:
     """Of the body's own x, along which an arm lies in the T-pose."""
     return 1.0 if arm.side == "left" else -1.0
-
-
-def _unit(v: Floats) -> Floats:
-    out: Floats = v / np.maximum(np.linalg.norm(v, axis=1, keepdims=True), _LEAST)
-    return out

@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
-from mocapd.fit.limbs.limb_candidates import shortest_turn
+from mocapd.fit.limbs.mirroring_kernels import shortest_turn
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
@@ -62,7 +62,8 @@ def with_legs_exchanged(fitter: Fitter, state: MotionState) -> MotionState:
     for side, other in (SIDES, SIDES[::-1]):
         mine, its = ([INDEX[one + bone] for bone in LEG_BONES] for one in (side, other))
         ankle_m = joints_m[its[-1]]
-        to_mine = shortest_turn(ankle_m - joints_m[its[0]], ankle_m - joints_m[mine[0]])
+        to_mine = np.empty(4)
+        shortest_turn(ankle_m - joints_m[its[0]], ankle_m - joints_m[mine[0]], to_mine)
         turned = rotations.multiply(to_mine, globals_[its])
         parents = np.concatenate([globals_[PARENTS[mine[:1]]], turned[:-1]])
         local[mine] = rotations.multiply(rotations.inverse(parents), turned)
