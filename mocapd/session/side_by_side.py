@@ -1,10 +1,11 @@
 """A second thread for a tracker: half of its cameras, so that a frame set takes little longer than a frame, and what can be
 done before all is known.
 
-Whoever waits for work that nobody began yet does it: a processor that slept wakes late.
+Whoever waits for work, or for a part of it, that nobody began yet does it: a processor that slept wakes late.
 """
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable
 from functools import cache
 from queue import SimpleQueue
@@ -28,16 +29,18 @@ def aside() -> Aside:
 
 
 def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
-    """See Each. The caller does the first half, or all of it in the other thread."""
+    """See Each. The caller does the first half; in the other thread the second half is for who waits for that, if they come
+    in time."""
     things = list(of)
     if len(things) < 2:
         return in_turn(work, things)
     other = _other()
-    if get_ident() == other.ident:
-        return in_turn(work, things)
     half = (len(things) + 1) // 2
     job = _Job(lambda: in_turn(work, things[half:]))
-    other.jobs.put(job)
+    if get_ident() == other.ident:
+        other.offered.append(job)
+    else:
+        other.jobs.put(job)
     try:
         mine = in_turn(work, things[:half])
     finally:
@@ -47,9 +50,16 @@ def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
 
 def in_other_thread(work: Callable[[], None]) -> Callable[[], None]:
     """See Aside."""
-    job = _Job(work)
-    _other().jobs.put(job)
-    return job.result
+    job, other = _Job(work), _other()
+    other.jobs.put(job)
+
+    def wait() -> None:
+        job.do()
+        while other.offered:
+            other.offered.pop().do()
+        job.result()
+
+    return wait
 
 
 class _Job(Generic[R]):
@@ -88,6 +98,7 @@ class _Job(Generic[R]):
 
 class _Other(NamedTuple):
     jobs: "SimpleQueue[_Job[Any]]"
+    offered: "deque[_Job[Any]]"  # the newest part of what it does that another thread may do; begun or not
     ident: int | None
 
 
@@ -98,7 +109,7 @@ def _other() -> _Other:
     jobs: SimpleQueue[_Job[Any]] = SimpleQueue()
     thread = Thread(target=_serve, args=(jobs,), name="cameras", daemon=True)
     thread.start()
-    return _Other(jobs, thread.ident)
+    return _Other(jobs, deque(maxlen=1), thread.ident)
 
 
 def _serve(jobs: "SimpleQueue[_Job[Any]]") -> None:

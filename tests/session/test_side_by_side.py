@@ -78,10 +78,35 @@ def test_whoever_waits_for_work_that_nobody_began_does_it() -> None:
     wait()
 
 
-def test_the_other_thread_does_its_own_cameras_in_turn() -> None:
-    who: list[int] = []
-    in_other_thread(lambda: who.extend(side_by_side(lambda _: threading.get_ident(), range(4))))()
+def test_the_other_thread_does_its_own_cameras_in_turn_while_nobody_waits() -> None:
+    who, over = list[int](), threading.Event()
+
+    def work() -> None:
+        who.extend(side_by_side(lambda _: threading.get_ident(), range(4)))
+        over.set()
+
+    wait = in_other_thread(work)
+    over.wait(30.0)
+    wait()
+    assert len(who) == 4
     assert len(set(who)) == 1
+
+
+def test_whoever_waits_for_the_other_thread_does_half_of_its_cameras() -> None:
+    who, began, go_on = list[int](), threading.Event(), threading.Event()
+
+    def look(camera: int) -> int:
+        if camera == 0:
+            began.set()
+            go_on.wait(30.0)
+        else:
+            go_on.set()  # the other half was done meanwhile
+        return threading.get_ident()
+
+    wait = in_other_thread(lambda: who.extend(side_by_side(look, range(2))))
+    began.wait(30.0)
+    wait()
+    assert who[0] != who[1] == threading.get_ident()
 
 
 @pytest.mark.kernels
