@@ -99,6 +99,18 @@ class IdMapRenderer:
         """The id map (h,w) of the state dt_s after its instant."""
         return self.draw(*moved(self.model, state, dt_s), self._shaper(state.factors), roi)[0]
 
+    def render_about(
+        self, state: MotionState, dt_s: float, margin: int
+    ) -> tuple[Roi, NDArray[np.uint8]] | None:
+        """`region` of the body, and its id map (h,w) there."""
+        roi = self.region(state, dt_s, margin)
+        if roi is None:
+            return None
+        self.xy -= roi[:2]  # as of the whole picture so far
+        ids, triangle_at = self.last(roi)
+        self._raster(self.xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        return roi, ids
+
     def last(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
         """Id map and triangles (h,w) that were drawn last in this region."""
         h, w = roi[3] - roi[1], roi[2] - roi[0]

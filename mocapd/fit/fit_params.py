@@ -86,8 +86,8 @@ class LimbSearchParams:
     hand_px: float = 1.0  # what a hand's pixel that is skin, or is not, counts beside a sleeve's
     hand_cost: float = 1.0  # the same beside the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
-    # whether each is tried where the other is, too, in frames that know depths: these tell look-alikes apart
-    exchange: bool = False
+    # from one try of each where the other is to the next, in turns that know depths, which tell look-alikes apart; 0: never
+    exchange_turns: int = 0
 
 
 @dataclass(frozen=True, slots=True)

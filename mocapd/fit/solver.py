@@ -7,6 +7,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -297,11 +298,11 @@ class Fitter:
 
     def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""
-        if not views:
-            return False
-        rays = np.array([state.root_m + self._from_eyes_m[view.index] for view in views])
-        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        return bool((rays @ rays.T).min() > np.cos(self.params.narrow_rad))
+        rays = [state.root_m + self._from_eyes_m[view.index] for view in views]
+        least = np.cos(self.params.narrow_rad)
+        return bool(views) and all(
+            a @ b > least * np.sqrt((a @ a) * (b @ b)) for a, b in combinations(rays, 2)
+        )
 
     def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
         """At the frame set's own instant."""

@@ -67,14 +67,13 @@ class ArmSearch:
         refit = partial(
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
         )  # fmt: skip
-        exchanges = p.exchange and know_depths(views)
+        exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and know_depths(views)
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
             tries = self._candidates(fit.state, arm, views, turn)
             scores = self._scores(fit.state, arm, views, tries, empty)
-            # an exchange takes as long as another fit
-            best = best_poses(tries[:, 1:], scores, p.arm_fits - exchanges)
+            best = best_poses(tries[:, 1:], scores, p.arm_fits)
             starts = [with_limb(fit.state, arm, tries[n]) for n in best]
             cost = partial(self._cost, arm, tries[0], views, empty)
             better = cheapest_fit(fit, starts, refit, cost, p.arm_gain)

@@ -54,7 +54,7 @@ class CameraView:
         self.background.reset()
         self.appearance.reset()
         self.may_hold_body = False
-        self.mark_body(None, None)
+        self.mark_body(None)
 
     def look(self, pixels: Bytes) -> None:
         """Take a frame's pixels (h,w,3). Raises ConfigError when it is not of its calibration's size."""
@@ -63,14 +63,16 @@ class CameraView:
         k = self.image_scale
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
 
-    def mark_body(self, drawn: Bytes | None, roi: Roi | None) -> None:
-        """Where the body (h,w, of the region) is now, widened, so that it is not learned as background; None: nobody is."""
+    def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
+        """Where the body is now, a region and what is drawn there (h,w), widened, so that it is not learned as background;
+        None: nobody is."""
         self.body[:] = 0
         self.drawn[:] = 0
-        self.near = roi
-        if drawn is not None and roi is not None:
-            x0, y0, x1, y1 = roi
-            here = (drawn > 0).astype(np.uint8)
+        self.near = None
+        if drawn is not None:
+            self.near, ids = drawn
+            x0, y0, x1, y1 = self.near
+            here = (ids > 0).astype(np.uint8)
             self.drawn[y0:y1, x0:x1] = here
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
@@ -158,11 +160,8 @@ class CameraViews:
 
     def _mark(self, i: int, state: MotionState | None) -> None:
         drawing, dt_s = self.fitter.drawings[i], self.present[i]
-        roi = None if state is None else drawing.region(state, dt_s, self._params.margin_px)
-        if state is None or roi is None:
-            self.each[i].mark_body(None, None)
-        else:
-            self.each[i].mark_body(drawing.render(state, dt_s, roi), roi)
+        drawn = None if state is None else drawing.render_about(state, dt_s, self._params.margin_px)
+        self.each[i].mark_body(drawn)
 
     def stand_before(self, everywhere: bool = True) -> None:
         """Renew what stands before each background; not everywhere: about the marked body alone."""

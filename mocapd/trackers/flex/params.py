@@ -47,13 +47,11 @@ class StartParams:
 class Params:
     """Parameters of the tracker without a shirt."""
 
-    fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
+    fit: FitParams = field(default_factory=lambda: FitParams(iterations=5))
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(
-            hand_px=0.0, hand_cost=0.0, arm_fits=3, exchange=True
-        )
+        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0, exchange_turns=4)
     )
     legs: LegSearchParams = field(default_factory=LegSearchParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)

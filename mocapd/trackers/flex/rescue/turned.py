@@ -33,8 +33,6 @@ def turned_round(
 def _posed(state: MotionState, R: Floats) -> MotionState:
     """The state with these global rotations (J,3,3), at rest."""
     q = rotations.from_matrix(R)
-    local = q.copy()
-    for joint, parent in enumerate(PARENTS):
-        if parent >= 0:
-            local[joint] = rotations.multiply(rotations.inverse(q[parent]), q[joint])
+    local = rotations.multiply(rotations.inverse(q[PARENTS]), q)
+    local[0] = q[0]  # the hips, which have no parent
     return replace(state, local_xyzw=local, velocity=np.zeros_like(state.velocity))
