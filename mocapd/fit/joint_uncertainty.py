@@ -12,6 +12,7 @@ from mocapd.fit.joint_uncertainty_kernels import (
     joint_jacobian,
     place_variances,
 )
+from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.types import Floats
 
 _NECK_SD_RAD = 0.3  # people nod and look about, and a shirt does not tell
@@ -30,7 +31,7 @@ def pose_covariance(model: BodyModel, H: Floats) -> Floats:
     n = model.n_pose
     information = _WITNESSED * H[:n, :n]
     information[np.diag_indices(n)] += _usual_information(model.space)
-    return np.asarray(np.linalg.inv(information), dtype=np.float64)
+    return positive_inverse(information)
 
 
 def joint_uncertainty_m(

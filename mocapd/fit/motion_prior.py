@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.fit.fit_params import MotionPriorParams
+from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.types import Floats
 
 
@@ -37,6 +38,6 @@ def predicted_information(
             moved_sd[columns] = least + confirmed * (moved_sd[columns] - least)
     spread = covariance.copy()
     spread[np.diag_indices(len(spread))] += moved_sd**2 * max(frames, 0.5)
-    information = np.asarray(np.linalg.inv(spread), dtype=np.float64)
+    information = positive_inverse(spread)
     information[np.diag_indices(len(spread))] += 1.0 / (usual_sd**2 * max(frames, 0.5))
     return information

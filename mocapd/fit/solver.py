@@ -28,6 +28,7 @@ from mocapd.fit.idmap_term import CameraRows, search_within
 from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
 from mocapd.fit.motion_state import MotionState, moved, stepped
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.fit.seen_depth import GRID_PX
 from mocapd.fit.step_kernels import gauss_newton_step
 from mocapd.fit.terms.pose_term import PoseTerm
@@ -74,7 +75,7 @@ class Fit:
     @cached_property
     def covariance(self) -> Floats:
         """Of the pose (n_pose,n_pose), as the pictures and what was known before leave it."""
-        return np.asarray(np.linalg.inv(self.information), dtype=np.float64)
+        return positive_inverse(self.information)
 
     @property
     def match(self) -> float:
