@@ -47,7 +47,7 @@ class StartParams:
 class Params:
     """Parameters of the tracker without a shirt."""
 
-    fit: FitParams = field(default_factory=lambda: FitParams(iterations=5))
+    fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # colours that are learned confirm less than the shirt's; hands are of the forearm's region
     limbs: LimbSearchParams = field(
