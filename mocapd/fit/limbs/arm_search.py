@@ -45,6 +45,7 @@ class ArmSearch:
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
             )
             score_arm_poses(self.fitter, state, arm, views, tries, 0.0, 0.0)
+        with_arms_exchanged(self.fitter, state, self.arms)
 
     def improve(
         self,

@@ -22,8 +22,9 @@ def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, A
         shoulder, chain = joints_m[arm.chain[1]], arm.chain[:3]
         elbow, hand = joints_m[other.chain[2:4]]
         upper, lower = (bone[:, 0] for bone in bends_to(hand[None], joints_m, globals_, arm))
-        nearest = int(np.linalg.norm(shoulder + upper - elbow, axis=1).argmin())
-        one = slice(nearest, nearest + 1)
-        poses = bent(upper[one], lower[one], joints_m, globals_, arm, state.local_xyzw[chain])
+        nearest = [np.linalg.norm(shoulder + upper - elbow, axis=1).argmin()]
+        poses = bent(
+            upper[nearest], lower[nearest], joints_m, globals_, arm, state.local_xyzw[chain]
+        )
         exchanged = with_limb(exchanged, arm, poses[0])
     return exchanged

@@ -87,7 +87,7 @@ def bends_to(
     trunk = rotations.to_matrix(globals_xyzw[PARENTS[arm.chain[0]]])
     upper, lower = np.empty((2, len(_SWIVELS_RAD), len(hands_m), 3))
     bend_to(
-        hands_m, shoulder, float(np.linalg.norm(elbow - shoulder)), float(np.linalg.norm(hand - elbow)),
+        np.ascontiguousarray(hands_m), shoulder, float(np.linalg.norm(elbow - shoulder)), float(np.linalg.norm(hand - elbow)),
         _outwards(arm) * trunk[:, 0], _SWIVELS_RAD, upper, lower,
     )  # fmt: skip
     return upper, lower
@@ -106,7 +106,7 @@ def bent(
     shoulder, elbow = joints_m[arm.chain[1:3]]
     pose = np.repeat(present_xyzw[None], len(upper), axis=0)
     rotations_of_bends(
-        upper, lower, _outwards(arm), float(np.linalg.norm(elbow - shoulder)), collar, pose[:, 1:]
+        upper, lower, _outwards(arm), float(np.linalg.norm(elbow - shoulder)), collar, pose
     )
     return pose
 

@@ -88,7 +88,8 @@ def _of_frame(x: Array, y: Array, z: Array, out: Array) -> None:
 def rotations_of_bends(
     upper: Array, lower: Array, side: float, upper_m: float, collar_xyzw: Array, out: Array
 ) -> None:
-    """Fill out (N,2,4) with the local rotations of upper arms and forearms that lie like upper and lower (N,3) [m].
+    """Fill out (N,3,4), behind each collar, with the local rotations of upper arms and forearms that lie like upper and lower
+    (N,3) [m].
 
     side: 1 of the left arm, which lies along the body's x in the T-pose, -1 of the right one; upper_m: how long an upper
     arm is; collar_xyzw (4,): the collar's global rotation.
@@ -110,5 +111,5 @@ def rotations_of_bends(
             across += lower[n, i] * z[i]
         _cross(z, x, y)
         _of_frame(x, y, z, frame)
-        quat_multiply(inverse, frame, out[n, 0])
-        quat_exp(0.0, -side * np.arctan2(across, side * along), 0.0, out[n, 1])
+        quat_multiply(inverse, frame, out[n, 1])
+        quat_exp(0.0, -side * np.arctan2(across, side * along), 0.0, out[n, 2])

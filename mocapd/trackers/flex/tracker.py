@@ -41,6 +41,7 @@ from mocapd.trackers.flex.rescue.seen_tries import Anew
 from mocapd.trackers.flex.telling import told_of
 from mocapd.trackers.flex.wardrobe import Wardrobe, learn_on
 from mocapd.trackers.steadying import Told
+from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.vision.face.lbp_cascade import blind_cascade
@@ -112,6 +113,9 @@ class FlexTracker:
             return  # nobody at the origin is in any picture
         fitter, frames = self._wardrobe.fitter, FrameSet(0, black, 0)
         views = with_depths(fitter, somebody, views, frames, self.params.depths)
+        if fitter.is_narrow(somebody, views):  # black pictures have no depths
+            unseen = np.full(views[0].ids.shape, np.nan, np.float32)
+            views[0] = replace(views[0], depth_m=unseen)
         joints = self._terms.joints
         watched = map(joints.watch(fitter, somebody, cameras), cameras.present)
         seen = joints.term(self._model, watched)
@@ -120,6 +124,8 @@ class FlexTracker:
         still, usual_sd = somebody.velocity, fitter.prediction_sd
         predicted_information(fit.covariance, still, 1.0, usual_sd, [], self.params.motion)
         cameras.learn(somebody, views)
+        velocity_of(self._model, self.params, fit, somebody, TICK_S, ())
+        told_pose(fitter, somebody, fit, None, 0.0, self.params.prediction_damping)
         self._others.rehearse(self._wardrobe.dressed, somebody, views, seen)
 
     def reset(self, near: BodyState | None = None) -> None:

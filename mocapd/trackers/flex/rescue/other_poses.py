@@ -63,6 +63,7 @@ class OtherPoses:
             seen_pose(dressed.fitter, state, one, (), self._params.seen_pose)
         dressed.arms.rehearse(state, views)
         dressed.legs.rehearse(state, views)
+        with_legs_exchanged(dressed.fitter, state)
         self._facing.rehearse()
 
     def improve(
