@@ -27,6 +27,12 @@ def quat_multiply(a: Array, b: Array, out: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
+def quat_inverse(q: Array, out: Array) -> None:
+    """The conjugate of a unit quaternion."""
+    out[0], out[1], out[2], out[3] = -q[0], -q[1], -q[2], q[3]
+
+
+@njit(cache=True, nogil=True)
 def quat_exp(x: float, y: float, z: float, out: Array) -> None:
     """Rotation vector [rad] to a quaternion."""
     angle = np.sqrt(x * x + y * y + z * z)
@@ -99,17 +105,15 @@ def difference(
     out: Array,
 ) -> None:
     """The step (3 + 3 G) that leads from b to a; a shared group is read off its first joint."""
-    conjugate = np.empty(4)
+    inverse = np.empty(4)
     turn = np.empty(4)
     vector = np.empty(3)
     for i in range(3):
         out[i] = root_a[i] - root_b[i]
     for g in range(joint_of_group.shape[0]):
         j = joint_of_group[g]
-        for i in range(3):
-            conjugate[i] = -local_b[j, i]
-        conjugate[3] = local_b[j, 3]
-        quat_multiply(local_a[j], conjugate, turn)
+        quat_inverse(local_b[j], inverse)
+        quat_multiply(local_a[j], inverse, turn)
         quat_log(turn, vector)
         for i in range(3):
             out[3 + 3 * g + i] = vector[i] / share_of_joint[j]

@@ -1,55 +1,36 @@
 """Points on rays of one camera, and where they show in the picture of another one."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.types import Camera
+from mocapd.body.arrays import CameraArrays
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-class Lens(NamedTuple):
-    """A camera as plain arrays: R (3,3), t_m (3,), K (3,3), dist (5,)."""
-
-    R: Array
-    t_m: Array
-    K: Array
-    dist: Array
-
-
-def lens_of(camera: Camera) -> Lens:
-    """Of a camera."""
-    return Lens(
-        *(
-            np.ascontiguousarray(a, np.float64)
-            for a in (camera.R, camera.t_m, camera.K, camera.dist)
-        )
-    )
-
-
 @njit(cache=True, nogil=True)
-def _shown(lens: Lens, x: float, y: float, z: float, out: Array) -> None:
+def _shown(camera: CameraArrays, x: float, y: float, z: float, out: Array) -> None:
     """Fill out (2,) with where a point of the world shows, NaN behind the camera; see `camera_model.project`."""
-    R, t = lens.R, lens.t_m
+    R, t, K, dist = camera
     depth = R[2, 0] * x + R[2, 1] * y + R[2, 2] * z + t[2]
     if not depth > 1e-6:
         out[:] = np.nan
         return
     u = (R[0, 0] * x + R[0, 1] * y + R[0, 2] * z + t[0]) / depth
     v = (R[1, 0] * x + R[1, 1] * y + R[1, 2] * z + t[1]) / depth
-    k1, k2, p1, p2, k3 = lens.dist[0], lens.dist[1], lens.dist[2], lens.dist[3], lens.dist[4]
+    k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
     r2 = u * u + v * v
     radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
-    out[0] = lens.K[0, 0] * (u * radial + 2.0 * p1 * u * v + p2 * (r2 + 2.0 * u * u)) + lens.K[0, 2]
-    out[1] = lens.K[1, 1] * (v * radial + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v) + lens.K[1, 2]
+    out[0] = K[0, 0] * (u * radial + 2.0 * p1 * u * v + p2 * (r2 + 2.0 * u * u)) + K[0, 2]
+    out[1] = K[1, 1] * (v * radial + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v) + K[1, 2]
 
 
 @njit(cache=True, nogil=True)
-def shown_on_rays(lens: Lens, origin_m: Array, along: Array, distance_m: Array, out: Array) -> None:
+def shown_on_rays(
+    camera: CameraArrays, origin_m: Array, along: Array, distance_m: Array, out: Array
+) -> None:
     """Fill out (N,K,2) with where points show that are distance_m (N,K) from origin_m (3,) along unit vectors (N,3)."""
     for n in range(distance_m.shape[0]):
         for k in range(distance_m.shape[1]):
@@ -57,7 +38,7 @@ def shown_on_rays(lens: Lens, origin_m: Array, along: Array, distance_m: Array, 
             x, y, z = (
                 origin_m[0] + d * along[n, 0], origin_m[1] + d * along[n, 1], origin_m[2] + d * along[n, 2]
             )  # fmt: skip
-            _shown(lens, x, y, z, out[n, k])
+            _shown(camera, x, y, z, out[n, k])
 
 
 @njit(cache=True, nogil=True)

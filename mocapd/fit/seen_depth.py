@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import camera_arrays
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import Roi
-from mocapd.fit.rays_in_other_kernels import evenly_between, lens_of, shown_on_rays
+from mocapd.fit.rays_in_other_kernels import evenly_between, shown_on_rays
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Floats, Ints
@@ -82,7 +83,9 @@ def seen_depth_m(
     away_m = float(np.linalg.norm(root_m - origin))
     near_m, far_m = max(away_m - p.nearer_m, _NEAREST_M), away_m + farther_m
     ends = np.empty((len(y), 2, 2))
-    shown_on_rays(lens_of(pair.other), origin, along, np.tile([near_m, far_m], (len(y), 1)), ends)
+    shown_on_rays(
+        camera_arrays(pair.other), origin, along, np.tile([near_m, far_m], (len(y), 1)), ends
+    )
     nearest, farthest = ends[:, 0], ends[:, 1]
     length_px = np.linalg.norm(nearest - farthest, axis=1).max(
         initial=0.0, where=~np.isnan(nearest[:, 0])

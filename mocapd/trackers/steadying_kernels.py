@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import quat_exp, quat_log, quat_multiply
+from mocapd.body.posing_kernels import quat_exp, quat_inverse, quat_log, quat_multiply
 
 Array = NDArray[np.float64]
 
@@ -12,9 +12,7 @@ Array = NDArray[np.float64]
 @njit(cache=True, nogil=True)
 def _turn_between(one: Array, other: Array, inverse: Array, between: Array, out: Array) -> None:
     """The rotation vector (3,) [rad] that leads from `one` to `other` (4,); inverse, between (4,) are scratch."""
-    for i in range(3):
-        inverse[i] = -one[i]
-    inverse[3] = one[3]
+    quat_inverse(one, inverse)
     quat_multiply(other, inverse, between)
     quat_log(between, out)
 

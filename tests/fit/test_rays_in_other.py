@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import camera_arrays
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.shaping import Shaper
 from mocapd.fit.rays_in_other_kernels import (
     distances_of_triangles,
     evenly_between,
-    lens_of,
     shown_on_rays,
 )
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
@@ -30,7 +30,7 @@ def test_points_on_rays_show_where_the_camera_model_has_them() -> None:
     origin, along = rays(LEFT, rng.uniform(0, 480, (40, 2)))
     distances = rng.uniform(-1.0, 5.0, (40, 7))
     out = np.empty((40, 7, 2))
-    shown_on_rays(lens_of(RIGHT), origin, along, distances, out)
+    shown_on_rays(camera_arrays(RIGHT), origin, along, distances, out)
     wanted = project(RIGHT, origin + distances[..., None] * along[:, None])
     np.testing.assert_allclose(out, wanted, atol=1e-9)
     assert np.isnan(out).any()  # what is behind the camera shows nowhere

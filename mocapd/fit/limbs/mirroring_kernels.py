@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import quat_multiply
+from mocapd.body.posing_kernels import quat_inverse, quat_multiply
 
 Array = NDArray[np.float64]
 
@@ -62,8 +62,5 @@ def mirrored_in_depth(
             else:
                 turned[k] = globals_xyzw[k]
         for k in range(2):
-            before = parent_xyzw if k == 0 else turned[0]
-            for i in range(3):
-                inverse[i] = -before[i]
-            inverse[3] = before[3]
+            quat_inverse(parent_xyzw if k == 0 else turned[0], inverse)
             quat_multiply(inverse, turned[k], out[n, k])

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import quat_exp, quat_multiply
+from mocapd.body.posing_kernels import quat_exp, quat_inverse, quat_multiply
 
 Array = NDArray[np.float64]
 _LEAST = 1e-6
@@ -95,9 +95,7 @@ def rotations_of_bends(
     arm is; collar_xyzw (4,): the collar's global rotation.
     """
     x, y, z, frame, inverse = np.empty(3), np.empty(3), np.empty(3), np.empty(4), np.empty(4)
-    for i in range(3):
-        inverse[i] = -collar_xyzw[i]
-    inverse[3] = collar_xyzw[3]
+    quat_inverse(collar_xyzw, inverse)
     for n in range(upper.shape[0]):
         along = 0.0
         for i in range(3):

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import camera_arrays
 from mocapd.body.shaping import Shaped
 from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
-from mocapd.fit.rays_in_other_kernels import distances_of_triangles, lens_of, shown_on_rays
+from mocapd.fit.rays_in_other_kernels import distances_of_triangles, shown_on_rays
 from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.fit.terms.sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
@@ -66,7 +67,7 @@ def measured_distances(
     )  # fmt: skip
     offsets_m = np.linspace(-p.reach_m, p.reach_m, p.places)
     there = np.empty((len(y), p.places, 2))
-    shown_on_rays(lens_of(other), origin, along, expected_m[:, None] + offsets_m, there)
+    shown_on_rays(camera_arrays(other), origin, along, expected_m[:, None] + offsets_m, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
 
     def match(mine: slice) -> None:
