@@ -13,9 +13,10 @@ from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.types import Camera, Floats, Ints
-from mocapd.vision.raster_kernels import label_triangles, rasterise
+from mocapd.vision.raster_kernels import bounds, label_triangles, rasterise
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1 [work px], x1 and y1 excluded
+_NEAREST_M = 0.2  # of a vertex that is in view
 _MAX_SIDE_PX = 480  # of a work picture
 _MAX_WORK_PX = _MAX_SIDE_PX**2
 
@@ -85,14 +86,11 @@ class IdMapRenderer:
         )
         body = self._shaper(state.factors)
         self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
-        seen = self._depth > 0.2
-        n_seen = np.count_nonzero(seen)
-        if n_seen < len(seen) // 2:
+        n_seen, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
+        if n_seen < max(len(self.xy) // 2, 1):
             return None
-        # a column at a time: numpy's min(axis=0) of (V,2) takes ten times as long
-        x, y = (self.xy if n_seen == len(seen) else self.xy[seen]).T
-        x0, y0 = max(0, int(x.min()) - margin) & ~1, max(0, int(y.min()) - margin) & ~1
-        x1, y1 = min(w, int(x.max()) + margin), min(h, int(y.max()) + margin)
+        x0, y0 = max(0, int(left) - margin) & ~1, max(0, int(top) - margin) & ~1
+        x1, y1 = min(w, int(right) + margin), min(h, int(bottom) + margin)
         return (x0, y0, x1, y1) if x1 - x0 >= 16 and y1 - y0 >= 16 else None
 
     def render(self, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:

@@ -5,7 +5,7 @@ the rows of `CameraRows`, adds the priors and solves one small normal equation.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, cached_property, partial
 from itertools import combinations
 
@@ -77,15 +77,20 @@ class Fit:
         """Of the pose (n_pose,n_pose), as the pictures and what was known before leave it."""
         return positive_inverse(self.information)
 
-    @property
+    @cached_property
+    def visible_px(self) -> float:
+        """All that was rendered."""
+        return float(self.visible.sum())
+
+    @cached_property
     def match(self) -> float:
         """Share of the rendered shirt whose colour the pictures have."""
-        return float(self.matched.sum() / max(self.visible.sum(), 1.0))
+        return float(self.matched.sum() / max(self.visible_px, 1.0))
 
-    @property
+    @cached_property
     def explained(self) -> float:
         """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
-        return float(self.matched.sum() / max(self.visible.sum() + self.unexplained.sum(), 1.0))
+        return float(self.matched.sum() / max(self.visible_px + self.unexplained.sum(), 1.0))
 
     @property
     def cost_for_any_pose(self) -> float:
@@ -95,7 +100,7 @@ class Fit:
     @cached_property
     def confirmed_arms(self) -> dict[str, float]:
         """0..1 by side: share of an arm's patches that the pictures confirm; one out of sight is not."""
-        in_sight = _IN_SIGHT * self.visible.sum()
+        in_sight = _IN_SIGHT * self.visible_px
         confirmed = {}
         for side, p in SLEEVE_PATCHES.items():
             asked = self.visible[p].sum() + self.unexplained[p].sum()
@@ -128,11 +133,8 @@ class _Pass:
 
 def _coarse(view: View) -> View:
     """Every second pixel each way."""
-    return replace(
-        view,
-        ids=np.ascontiguousarray(view.ids[::2, ::2]),
-        pixel_weight=np.ascontiguousarray(view.pixel_weight[::2, ::2]),
-    )
+    ids, pixel_weight = view.ids[::2, ::2].copy(), view.pixel_weight[::2, ::2].copy()
+    return View(view.index, view.roi, ids, pixel_weight, view.dt_s)
 
 
 class Fitter:
@@ -208,21 +210,22 @@ class Fitter:
         (None: as many as the parameters say). motion (n_pose,n_pose): information of
         the prediction; None for the usual, loose one. terms: what else holds or pulls the pose.
         """
-        p, m = self.params, self.model
+        p, m, n_pose = self.params, self.model, self.model.n_pose
         state, crowded, measured = prediction, 0.0, 0.0
-        n_shape = m.n_shape if learn_shape else 0
-        P = m.n_pose + n_shape
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(dt_s * 30.0, 0.5)))
         fine = p.fine_iterations if fine is None else fine
         priors = self._narrow if self.is_narrow(prediction, views) else self._wide
-        H = held = np.zeros((P, P))
+        H = held = np.zeros((n_pose, n_pose))
         torso = plain(self.torso(self.shaper(state.factors)))
         coarse = [_coarse(view) for view in views]
         for iteration in range(iterations):
             along = iteration / max(iterations - 1, 1)
             radius = p.first_radius_px + along * (p.last_radius_px - p.first_radius_px)
             is_fine = iteration >= iterations - fine
+            # proportions are a matter of a few pixels
+            n_shape = m.n_shape if learn_shape and is_fine else 0
+            P = n_pose + n_shape
             one = _Pass(
                 state,
                 self.shaper(state.factors),
@@ -260,11 +263,11 @@ class Fitter:
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 motion, priors, prediction.factors - state.factors, prediction.information,
             )  # fmt: skip
-            root, local = stepped(m, state.root_m, state.local_xyzw, step[: m.n_pose])
+            root, local = stepped(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = state.factors
-            if learn_shape:
-                factors = np.clip(factors + step[m.n_pose :], 0.6, 1.6)
-            state = replace(state, root_m=root, local_xyzw=local, factors=factors)
+            if n_shape:
+                factors = np.minimum(np.maximum(factors + step[n_pose:], 0.6), 1.6)
+            state = MotionState(root, local, state.velocity, factors, state.information)
         rows = [self._rows[view.index] for view in views]
         misplaced, in_depth, nearer_px = self._compare_depths(views)
         return Fit(
@@ -274,7 +277,7 @@ class Fitter:
             sum((r.unexplained for r in rows), _NO_PIXELS),
             H,
             sum(r.cost for r in rows) + crowded + misplaced,
-            held[: m.n_pose, : m.n_pose] + motion,
+            held[:n_pose, :n_pose] + motion,
             in_depth,
             nearer_px,
             measured,
@@ -283,6 +286,8 @@ class Fitter:
     def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats, float]:
         """The cost of what was drawn last nearer or farther than it is seen; by patch whether it is there (21,); and the
         pixels in which something is seen well before what was drawn."""
+        if all(view.depth_m is None for view in views):
+            return 0.0, np.ones(N_LABELS), 0.0
         p, cost, nearer_px = self.params, 0.0, 0.0
         asked, off = np.zeros(N_LABELS), np.zeros(N_LABELS)
         for view in views:

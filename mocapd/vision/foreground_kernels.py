@@ -12,28 +12,32 @@ def stands_before(
     picture: NDArray[np.uint8],
     mean: NDArray[np.float32],
     age: NDArray[np.uint8],
+    left: int,
+    top: int,
     known: int,
     tolerance: float,
     sure: tuple[float, float],
     likely: tuple[float, float],
     out: NDArray[np.uint8],
 ) -> None:
-    """out (h,w): UNKNOWN where the background was seen fewer than `known` times, BEFORE where a channel differs from it
-    by more than `tolerance`, BACKGROUND elsewhere.
+    """out (h,w), of a part of the picture that begins at `left` and `top`: UNKNOWN where the background was seen fewer than
+    `known` times, BEFORE where a channel differs from it by more than `tolerance`, BACKGROUND elsewhere.
 
-    picture (h,w,3); mean (h,w,3) 0..255 and age (h,w) of the background. A shadow is the background dimmed in all channels
+    picture (H,W,3); mean (H,W,3) 0..255 and age (H,W) of the background. A shadow is the background dimmed in all channels
     alike (Horprasert et al. 1999): `sure` and `likely` are to which share at least, and how far the colour may then be off.
     A sure one is SHADOW, where cloth of the background's colour is seldom, a likely one CLOTH_OR_SHADOW.
     """
-    h, w, _ = picture.shape
+    h, w = out.shape
     for y in range(h):
+        seen, usual, looks = picture[top + y], mean[top + y], age[top + y]
         for x in range(w):
-            if age[y, x] < known:
+            u = left + x
+            if looks[u] < known:
                 out[y, x] = UNKNOWN
                 continue
             most, along, length2 = np.float32(0.0), np.float32(0.0), np.float32(1.0)
             for c in range(3):
-                a, m = np.float32(picture[y, x, c]), mean[y, x, c]
+                a, m = np.float32(seen[u, c]), usual[u, c]
                 most = max(most, abs(a - m))
                 along += a * m
                 length2 += m * m
@@ -46,11 +50,32 @@ def stands_before(
                 continue
             off = np.float32(0.0)
             for c in range(3):
-                off = max(off, abs(np.float32(picture[y, x, c]) - share * mean[y, x, c]))
+                off = max(off, abs(np.float32(seen[u, c]) - share * usual[u, c]))
             if share > sure[0] and off < sure[1]:
                 out[y, x] = SHADOW
             elif off < likely[1]:
                 out[y, x] = CLOTH_OR_SHADOW
+
+
+@njit(cache=True, nogil=True)
+def label_cleaned(
+    first: NDArray[np.uint8],
+    cleaned: NDArray[np.uint8],
+    left: int,
+    top: int,
+    out: NDArray[np.uint8],
+) -> None:
+    """out (H,W), in the part that begins at `left` and `top`: what `stands_before` said first (h,w), where `cleaned` (h,w) is
+    not 0, and BEFORE where that was BACKGROUND; UNKNOWN stays."""
+    h, w = first.shape
+    for y in range(h):
+        line = out[top + y]
+        for x in range(w):
+            k = first[y, x]
+            if k != UNKNOWN:
+                there = k if k >= SHADOW else np.uint8(BEFORE)
+                k = there if cleaned[y, x] != 0 else np.uint8(BACKGROUND)
+            line[left + x] = k
 
 
 def stands(before: NDArray[np.uint8]) -> NDArray[np.bool_]:

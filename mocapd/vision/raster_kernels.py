@@ -18,6 +18,19 @@ def triangle_middle(xy: Array, triangles: NDArray[np.int32], t: int) -> tuple[fl
 
 
 @njit(cache=True, nogil=True)
+def bounds(xy: Array, depth: Array, least_m: float) -> tuple[int, float, float, float, float]:
+    """How many of the vertices xy (V,2) [px] are farther away than least_m, by their depth (V,) [m], and the box of these:
+    least x, least y, largest x, largest y."""
+    n, x0, y0, x1, y1 = 0, np.inf, np.inf, -np.inf, -np.inf
+    for v in range(xy.shape[0]):
+        if depth[v] > least_m:
+            n += 1
+            x0, x1 = min(x0, xy[v, 0]), max(x1, xy[v, 0])
+            y0, y1 = min(y0, xy[v, 1]), max(y1, xy[v, 1])
+    return n, x0, y0, x1, y1
+
+
+@njit(cache=True, nogil=True)
 def rasterise(
     xy: Array,
     depth: Array,

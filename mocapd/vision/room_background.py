@@ -12,9 +12,7 @@ from mocapd.vision.background_kernels import changed, learn_background, learn_un
 from mocapd.vision.background_light import relight_background
 from mocapd.vision.foreground_kernels import (
     BACKGROUND,
-    BEFORE,
-    SHADOW,
-    UNKNOWN,
+    label_cleaned,
     stands,
     stands_before,
 )
@@ -22,6 +20,7 @@ from mocapd.vision.uncovered import UncoveredParams, uncovered
 
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
+_STANDS = stands(np.arange(256, dtype=np.uint8)).astype(np.uint8)  # of each label
 _GAP = np.ones(
     (5, 5), np.uint8
 )  # what is narrower is a part of the body that looks like its background
@@ -50,7 +49,6 @@ class RoomBackground:
         self._params = params
         self._mean = np.zeros((height, width, 3), np.float32)
         self._age = np.zeros((height, width), np.uint8)
-        self._before = np.zeros((height, width), np.uint8)
         self.reset()
 
     def reset(self) -> None:
@@ -134,36 +132,16 @@ class RoomBackground:
 
         within: x0, y0, x1, y1 of the only region that is asked for; BACKGROUND elsewhere.
         """
-        if within is None:
-            return self._standing(picture, self._mean, self._age, self._before)
-        x0, y0, x1, y1 = within
+        p, whole = self._params, np.zeros_like(self._age)
+        x0, y0, x1, y1 = within or (0, 0, whole.shape[1], whole.shape[0])
         if x1 <= x0 or y1 <= y0:  # who was followed is in no part of the picture
-            return np.zeros_like(self._before)
-        here = np.s_[y0:y1, x0:x1]
-        mean, age = np.ascontiguousarray(self._mean[here]), np.ascontiguousarray(self._age[here])
-        whole = np.zeros_like(self._before)
-        whole[here] = self._standing(
-            np.ascontiguousarray(picture[here]), mean, age, np.empty(age.shape, np.uint8)
-        )
-        return whole
-
-    def _standing(self, picture: Bytes, mean: Singles, age: Bytes, out: Bytes) -> Bytes:
-        p = self._params
+            return whole
+        first = np.empty((y1 - y0, x1 - x0), np.uint8)
         stands_before(
-            picture,
-            mean,
-            age,
-            p.known_looks,
-            p.tolerance,
-            p.sure_shadow,
-            p.likely_shadow,
-            out,
-        )
-        kept = out.copy()
-        one = stands(out).astype(np.uint8)
-        one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK), np.uint8)
-        one = np.asarray(cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP), np.uint8)
-        one[kept == UNKNOWN] = UNKNOWN
-        shaded = (one == BEFORE) & (kept >= SHADOW)
-        one[shaded] = kept[shaded]
-        return one
+            picture, self._mean, self._age, x0, y0, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, first
+        )  # fmt: skip
+        one = cv2.LUT(first, _STANDS)
+        one = cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK)
+        one = cv2.morphologyEx(one, cv2.MORPH_CLOSE, _GAP)
+        label_cleaned(first, np.asarray(one, np.uint8), x0, y0, whole)
+        return whole

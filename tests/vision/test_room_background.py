@@ -54,7 +54,7 @@ def test_the_kernel_does_what_its_definition_says() -> None:
     picture = np.clip(share * mean + rng.normal(0.0, 5.0, mean.shape), 0, 255).astype(np.uint8)
     age = np.where(rng.random((40, 50)) < 0.1, 2, 9).astype(np.uint8)
     out = np.empty((40, 50), np.uint8)
-    stands_before(picture, mean, age, 6, 16.0, SURE, LIKELY, out)
+    stands_before(picture, mean, age, 0, 0, 6, 16.0, SURE, LIKELY, out)
     assert (out[age < 6] == UNKNOWN).all()
     told = {int(k) for k in np.unique(out)}
     assert told == {BACKGROUND, BEFORE, UNKNOWN, SHADOW, CLOTH_OR_SHADOW}

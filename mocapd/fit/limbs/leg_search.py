@@ -112,7 +112,7 @@ def confirmed(side: str, fit: Fit) -> float:
     mine = _LABELS[side]
     asked = fit.visible[mine] + fit.unexplained[mine]
     shares = (fit.matched * fit.in_depth)[mine] / (asked + 1.0)
-    in_sight = asked >= _IN_SIGHT * fit.visible.sum()
+    in_sight = asked >= _IN_SIGHT * fit.visible_px
     return float(shares.min(initial=1.0, where=in_sight))
 
 

@@ -64,10 +64,10 @@ class RigSegmenter:
 
         def view(i: int) -> View | None:
             drawing, dt_s = self._fitter.drawings[i], present[i]
-            roi = drawing.region(state, dt_s, margin)
-            if roi is None:
+            drawn = drawing.render_about(state, dt_s, margin)
+            if drawn is None:
                 return None
-            predicted = drawing.render(state, dt_s, roi)
+            roi, predicted = drawn
             ids, pixel_weight = self.each[i].classify(
                 predicted, drawing.outline(), roi, colours, may_relight=True
             )

@@ -216,12 +216,12 @@ class ColourTracker:
             fitter.model, (state.root_m, state.local_xyzw), (last.root_m, last.local_xyzw)
         )
         velocity /= dt_s
-        velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
-        velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
+        velocity[:3] = velocity[:3].clip(-p.fastest_m_s, p.fastest_m_s)
+        velocity[3:] = velocity[3:].clip(-p.fastest_rad_s, p.fastest_rad_s)
         velocity = p.velocity_memory * last.velocity + (1.0 - p.velocity_memory) * velocity
         for side in SIDES:
             # what is hardly seen is hardly known to move; what was changed over jumped
-            trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
+            trust = min(max((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0), 1.0)
             columns = self._arm_columns[side]
             if side in switched:
                 velocity[columns] = 0.0

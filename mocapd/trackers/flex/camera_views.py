@@ -17,7 +17,7 @@ from mocapd.trackers.flex.looks.appearance import Appearance, region_distances
 from mocapd.trackers.flex.params import Params
 from mocapd.types import Bytes, FrameSet
 from mocapd.vision.clip_background import clip_background
-from mocapd.vision.foreground_kernels import BEFORE, stands
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
 from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.room_background import RoomBackground
 from mocapd.vision.uncovered import brightness_edges
@@ -108,6 +108,9 @@ class CameraViews:
         ]
         self._index = {view.name: i for i, view in enumerate(self.each)}
         self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
+        # by what stands there: nothing, or anything
+        self._weights = np.full(256, int(255 * params.soft), np.uint8)
+        self._weights[BACKGROUND] = 255
         self.present: dict[int, float] = {}
 
     def reset(self) -> None:
@@ -225,7 +228,7 @@ class CameraViews:
             region_distances(drawn),
             self._floors[i].near(state.root_m, roi),
         )
-        weights = np.where(before > 0, int(255 * p.soft), 255).astype(np.uint8)
+        weights = np.asarray(cv2.LUT(before, self._weights), np.uint8)
         return View(i, roi, ids, weights, dt_s)
 
     def silhouettes(self, state: MotionState) -> list[View]:

@@ -4,6 +4,7 @@ import numpy as np
 
 from mocapd.fit.body_drawing import Roi
 from mocapd.geometry.camera_model import centre, rays
+from mocapd.trackers.flex.floor_view_kernels import near_on_floor
 from mocapd.types import Bytes, Camera, Floats
 
 _REACH_M = 1.5  # shadows of a lamp at the ceiling are shorter than that; those of low lamps fall on walls, too
@@ -22,12 +23,13 @@ class FloorView:
         down = np.minimum(along[:, 1], -1e-6)
         met = eye + along * (-eye[1] / down)[:, None]
         met[along[:, 1] > -1e-3] = _FAR_M
-        self._met_x, self._met_z = (met[:, i].reshape(h, w).astype(np.float32) for i in (0, 2))
+        self._met_x, self._met_z = (
+            np.ascontiguousarray(met[:, i].reshape(h, w), np.float32) for i in (0, 2)
+        )
 
     def near(self, root_m: Floats, roi: Roi) -> Bytes:
         """(h,w) of the region: 1 where the floor about a body with this root (3,) is seen, if nothing stands before it."""
         x0, y0, x1, y1 = roi
-        x, z = np.float32(root_m[0]), np.float32(root_m[2])
-        across, along = self._met_x[y0:y1, x0:x1] - x, self._met_z[y0:y1, x0:x1] - z
-        near: Bytes = (across * across + along * along < _REACH_M**2).astype(np.uint8)
+        near = np.empty((y1 - y0, x1 - x0), np.uint8)
+        near_on_floor(self._met_x, self._met_z, x0, y0, root_m[0], root_m[2], _REACH_M, near)
         return near

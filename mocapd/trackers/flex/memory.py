@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.motion_state import MotionState, step_between
@@ -60,11 +58,11 @@ def velocity_of(
     p, state = params, fit.state
     before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
     velocity = step_between(model, now, before) / dt_s
-    velocity[:3] = np.clip(velocity[:3], -p.fastest_m_s, p.fastest_m_s)
-    velocity[3:] = np.clip(velocity[3:], -p.fastest_rad_s, p.fastest_rad_s)
+    velocity[:3] = velocity[:3].clip(-p.fastest_m_s, p.fastest_m_s)
+    velocity[3:] = velocity[3:].clip(-p.fastest_rad_s, p.fastest_rad_s)
     for side in SIDES:
         # what is hardly seen is hardly known to move
-        trust = np.clip((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0, 1.0)
+        trust = min(max((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0), 1.0)
         columns = model.space.columns(f"{side}_arm")
         glide = p.hidden_arm_glide * last.velocity[columns]
         velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide

@@ -79,7 +79,7 @@ class Glider:
         self._told = told if told is not None and told.pose is not None else None
         self._last: Sourced | None = None  # what was known then
         self._moved_m: Floats | None = None  # each joint (J,3), since the frame before that
-        self._moved: Away | None = None  # its pose, likewise
+        self._moved: tuple[Pose, Pose] | None = None  # its pose then, and before that
         self._jumped = False  # otherwise than it moved
         self._away: Away | None = None
         self._speed_m_s = 0.0
@@ -103,7 +103,7 @@ class Glider:
             assert self._last is not None
             last = self._last.body
         moved_m = None if last is None else _moved(last, body)
-        moved, jumped = _turned(last, body), False
+        moved, jumped = _poses(last, body), False
         if told is None or gap_ns > nanoseconds(p.glide_within_s):
             self._away = None
         elif is_new:
@@ -112,7 +112,9 @@ class Glider:
         elif self._away is not None and moved_m is not None and self._jumps(moved_m, gap_ns):
             # who has just begun to speak settles: what is told goes on as it went, and that is not to be mended
             assert told.pose is not None
-            pose = told.pose if self._moved is None else off(told.pose, self._moved, 1.0)
+            pose = told.pose
+            if self._moved is not None:
+                pose = off(pose, away_from(*self._moved), 1.0)
             self._begin(replace(told, pose=pose), body, skeleton)
             if not self._jumped:  # else it moves otherwise now
                 moved_m, moved = self._moved_m, self._moved
@@ -143,10 +145,11 @@ class Glider:
         return bool(np.linalg.norm(moved_m - self._moved_m, axis=1).max() > p.jump_m)
 
 
-def _turned(before: BodyState | None, now: BodyState) -> Away | None:
+def _poses(before: BodyState | None, now: BodyState) -> tuple[Pose, Pose] | None:
+    """That of now and the one before."""
     if before is None or before.pose is None or now.pose is None:
         return None
-    return away_from(now.pose, before.pose)
+    return now.pose, before.pose
 
 
 def _moved(before: BodyState, now: BodyState) -> Floats:

@@ -26,6 +26,6 @@ def with_steady_arms(
     told = steadied(body.pose, arms, body.t_ns, last, params)
     skeleton = skeleton_of(shape)
     joints_m = joint_positions(skeleton, told.pose)
-    uncertainty_m = behind(body.uncertainty_m, joints_m, joint_positions(skeleton, body.pose))
+    uncertainty_m = behind(body.uncertainty_m, joints_m, body.joints_m)
     steady = replace(body, pose=told.pose, joints_m=joints_m, uncertainty_m=uncertainty_m)
     return replace(track, body=steady), told

@@ -64,13 +64,15 @@ class Appearance:
 
     def reset(self) -> None:
         """Nothing was seen."""
+        self._is_learned = False
         self._counts[:] = 0.0
         self._refresh()
 
     @property
     def is_learned(self) -> bool:
         """Whether the body was seen."""
-        return bool(self._counts[1:].sum() > 0.0)
+        self._is_learned = self._is_learned or bool(self._counts[1:].sum() > 0.0)
+        return self._is_learned
 
     def relight(self, gain: Floats) -> None:
         """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way to what is then
@@ -130,12 +132,13 @@ class Appearance:
         ids = np.empty(before.shape, np.uint8)
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._counts[0].sum() > p.least_other_px else 1e6, p.other_per_px, p.other_px,
+            p.other_cost if self._knows_others else 1e6, p.other_per_px, p.other_px,
             p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
         )  # fmt: skip
         return ids
 
     def _refresh(self) -> None:
+        self._knows_others = bool(self._counts[0].sum() > self._params.least_other_px)
         # bands are counted only until they are joined
         n = len(self._counts) if self._counts[N_CLASSES:].any() else N_CLASSES
         log_table(self._counts[:n], self._params.least_share, self._scratch, self._table[:n])
