@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mocapd.types import Floats, Ints
-from mocapd.vision.raster_kernels import NOTHING, label_triangles, rasterise
+from mocapd.vision.raster_kernels import NOTHING, bounds, label_triangles, rasterise
 
 H, W = 30, 40
 
@@ -150,3 +150,20 @@ def test_labels_are_those_of_the_triangles() -> None:
     out = np.full((2, 3), 77, np.uint8)
     label_triangles(seen, np.array([5, 9, 1], np.uint8), out)
     np.testing.assert_array_equal(out, [[0, 5, 1], [9, 9, 0]])
+
+
+def test_the_box_of_the_vertices_in_view_is_that_of_numpy() -> None:
+    rng = np.random.default_rng(2)
+    xy, depth = rng.normal(0.0, 90.0, (60, 2)), rng.uniform(-0.5, 3.0, 60)
+    seen = xy[depth > 0.2]
+    n, *box = bounds(xy, depth, 0.2)
+    assert 0 < n < 60
+    assert n == len(seen)
+    assert box == [*seen.min(axis=0), *seen.max(axis=0)]
+
+
+def test_nothing_in_view_has_an_empty_box() -> None:
+    n, left, top, right, bottom = bounds(np.zeros((3, 2)), np.full(3, -1.0), 0.2)
+    assert n == 0
+    assert left > right
+    assert top > bottom

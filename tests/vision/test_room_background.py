@@ -62,6 +62,38 @@ def test_the_kernel_does_what_its_definition_says() -> None:
         assert out[y, x] == naive(picture[y, x], mean[y, x])
 
 
+def test_a_part_of_the_picture_is_told_as_the_whole_of_it() -> None:
+    """But for its edge, where specks and gaps are told by what lies beyond."""
+    background, picture = learned(), wall(99)
+    picture[10:40, 20:35] = (40, 200, 90)
+    picture[45:58, 20:60] = (0.65 * picture[45:58, 20:60]).astype(np.uint8)
+    whole = background.before(picture)
+    part = background.before(picture, (14, 6, 55, 52))
+    assert (part[11:47, 19:50] == whole[11:47, 19:50]).all()
+    assert {BEFORE, SHADOW, BACKGROUND} <= set(np.unique(part[11:47, 19:50]).tolist())
+    outside = np.ones((H, W), bool)
+    outside[6:52, 14:55] = False
+    assert not part[outside].any()
+    assert not background.before(picture, (0, 0, 0, 0)).any()
+
+
+def test_specks_are_noise_gaps_are_somebody_and_what_is_not_known_stays_so() -> None:
+    background = learned()
+    hidden = np.zeros((H, W), np.uint8)
+    hidden[30:40, 60:70] = 1
+    new = RoomBackground(H, W, BackgroundParams())
+    for seed in range(20):
+        new.learn(wall(seed), hidden)
+    picture = wall(99)
+    picture[10:40, 20:35] = (40, 200, 90)
+    picture[25, 20:35] = wall(99)[25, 20:35]
+    picture[50, 10] = (40, 200, 90)
+    before = background.before(picture)
+    assert (before[25, 22:33] == BEFORE).all()
+    assert before[50, 10] == BACKGROUND
+    assert (new.before(picture)[31:39, 61:69] == UNKNOWN).all()
+
+
 def test_somebody_stands_before_it_and_a_shadow_does_not() -> None:
     picture = wall(99)
     picture[10:40, 20:35] = (40, 200, 90)
