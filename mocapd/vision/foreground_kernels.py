@@ -29,28 +29,30 @@ def stands_before(
     """
     h, w = out.shape
     for y in range(h):
-        seen, usual, looks = picture[top + y], mean[top + y], age[top + y]
+        seen, usual = picture[top + y, left : left + w], mean[top + y, left : left + w]
+        looks = age[top + y, left : left + w]
         for x in range(w):
-            u = left + x
-            if looks[u] < known:
+            if looks[x] < known:
                 out[y, x] = UNKNOWN
                 continue
-            most, along, length2 = np.float32(0.0), np.float32(0.0), np.float32(1.0)
+            most = np.float32(0.0)
             for c in range(3):
-                a, m = np.float32(seen[u, c]), usual[u, c]
-                most = max(most, abs(a - m))
-                along += a * m
-                length2 += m * m
+                most = max(most, abs(np.float32(seen[x, c]) - usual[x, c]))
             if most <= tolerance:
                 out[y, x] = BACKGROUND
                 continue
+            along, length2 = np.float32(0.0), np.float32(1.0)
+            for c in range(3):
+                a, m = np.float32(seen[x, c]), usual[x, c]
+                along += a * m
+                length2 += m * m
             share = along / length2
             out[y, x] = BEFORE
             if share >= 1.0 or share < likely[0]:
                 continue
             off = np.float32(0.0)
             for c in range(3):
-                off = max(off, abs(np.float32(seen[u, c]) - share * usual[u, c]))
+                off = max(off, abs(np.float32(seen[x, c]) - share * usual[x, c]))
             if share > sure[0] and off < sure[1]:
                 out[y, x] = SHADOW
             elif off < likely[1]:
@@ -69,13 +71,12 @@ def label_cleaned(
     not 0, and BEFORE where that was BACKGROUND; UNKNOWN stays."""
     h, w = first.shape
     for y in range(h):
-        line = out[top + y]
+        line = out[top + y, left : left + w]
         for x in range(w):
             k = first[y, x]
-            if k != UNKNOWN:
-                there = k if k >= SHADOW else np.uint8(BEFORE)
-                k = there if cleaned[y, x] != 0 else np.uint8(BACKGROUND)
-            line[left + x] = k
+            there = k if k >= SHADOW else np.uint8(BEFORE)
+            there = there if cleaned[y, x] != 0 else np.uint8(BACKGROUND)
+            line[x] = k if k == UNKNOWN else there
 
 
 def stands(before: NDArray[np.uint8]) -> NDArray[np.bool_]:

@@ -25,4 +25,5 @@ def near_on_floor(
         xs, zs = met_x[top + y, left : left + w], met_z[top + y, left : left + w]
         for x in range(w):
             across, along = xs[x] - x0, zs[x] - z0
-            out[y, x] = across * across + along * along < reach2
+            is_near = across * across + along * along < reach2
+            out[y, x] = np.uint8(1) if is_near else np.uint8(0)
