@@ -30,7 +30,7 @@ def pose_covariance(model: BodyModel, H: Floats) -> Floats:
     """
     n = model.n_pose
     information = _WITNESSED * H[:n, :n]
-    np.einsum("ii->i", information)[:] += _usual_information(model.space)
+    information[np.diag_indices(n)] += _usual_information(model.space)
     return positive_inverse(information)
 
 

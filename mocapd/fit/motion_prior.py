@@ -27,8 +27,7 @@ def predicted_information(
     last_step (P,): by how much the pose moved in the last frame; frames: how many usual frames ago that was;
     usual_sd (P,): what holds any pose at least; limbs: the parameters of each, and how well it was confirmed, 0..1.
     """
-    steps = last_step.reshape(-1, 3)
-    length = np.sqrt((steps * steps).sum(axis=1))
+    length = np.linalg.norm(last_step.reshape(-1, 3), axis=1)
     sd = params.calm_gain * length
     sd[0] += params.calm_m
     sd[1:] += params.calm_rad
@@ -38,7 +37,7 @@ def predicted_information(
             least = params.hidden_sd_rad
             moved_sd[columns] = least + confirmed * (moved_sd[columns] - least)
     spread = covariance.copy()
-    np.einsum("ii->i", spread)[:] += moved_sd**2 * max(frames, 0.5)
+    spread[np.diag_indices(len(spread))] += moved_sd**2 * max(frames, 0.5)
     information = positive_inverse(spread)
-    np.einsum("ii->i", information)[:] += 1.0 / (usual_sd**2 * max(frames, 0.5))
+    information[np.diag_indices(len(spread))] += 1.0 / (usual_sd**2 * max(frames, 0.5))
     return information

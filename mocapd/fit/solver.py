@@ -266,7 +266,7 @@ class Fitter:
             root, local = stepped(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = state.factors
             if n_shape:
-                factors = np.minimum(np.maximum(factors + step[n_pose:], 0.6), 1.6)
+                factors = np.clip(factors + step[n_pose:], 0.6, 1.6)
             state = MotionState(root, local, state.velocity, factors, state.information)
         rows = [self._rows[view.index] for view in views]
         misplaced, in_depth, nearer_px = self._compare_depths(views)

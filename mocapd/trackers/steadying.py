@@ -116,14 +116,12 @@ def steadied(
         return Told(t_ns, found, trust, t_ns)
     if t_ns - last.since_ns < nanoseconds(p.settles_s):
         return Told(t_ns, found, trust, last.since_ns)
-    if jumped:
-        trust[list(jumped)] = 0.0
+    trust[list(jumped)] = 0.0
     gap_s = max(gap_s, _SHORTEST_TICKS * TICK_S)
     ticks = gap_s / TICK_S
     trust = np.minimum(trust, last.trust + gap_s / p.trust_s)
     turning = last.turning_rad_s.copy()
-    if jumped:
-        turning[list(jumped)] = 0.0
+    turning[list(jumped)] = 0.0
     told, follows, learned = np.empty((N_JOINTS, 4)), np.empty(N_JOINTS), np.empty(N_JOINTS)
     follow(
         found.quats_xyzw, last.pose.quats_xyzw, trust, _following(p), gap_s, ticks, p.glide, p.learns, p.sure_rad_s,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
+from mocapd.trackers.velocity import VelocityParams
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +32,7 @@ class Params:
 
     # motion from frame to frame
     prediction_damping: float = 0.6
-    velocity_memory: float = 0.0  # share of the last velocity kept
-    arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
-    hidden_arm_glide: float = (
-        0.7  # share of its velocity that such an arm keeps from frame to frame
-    )
-    fastest_rad_s: float = 15.0
-    fastest_m_s: float = 4.0
+    velocity: VelocityParams = field(default_factory=VelocityParams)
 
     blend_m: float = 0.07  # what was wrong is mended at no more than this by frame, of any joint
 

@@ -21,7 +21,6 @@ from mocapd.fit.motion_state import (
     initial_information,
     known_of,
     learned,
-    step_between,
 )
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
@@ -36,6 +35,7 @@ from mocapd.trackers.colour.params import Params
 from mocapd.trackers.texture_distance import texture_distances
 from mocapd.trackers.told_pose import told_pose
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.trackers.velocity import velocity_between
 from mocapd.types import (
     BodyState,
     Floats,
@@ -212,22 +212,8 @@ class ColourTracker:
             gained = fitter.shape_information(fit.H) * (p.shape.gain * dt_s / TICK_S)
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
-        velocity = step_between(
-            fitter.model, (state.root_m, state.local_xyzw), (last.root_m, last.local_xyzw)
-        )
-        velocity /= dt_s
-        velocity[:3] = velocity[:3].clip(-p.fastest_m_s, p.fastest_m_s)
-        velocity[3:] = velocity[3:].clip(-p.fastest_rad_s, p.fastest_rad_s)
-        velocity = p.velocity_memory * last.velocity + (1.0 - p.velocity_memory) * velocity
-        for side in SIDES:
-            # what is hardly seen is hardly known to move; what was changed over jumped
-            trust = min(max((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0), 1.0)
-            columns = self._arm_columns[side]
-            if side in switched:
-                velocity[columns] = 0.0
-            else:
-                glide = p.hidden_arm_glide * last.velocity[columns]
-                velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
+        jumped = [self._arm_columns[side] for side in switched]
+        velocity = velocity_between(fitter.model, last, fit, dt_s, jumped, p.velocity)
         names = tuple(self.rig.cameras[v.index].name for v in views)
         left = later(known.left) if known.left is not None else None
         if switched:

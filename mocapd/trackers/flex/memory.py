@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from mocapd.body.model import BodyModel
-from mocapd.body.pose_space import SIDES
-from mocapd.fit.motion_state import MotionState, step_between
+from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.rescue.seen_pose import WHOLE
+from mocapd.trackers.velocity import velocity_between
 from mocapd.types import Floats
 
 
@@ -55,17 +55,5 @@ def velocity_of(
     changed: Sequence[str],
 ) -> Floats:
     """Of the pose (n_pose,) per second, from the step since the last one; not of parts that changed over."""
-    p, state = params, fit.state
-    before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
-    velocity = step_between(model, now, before) / dt_s
-    velocity[:3] = velocity[:3].clip(-p.fastest_m_s, p.fastest_m_s)
-    velocity[3:] = velocity[3:].clip(-p.fastest_rad_s, p.fastest_rad_s)
-    for side in SIDES:
-        # what is hardly seen is hardly known to move
-        trust = min(max((fit.confirmed_arms[side] - 0.15) / p.arm_trust, 0.0), 1.0)
-        columns = model.space.columns(f"{side}_arm")
-        glide = p.hidden_arm_glide * last.velocity[columns]
-        velocity[columns] = trust * velocity[columns] + (1.0 - trust) * glide
-    for part in changed:
-        velocity[slice(None) if part == WHOLE else model.space.columns(part)] = 0.0
-    return velocity
+    columns = [slice(None) if part == WHOLE else model.space.columns(part) for part in changed]
+    return velocity_between(model, last, fit, dt_s, columns, params.velocity)

@@ -12,6 +12,7 @@ from mocapd.trackers.flex.rescue.face_watch import FaceWatchParams
 from mocapd.trackers.flex.rescue.seen_pose import SeenPoseParams
 from mocapd.trackers.flex.rescue.turn_watch import TurnWatchParams
 from mocapd.trackers.steadying import SteadyingParams
+from mocapd.trackers.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
 
 
@@ -80,12 +81,7 @@ class Params:
 
     # motion from frame to frame
     prediction_damping: float = 0.6
-    fastest_rad_s: float = 15.0
-    fastest_m_s: float = 4.0
-    arm_trust: float = 0.3  # range of confirmation over which an arm's velocity is believed
-    hidden_arm_glide: float = (
-        0.7  # share of its velocity that such an arm keeps from frame to frame
-    )
+    velocity: VelocityParams = field(default_factory=VelocityParams)
 
     crossed_turns: int = 3  # from one look at crossed legs to the next
     crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment

@@ -20,8 +20,7 @@ def apart_m(one: BodyState, other: BodyState) -> float:
     """How far two bodies' trunks are from each other, on average of their joints [m]; infinite without a body."""
     if one.joints_m is None or other.joints_m is None:
         return float("inf")
-    apart = one.joints_m[TRUNK] - other.joints_m[TRUNK]
-    return float(np.sqrt((apart * apart).sum(axis=1)).mean())
+    return float(np.linalg.norm(one.joints_m[TRUNK] - other.joints_m[TRUNK], axis=1).mean())
 
 
 def placed(body: BodyState, skeleton: Skeleton) -> BodyState:

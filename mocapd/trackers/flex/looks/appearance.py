@@ -64,15 +64,8 @@ class Appearance:
 
     def reset(self) -> None:
         """Nothing was seen."""
-        self._is_learned = False
         self._counts[:] = 0.0
         self._refresh()
-
-    @property
-    def is_learned(self) -> bool:
-        """Whether the body was seen."""
-        self._is_learned = self._is_learned or bool(self._counts[1:].sum() > 0.0)
-        return self._is_learned
 
     def relight(self, gain: Floats) -> None:
         """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way to what is then
@@ -138,6 +131,7 @@ class Appearance:
         return ids
 
     def _refresh(self) -> None:
+        self.is_learned = bool(self._counts[1:].any())  # whether the body was seen
         self._knows_others = bool(self._counts[0].sum() > self._params.least_other_px)
         # bands are counted only until they are joined
         n = len(self._counts) if self._counts[N_CLASSES:].any() else N_CLASSES
