@@ -8,11 +8,11 @@ from mocapd.clock import seconds
 from mocapd.geometry import rotations
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.trackers.base import Track
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import UNCERTAINTY_M, canned_pose
 from mocapd.types import BodyState, Floats, FrameSet, Pose, Tracking
 
-LOOP = CannedSection(loop_s=4.0, waves=6, sway_m=0.25)  # to the left in its first second
+LOOP = CannedMotion(loop_s=4.0, waves=6, sway_m=0.25)  # to the left in its first second
 _LIFT_DEG = 35.0  # of the thigh; the shin twice as far the other way
 
 

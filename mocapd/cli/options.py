@@ -46,10 +46,12 @@ VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
 
 def refuse_variant(variant: str | None) -> None:
     """Raises ConfigError for the option of earlier versions."""
-    from mocapd.config.sections import GONE
+    from mocapd.config.removed_keys import REMOVED
 
     if variant is not None:
-        raise ConfigError("there is no --variant any more", "command line", GONE["tracker.variant"])
+        raise ConfigError(
+            "there is no --variant any more", "command line", REMOVED["tracker.variant"]
+        )
 
 
 def vrm_flags(vrm: Path | None) -> dict[str, str]:

@@ -90,7 +90,7 @@ def track(
         ready = ready_tracker(
             own.name,
             known.assuming(own.stature_m),
-            cached(effective.cache_dir, progress, own, own.sections),
+            cached(effective.cache_dir, progress, own.tracking),
         )
         if room is RoomSeen.WHOLE:
             learn_room(ready.tracker, origin.frame_sets(), origin.count)

@@ -14,7 +14,8 @@ import platformdirs
 
 from mocapd.boundary.files import is_file, user_path
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
-from mocapd.config.sections import GONE, HIDDEN, CameraSection, Config
+from mocapd.config.removed_keys import REMOVED
+from mocapd.config.sections import CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
 
@@ -48,7 +49,7 @@ class Effective:
 
 def known_keys() -> dict[str, Key]:
     """Every key by its path, in the order in which they are documented."""
-    return {key.path: key for key in keys_of(Config) if key.path not in HIDDEN}
+    return {key.path: key for key in keys_of(Config)}
 
 
 def config_candidates() -> tuple[Path, ...]:
@@ -113,13 +114,13 @@ def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
 
 def _from_env(env: Mapping[str, str], known: Mapping[str, Key]) -> Found:
     by_name = {env_name(path): key for path, key in known.items()}
-    gone = {env_name(path): path for path in GONE}
+    removed = {env_name(path): path for path in REMOVED}
     found: Found = {}
     for name in sorted(env):
         if not name.startswith(ENV_PREFIX) or name in NOT_KEYS:
             continue
-        if name in gone:
-            raise _unknown(gone[name], known, f"environment {name}")
+        if name in removed:
+            raise _unknown(removed[name], known, f"environment {name}")
         if name not in by_name:
             raise unknown_key(name, name, by_name, "environment")
         found[by_name[name].path] = _from_text(by_name[name], env[name], f"environment {name}")
@@ -136,8 +137,8 @@ def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
 
 
 def _unknown(path: str, known: Mapping[str, Key], where: str) -> ConfigError:
-    if path in GONE:
-        return ConfigError(f"there is no key {path!r} any more", where, GONE[path])
+    if path in REMOVED:
+        return ConfigError(f"there is no key {path!r} any more", where, REMOVED[path])
     return unknown_key(path, path, known, where)
 
 

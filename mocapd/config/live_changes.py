@@ -5,7 +5,7 @@ from dataclasses import replace
 from mocapd.config.sections import Config
 
 # what lives as long as the process: outputs and page are open, and found by name and folder
-_FIXED = ("instance", "cache_dir", "state_dir", "web")
+_FIXED = ("instance", "cache_dir", "state_dir", "prediction", "web")
 
 
 def taken_live(running: Config, wanted: Config) -> tuple[Config, tuple[str, ...]]:

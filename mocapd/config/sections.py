@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import platformdirs
 from msgspec import Meta
@@ -13,11 +13,11 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.config import node_params, web_params
 from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
+from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.registry import OutputSection, default_sections, output_sections
-from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.smoothing import PRESETS
-from mocapd.trackers.registry import entry, tracker_sections
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.trackers.registry import entry
+from mocapd.trackers.tracking_state import COAST_S, TrackingStateParams
 
 
 def default_cache_dir() -> Path:
@@ -53,7 +53,8 @@ class CameraSection:
     id: its name in the rig file
     source: what `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, sim:NAME#camN; a wrong one tells all
     fps_hz: rate to ask a webcam for [Hz]
-    wait_s: how long a frame set waits for it after its first frame came [s], in place of [bundler]; for one on a network
+    wait_s: how long its picture may come after the first one of the same moment [s], in place of bundler.wait_s; for one on a
+      network
     white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
     """
 
@@ -66,27 +67,38 @@ class CameraSection:
 
 
 @dataclass(frozen=True, slots=True)
-class TrackerSection(TrackingStateParams):
+class BundlerSection:
+    """How long the pictures of one moment wait for each other.
+
+    wait_s: how long a picture may come after the first one of its moment [s]; unset: as late as that camera usually is,
+      and half a frame more
+    """
+
+    wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerSection:
     """Which tracker, and what it needs to know of the wearer.
 
     name: auto, the best of what can run; or one: colour, flex, colour_paper (as published), canned (moves by itself)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
-    confirm_s: how long evidence must persist before a lost person is believed to be back [s]
     stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]
     """
 
     name: str = "auto"
     stature_m: Annotated[float, Meta(ge=0.5, le=2.6)] = 1.75
+    coast_s: Annotated[float, Meta(ge=0, le=60)] = COAST_S
     stuck_s: Annotated[float, Meta(ge=1, le=3600)] = 30.0
-    sections: Annotated[Mapping[str, Any], SectionTable(tracker_sections)] = field(
-        default_factory=lambda: {name: section() for name, section in tracker_sections().items()}
-    )
 
     def __post_init__(self) -> None:
-        # a class with slots is made twice, which a bare super() does not survive
-        TrackingStateParams.__post_init__(self)
         entry(self.name)
+
+    @property
+    def tracking(self) -> TrackingStateParams:
+        """When a person counts as lost."""
+        return TrackingStateParams(coast_s=self.coast_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,22 +158,13 @@ class Config:
         Path, Meta(extra={"default": "$STATE_DIRECTORY or $XDG_STATE_HOME/mocapd"})
     ] = field(default_factory=default_state_dir)
     camera: tuple[CameraSection, ...] = ()
-    bundler: BundlerParams = field(default_factory=BundlerParams)
+    bundler: BundlerSection = field(default_factory=BundlerSection)
     tracker: TrackerSection = field(default_factory=TrackerSection)
     shirt: ShirtSection = field(default_factory=ShirtSection)
     smoothing: SmoothingSection = field(default_factory=SmoothingSection)
     outputs: Annotated[Mapping[str, OutputSection], SectionTable(output_sections)] = field(
         default_factory=default_sections
     )
+    prediction: PredictionParams = field(default_factory=PredictionParams)
     web: WebSection = field(default_factory=WebSection)
     node: node_params.Params = field(default_factory=node_params.Params)
-
-
-# Keys of earlier versions: what to write now.
-GONE = {
-    "tracker.variant": 'the published method is a tracker now: tracker.name = "colour_paper", and for its baseline '
-    "tracker.colour_paper.baseline = true",
-    "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
-}
-# Set by `wait_s` of each camera.
-HIDDEN = ("bundler.camera_waits_s",)

@@ -1,10 +1,12 @@
 """The outputs that exist: one line each in OUTPUTS, whose section of the configuration has the same name."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Protocol
 
+from mocapd.errors import ConfigError
 from mocapd.outputs.aim import address_text, aimed_by_destination
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
@@ -15,6 +17,8 @@ from mocapd.outputs.vmc import vmc_params
 from mocapd.outputs.vrchat import vrchat_sink
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
+
+NOT_PREDICTED = PredictionParams()
 
 
 class OutputSection(Protocol):
@@ -65,6 +69,16 @@ class VRChatSection(vrchat_sink.Params):
     enabled: bool = False
 
 
+def _unlimited(_section: Any) -> float:
+    """It sends as often as it is given a frame."""
+    return math.inf
+
+
+def _own_rate(section: VmcSection | VRChatSection) -> float:
+    """It drops what comes faster than its own rate."""
+    return section.rate_hz
+
+
 def _safe(_section: Any) -> tuple[str, ...]:
     """It has no unsafe settings."""
     return ()
@@ -76,7 +90,8 @@ class OutputEntry:
 
     `blocks`: whether `send` or `tell` may take longer than a millisecond or two: then it gets a thread of
     its own; `unsafe`: a line for each setting that is permitted and yet unsafe; `aimed`: its section, but to
-    one host (a numeric address) and port, None where the section says it.
+    one host (a numeric address) and port, None where the section says it; `limit_hz`: how many frames a second
+    it sends at most [Hz].
     """
 
     section: Callable[[], OutputSection]
@@ -84,6 +99,7 @@ class OutputEntry:
     blocks: bool
     unsafe: Callable[[Any], tuple[str, ...]] = _safe
     aimed: Callable[[Any, str | None, int | None], Any] = aimed_by_destination
+    limit_hz: Callable[[Any], float] = _unlimited
 
 
 def _zenoh(section: ZenohSection, instance: str) -> Sink:
@@ -125,9 +141,15 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
         # 0.07 ms, also when nobody ever reads.
         "osc": OutputEntry(OscSection, _osc, blocks=False),
         # The same sockets.
-        "vmc": OutputEntry(VmcSection, _vmc, blocks=False),
+        "vmc": OutputEntry(VmcSection, _vmc, blocks=False, limit_hz=_own_rate),
         # The same, and less of it; what looks for VRChat has a thread of its own.
-        "vrchat": OutputEntry(VRChatSection, _vrchat, blocks=False, unsafe=vrchat_sink.warnings),
+        "vrchat": OutputEntry(
+            VRChatSection,
+            _vrchat,
+            blocks=False,
+            unsafe=vrchat_sink.warnings,
+            limit_hz=_own_rate,
+        ),
     }
 )
 
@@ -142,16 +164,28 @@ def default_sections() -> Mapping[str, OutputSection]:
     return {name: entry.section() for name, entry in OUTPUTS.items()}
 
 
-def build_sinks(sections: Mapping[str, OutputSection], instance: str) -> tuple[Sink, ...]:
-    """A sink for each output that is enabled; one that is not named is not."""
+def build_sinks(
+    sections: Mapping[str, OutputSection],
+    instance: str,
+    prediction: PredictionParams = NOT_PREDICTED,
+) -> tuple[Sink, ...]:
+    """A sink for each output that is enabled; one that is not named is not. Raises ConfigError for a prediction
+    of an output that does not exist."""
+    unknown = [name for name in prediction.outputs if name not in OUTPUTS]
+    if unknown:
+        raise ConfigError(
+            f"no output is called {unknown[0]!r}",
+            "prediction.outputs",
+            f"some of: {', '.join(OUTPUTS)}",
+        )
     sinks: list[Sink] = []
     for name, entry in OUTPUTS.items():
         section = sections.get(name)
         if section is not None and section.enabled:
             sink = entry.build(section, instance)
-            if isinstance(section, PredictionParams) and section.predict_hz > 0.0:
-                ahead_s = section.predict_ahead_ms / 1e3
-                sinks.append(PredictedSink(sink, section.predict_hz, ahead_s))
+            rate_hz = prediction.rate_hz(name, entry.limit_hz(section))
+            if rate_hz > 0.0:
+                sinks.append(PredictedSink(sink, rate_hz, prediction.ahead_ms / 1e3))
             else:
                 sinks.append(ThreadedSink(sink) if entry.blocks else sink)
     return tuple(sinks)

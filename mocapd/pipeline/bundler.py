@@ -21,19 +21,13 @@ give both; for recordings fed in order of capture `now_ns` is left out and is th
 """
 
 import heapq
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated
-
-from msgspec import Meta
 
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.pipeline.camera_queue import CameraQueue
 from mocapd.types import Frame, FrameSet
-
-MOST_PERIODS = 30.0  # that a set may be told to wait: pictures are kept meanwhile
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,25 +44,12 @@ class BundlerParams:
       the slack and the longest wait
     """
 
-    period_s: Annotated[float, Meta(gt=0, le=1, extra={"default": "1/30"})] = 1.0 / 30.0
-    slack_periods: Annotated[float, Meta(ge=0, le=MOST_PERIODS)] = 0.5
-    longest_wait_periods: Annotated[float, Meta(ge=0, le=MOST_PERIODS)] = 1.5
-    hysteresis_periods: Annotated[float, Meta(ge=0, le=0.5)] = 0.15
-    patience: Annotated[int, Meta(ge=1, le=1000)] = 2
+    period_s: float = 1.0 / 30.0
+    slack_periods: float = 0.5
+    longest_wait_periods: float = 1.5
+    hysteresis_periods: float = 0.15
+    patience: int = 2
     camera_waits_s: Mapping[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        if not (math.isfinite(self.period_s) and self.period_s > 0.0):
-            raise ConfigError(f"the period is {self.period_s} s", "bundler.period_s", "above 0")
-        for name in ("slack_periods", "longest_wait_periods", "hysteresis_periods"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise ConfigError(f"{value} periods", f"bundler.{name}", "give 0 or more")
-        if self.patience < 1:
-            raise ConfigError(f"{self.patience} sets", "bundler.patience", "give 1 or more")
-        for camera, wait_s in self.camera_waits_s.items():
-            if not (math.isfinite(wait_s) and wait_s >= 0.0):
-                raise ConfigError(f"{wait_s} s for camera {camera!r}", "wait_s", "give 0 or more")
 
 
 @dataclass(frozen=True, slots=True)

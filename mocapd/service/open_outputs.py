@@ -13,7 +13,7 @@ class OpenOutputs:
 
     def __init__(self, config: Config) -> None:
         self.instance = instance_name(config.instance)
-        self.sinks = build_sinks(config.outputs, self.instance)
+        self.sinks = build_sinks(config.outputs, self.instance, config.prediction)
         self._opened: ExitStack | None = None
         self._opened_ns = monotonic_ns()
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
@@ -94,8 +94,9 @@ def common_origin(cameras: Sequence[CameraSection]) -> str:
 
 def bundler_params(config: Config) -> BundlerParams:
     """How their frames wait for each other."""
-    waits_s = {one.id: one.wait_s for one in config.camera if one.wait_s is not None}
-    return replace(config.bundler, camera_waits_s=waits_s)
+    every_s = config.bundler.wait_s
+    waits_s = {one.id: every_s if one.wait_s is None else one.wait_s for one in config.camera}
+    return BundlerParams(camera_waits_s={k: s for k, s in waits_s.items() if s is not None})
 
 
 def picture_size(camera: CameraSection) -> tuple[int, int]:

@@ -161,6 +161,6 @@ def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> Re
     return ready_tracker(
         own.name,
         known.assuming(own.stature_m),
-        cached(config.cache_dir, progress, own, own.sections),
+        cached(config.cache_dir, progress, own.tracking),
         partial(progress, "preparing the tracker"),
     )

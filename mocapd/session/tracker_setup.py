@@ -71,15 +71,14 @@ def cached(
     cache_dir: Path,
     progress: Progress,
     tracking: TrackingStateParams | None = None,
-    sections: Mapping[str, Any] | None = None,
+    params: Mapping[str, Any] | None = None,
 ) -> Resources:
-    """With a place for what is made once, and bars while it is made; sections: the trackers' own of the
-    configuration, by name."""
+    """With a place for what is made once, and bars while it is made; params: see Resources."""
     return Resources(
         cache_dir=cache_dir,
         progress=lambda share: progress("pose database", round(100 * share), 100),
         tracking=tracking,
-        sections=sections or {},
+        params=params or {},
     )
 
 

@@ -14,13 +14,7 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.trackers.base import Tracker, no_time_passes
-from mocapd.trackers.canned.section import CannedSection
-from mocapd.trackers.colour.section import ColourSection
-from mocapd.trackers.colour_paper.section import ColourPaperSection
-from mocapd.trackers.flex.section import FlexSection
-from mocapd.trackers.flex_paper.section import FlexPaperSection
 from mocapd.trackers.supervisor.kinds import KINDS
-from mocapd.trackers.supervisor.section import AutoSection
 from mocapd.trackers.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
@@ -42,9 +36,8 @@ class Resources:
 
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
     that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
-    must be done without; tracking: when a person counts as lost, None for the defaults; sections: what a user set of
-    each tracker, by name, as usual where absent; each: of a tracker's cameras; aside: what it
-    can do before it knows all;
+    must be done without; tracking: when a person counts as lost, None for the defaults; params: other numbers than a
+    tracker's own, by its name, for studies; each: of a tracker's cameras; aside: what it can do before it knows all;
     now_ns: a clock, by which work that would take too long at one frame set goes on at the next; for recordings it
     stands still, as they wait as long as it takes.
     """
@@ -54,7 +47,7 @@ class Resources:
     map_chunks: MapChunks = map
     tell: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
-    sections: Mapping[str, Any] = field(default_factory=dict)
+    params: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
     aside: Aside = at_once
     now_ns: Callable[[], int] = no_time_passes
@@ -62,25 +55,22 @@ class Resources:
 
 @dataclass(frozen=True, slots=True)
 class TrackerEntry:
-    """`build` makes the tracker from what is known, its own section and the resources; it imports it only then.
+    """`build` makes the tracker from what is known, its params (None: its own) and the resources; it imports it only then.
 
-    section: what a user may set, which becomes `[tracker.<name>]`; lacks: given what is known and the names
+    lacks: given what is known and the names
     of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
     that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
     which a setup measures; reads_outline: whether it is all of the body, whatever is worn; make_caches: what it
-    keeps in the cache folder, made if need be; caches: the names of those files; compared_with: what
-    `mocapd eval --compare` sets beside it, by label a tracker and its section.
+    keeps in the cache folder, made if need be; caches: the names of those files.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
-    section: type
     lacks: Callable[[Calibration, Collection[str]], str]
     sees: bool
     reads_shirt: bool = False
     reads_outline: bool = False
     make_caches: Callable[[Resources], object] = _quiet
     caches: tuple[str, ...] = ()
-    compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
 
 def _nothing_lacks(_calibration: Calibration, _cameras: Collection[str]) -> str:
@@ -114,10 +104,10 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     return ""
 
 
-def _canned(_calibration: Calibration, section: CannedSection, _resources: Resources) -> Tracker:
+def _canned(_calibration: Calibration, params: Any, _resources: Resources) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
-    return CannedTracker(section)
+    return CannedTracker(params)
 
 
 def _database(resources: Resources) -> "PoseDatabase":
@@ -134,36 +124,32 @@ def _database(resources: Resources) -> "PoseDatabase":
     return loaded.database
 
 
-def _colour(calibration: Calibration, section: ColourSection, resources: Resources) -> Tracker:
+def _colour(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.colour.build import build_colour_tracker
 
     return build_colour_tracker(
-        calibration, _database(resources), section, resources.tracking, resources.each
+        calibration, _database(resources), params, resources.tracking, resources.each
     )
 
 
-def _colour_paper(
-    calibration: Calibration, section: ColourPaperSection, resources: Resources
-) -> Tracker:
+def _colour_paper(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.colour_paper.build import build_paper_tracker
 
-    return build_paper_tracker(calibration, _database(resources), section, resources.tracking)
+    return build_paper_tracker(calibration, _database(resources), params, resources.tracking)
 
 
-def _flex(calibration: Calibration, section: FlexSection, resources: Resources) -> Tracker:
+def _flex(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.flex.build import build_flex_tracker
 
     return build_flex_tracker(
-        calibration, section, resources.tracking, resources.each, resources.now_ns
+        calibration, params, resources.tracking, resources.each, resources.now_ns
     )
 
 
-def _flex_paper(
-    calibration: Calibration, section: FlexPaperSection, resources: Resources
-) -> Tracker:
+def _flex_paper(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 
-    return build_flex_paper_tracker(calibration, section, resources.tracking)
+    return build_flex_paper_tracker(calibration, params, resources.tracking)
 
 
 def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
@@ -172,20 +158,13 @@ def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     return missing[0] if all(missing) else ""
 
 
-def _auto(calibration: Calibration, section: AutoSection, resources: Resources) -> Tracker:
+def _auto(calibration: Calibration, _params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
 
     cameras = calibration.rig.names if calibration.rig else ()
-    usable = {
+    wanted = [
         name for name in KINDS if calibration.wearer.has_shirt or not TRACKERS[name].reads_shirt
-    }
-    wanted = [name for name in KINDS if name in section.trackers and name in usable]
-    if not wanted:
-        raise ConfigError(
-            "without a shirt none of the chosen trackers can run",
-            "tracker.auto.trackers",
-            f"add {' or '.join(sorted(usable))}, or do the setup with a shirt",
-        )
+    ]
     lacking = {name: TRACKERS[name].lacks(calibration, cameras) for name in wanted}
     # with nobody who can run, building the first tells why
     able = [name for name in wanted if not lacking[name]] or wanted[:1]
@@ -202,29 +181,22 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "auto": TrackerEntry(
             _auto,
-            AutoSection,
             _auto_lacks,
             sees=True,
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
-        "canned": TrackerEntry(_canned, CannedSection, _nothing_lacks, sees=False),
+        "canned": TrackerEntry(_canned, _nothing_lacks, sees=False),
         "colour": TrackerEntry(
             _colour,
-            ColourSection,
             _rig_lacks,
             sees=True,
             reads_shirt=True,
             make_caches=_database,
             caches=(CACHE_NAME,),
-            compared_with={
-                "paper": ("colour_paper", ColourPaperSection()),
-                "baseline": ("colour_paper", ColourPaperSection(baseline=True)),
-            },
         ),
         "colour_paper": TrackerEntry(
             _colour_paper,
-            ColourPaperSection,
             _rig_lacks,
             sees=True,
             reads_shirt=True,
@@ -233,48 +205,17 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
         ),
         "flex": TrackerEntry(
             _flex,
-            FlexSection,
             _pair_lacks,
             sees=True,
             reads_outline=True,
-            compared_with={
-                "paper": ("flex_paper", FlexPaperSection()),
-                "no joints": ("flex", FlexSection(joints=False)),
-                "no texture": ("flex", FlexSection(texture=False)),
-                "no depths": ("flex", FlexSection(depths=False)),
-                "no floor": ("flex", FlexSection(floor=False)),
-                "no arm search": ("flex", FlexSection(arm_search=False)),
-                "no shadows": ("flex", FlexSection(shadows=False)),
-                "no leg search": ("flex", FlexSection(leg_search=False)),
-                "no faces": ("flex", FlexSection(faces=False)),
-                "no turns": ("flex", FlexSection(turns=False)),
-                "no look-alikes": ("flex", FlexSection(look_alikes=False)),
-                "no limits": ("flex", FlexSection(limits=False)),
-                "not steady": ("flex", FlexSection(steady=False)),
-            },
         ),
         "flex_paper": TrackerEntry(
             _flex_paper,
-            FlexPaperSection,
             _pair_lacks,
             sees=True,
-            compared_with={
-                "no depth noise": ("flex_paper", FlexPaperSection(depth_noise=False)),
-                "no particle constraints": (
-                    "flex_paper",
-                    FlexPaperSection(particle_constraints=False),
-                ),
-                "no occlusion": ("flex_paper", FlexPaperSection(occlusion=False)),
-                "no appearance": ("flex_paper", FlexPaperSection(appearance=False)),
-            },
         ),
     }
 )
-
-
-def tracker_sections() -> Mapping[str, type]:
-    """Each tracker's own section of the configuration."""
-    return {name: one.section for name, one in TRACKERS.items()}
 
 
 def entry(name: str) -> TrackerEntry:
@@ -314,12 +255,11 @@ def require_known(name: str, calibration: Calibration) -> None:
 
 
 def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
-    """The tracker of this name, as set by its own section. Raises ConfigError when there is none, or it is not
+    """The tracker of this name. Raises ConfigError when there is none, or it is not
     told what it needs."""
     require_known(name, calibration)
     found = entry(name)
-    section = resources.sections[name] if name in resources.sections else found.section()
-    return found.build(calibration, section, resources)
+    return found.build(calibration, resources.params.get(name), resources)
 
 
 def make_caches(name: str, resources: Resources) -> None:

@@ -12,6 +12,7 @@ from mocapd.types import Floats, Tracking
 # How fast joints leave a pose that is told without evidence, along an axis: of 25 clips of everyday motion and sport
 # the hips 0.3, elbows 0.4, hands 0.6
 STRAYS_M_S = 0.4
+COAST_S = 0.5
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
 
 
@@ -34,7 +35,7 @@ class TrackingStateParams:
     to be back [s]; with the default that is the third frame at 30 Hz, the second at 15 Hz.
     """
 
-    coast_s: float = 0.5
+    coast_s: float = COAST_S
     confirm_s: float = 0.06
 
     def __post_init__(self) -> None:

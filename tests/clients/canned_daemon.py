@@ -13,7 +13,7 @@ from mocapd.outputs.base import Sink
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.service.publisher import Publisher
 from mocapd.trackers.base import Track
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
@@ -24,7 +24,7 @@ EVERY_S = 0.01
 
 def canned_sample(skeleton: Skeleton, t_ns: int) -> BodySample:
     """The body at that time, as the pipeline leaves it."""
-    pose = canned_pose(skeleton, CannedSection(), t_ns)
+    pose = canned_pose(skeleton, CannedMotion(), t_ns)
     joints_m = joint_positions(skeleton, pose)
     confidence = np.ones(len(joints_m))
     state = BodyState(t_ns, Tracking.LIVE, "canned", pose, joints_m, confidence)

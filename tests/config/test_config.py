@@ -1,5 +1,6 @@
 """What a user meets in the configuration: precedence, origins, and messages that say the mend."""
 
+import math
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -10,8 +11,9 @@ from typing import Annotated, Any
 import pytest
 from msgspec import Meta
 
-from mocapd.config.config_keys import SectionTable, build, keys_of
+from mocapd.config.config_keys import SectionTable, build, entry_keys, keys_of
 from mocapd.config.effective import Effective, load_config
+from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.outputs.registry import OscSection, zenoh_section
@@ -62,14 +64,14 @@ def test_how_frames_wait_for_each_other_is_set_for_all_cameras_and_for_one(file:
     cameras = (
         "[[camera]]\nid = 'a'\nsource = '0'\n[[camera]]\nid = 'b'\nsource = '1'\nwait_s = 0.2\n"
     )
-    config = load(file, f"{cameras}[bundler]\nslack_periods = 0.75\n").config
-    bundler = bundler_params(config)
-    assert bundler == BundlerParams(slack_periods=0.75, camera_waits_s={"b": 0.2})
+    config = load(file, f"{cameras}[bundler]\nwait_s = 0.1\n").config
+    assert bundler_params(config) == BundlerParams(camera_waits_s={"a": 0.1, "b": 0.2})
+    config = load(file, cameras).config
+    assert bundler_params(config) == BundlerParams(camera_waits_s={"b": 0.2})
     assert bundler_params(load(file, "").config) == BundlerParams()
     error = error_of(file, cameras.replace("0.2", "20"))
     assert error.what == "camera[1].wait_s = 20 does not do"
     assert "wait_s a number from 0" in error.fix
-    assert "bundler.camera_waits_s" in error_of(file, "[bundler]\ncamera_waits_s.a = 1").what
 
 
 def test_the_users_file_comes_before_the_machines(tmp_path: Path) -> None:
@@ -271,3 +273,35 @@ def test_sections_of_a_table_stand_beside_the_keys_of_the_section_that_holds_the
     assert keys["tracker.colour.learn"].help == "whether it learns"
     whole = build(_Whole, {"tracker.name": "canned", "tracker.canned.count": 3})
     assert whole.tracker.own == {"colour": _Colour(), "canned": _Waves(3)}
+
+
+@pytest.mark.parametrize("key", REMOVED)
+def test_a_removed_key_says_what_to_do_wherever_it_is_given(file: Path, key: str) -> None:
+    file.write_text(f"{key} = 1\n")
+    variable = f"MOCAPD_{key.replace('.', '_').upper()}"
+    sources: tuple[tuple[dict[str, str], Path | None, dict[str, str]], ...] = (
+        ({key: "1"}, None, {}),
+        ({}, file, {}),
+        ({}, None, {variable: "1"}),
+    )
+    for flags, path, env in sources:
+        with pytest.raises(ConfigError) as caught:
+            load_config(flags, path, env, candidates=())
+        assert key in caught.value.what
+        assert caught.value.fix == REMOVED[key]
+
+
+def test_no_removed_key_exists_and_there_are_not_too_many_keys() -> None:
+    known = load_config(env={}, candidates=()).settings
+    paths = {setting.key.path for setting in known}
+    assert not paths & set(REMOVED)
+    documented = len(paths) + sum(1 for s in known for _ in entry_keys(s.key)) - 1
+    assert documented <= 70
+
+
+def test_prediction_is_set_once_for_all_outputs(file: Path) -> None:
+    text = "[prediction]\nhz = 90\nahead_ms = 10\noutputs = ['vmc', 'osc']\n"
+    prediction = load(file, text).config.prediction
+    assert prediction.rate_hz("osc", math.inf) == 90.0
+    assert prediction.rate_hz("vmc", 60.0) == 60.0  # as much as the output lets through
+    assert prediction.rate_hz("zenoh", math.inf) == 0.0

@@ -1,12 +1,9 @@
 """The canned loop: smooth, lively, asymmetric, and closed."""
 
 import numpy as np
-import pytest
 
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
-from mocapd.config.effective import load_config
-from mocapd.errors import ConfigError
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import Floats
 
@@ -15,7 +12,7 @@ MS = 1_000_000
 
 
 def joints_at(t_ns: int) -> Floats:
-    return joint_positions(SKELETON, canned_pose(SKELETON, CannedSection(), t_ns))
+    return joint_positions(SKELETON, canned_pose(SKELETON, CannedMotion(), t_ns))
 
 
 def test_the_loop_closes_and_goes_on_for_years() -> None:
@@ -38,8 +35,3 @@ def test_the_left_hand_is_up_and_the_right_is_down() -> None:
     assert joints_m[INDEX["leftHand"], 1] > joints_m[INDEX["head"], 1] - 0.1
     assert joints_m[INDEX["rightHand"], 1] < joints_m[INDEX["chest"], 1]
     assert joints_m[INDEX["leftHand"], 0] > 0.2 > -0.1 > joints_m[INDEX["rightHand"], 0]
-
-
-def test_a_loop_of_no_length_is_refused() -> None:
-    with pytest.raises(ConfigError, match=r"tracker\.canned\.loop_s"):
-        load_config({"tracker.canned.loop_s": "0"}, env={}, candidates=())

@@ -49,9 +49,12 @@ name = "colour"
 stature_m = 1.72
 coast_s = 0.5
 
-[tracker.colour]
-learn_shape = true
-live_match = 0.45
+[bundler]
+wait_s = 0.1
+
+[prediction]
+hz = 90
+outputs = ["vmc"]
 
 [shirt]
 colour_model = "model"

@@ -9,7 +9,7 @@ from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.pipeline.smoothing import PRESETS, Smoother
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Pose, Tracking
 
@@ -19,7 +19,7 @@ N = len(SKELETON.names)
 
 
 def body_at(t_ns: int, noise: np.random.Generator | None = None) -> BodyState:
-    pose = canned_pose(SKELETON, CannedSection(), t_ns)
+    pose = canned_pose(SKELETON, CannedMotion(), t_ns)
     if noise is not None:
         wobble = rotations.exp(0.05 * noise.standard_normal((N, 3)))
         pose = Pose(

@@ -9,16 +9,12 @@ from mocapd.body.shape import skeleton_of
 from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.shirt_pictures import stroked_folder
 from mocapd.capture.capture_folder import load_folder
-from mocapd.config.effective import load_config
 from mocapd.config.sections import CameraSection, Config, ShirtSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cached
 from mocapd.shirt.colour.model_pictures import read_model
-from mocapd.trackers.canned.section import CannedSection
-from mocapd.trackers.colour_paper.section import ColourPaperSection
-from mocapd.trackers.registry import TRACKERS
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
 pytestmark = pytest.mark.kernels
@@ -86,40 +82,14 @@ def test_several_cameras_without_a_rig_are_refused_before_anything_long_is_made(
     assert not list(capture.glob("pose_database*"))
 
 
-def test_the_best_that_can_run_is_the_usual_one_and_each_has_its_own_section() -> None:
+def test_the_best_that_can_run_is_the_usual_one() -> None:
     assert TrackerSection().name == "auto"
-    assert list(TrackerSection().sections) == list(TRACKERS)
-    text = {"tracker.colour_paper.baseline": "true", "tracker.canned.loop_s": "2"}
-    sections = load_config(text, env={}, candidates=()).config.tracker.sections
-    assert sections["colour_paper"] == ColourPaperSection(baseline=True)
-    assert sections["canned"] == CannedSection(loop_s=2.0)
-
-
-@pytest.mark.parametrize(
-    ("key", "now"),
-    [
-        ("tracker.variant", "colour_paper"),
-        ("tracker.colour_model", "shirt.colour_model"),
-    ],
-)
-def test_keys_that_are_gone_name_what_to_write_now(tmp_path: Path, key: str, now: str) -> None:
-    file = tmp_path / "config.toml"
-    file.write_text(f"{key} = 'paper'\n")
-    variable = f"MOCAPD_{key.replace('.', '_').upper()}"
-    for flags, path, env in (
-        ({key: "paper"}, None, {}),
-        ({}, file, {}),
-        ({}, None, {variable: "paper"}),
-    ):
-        with pytest.raises(ConfigError, match=now) as caught:
-            load_config(flags, path, env, candidates=())
-        assert key in caught.value.what
 
 
 def test_what_the_config_says_of_losing_track_reaches_the_tracker(tmp_path: Path) -> None:
-    resources = cached(tmp_path, quiet, TrackerSection(coast_s=0.9, confirm_s=0.2))
+    resources = cached(tmp_path, quiet, TrackerSection(coast_s=0.9).tracking)
     assert resources.tracking is not None
-    assert (resources.tracking.coast_s, resources.tracking.confirm_s) == (0.9, 0.2)
+    assert resources.tracking.coast_s == 0.9
 
 
 def test_simulated_cameras_mix_with_no_others() -> None:

@@ -19,7 +19,7 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
 from mocapd.trackers.base import Track
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
@@ -132,7 +132,7 @@ class TinyHost:
         if not self.tracks:
             return None
         now_ns = monotonic_ns()
-        pose = canned_pose(self.skeleton, CannedSection(), now_ns)
+        pose = canned_pose(self.skeleton, CannedMotion(), now_ns)
         joints_m = joint_positions(self.skeleton, pose)
         confidence = np.ones(len(joints_m))
         confidence[INDEX["rightHand"]] = 0.1

@@ -61,7 +61,7 @@ def replay(
     effective = effective_config(config, settings, None, None, **flags).config
     set_up_logs(effective.log_level)
     name = instance_name(effective.instance)
-    sinks = build_sinks(_chosen(effective.outputs, outputs or ()), name)
+    sinks = build_sinks(_chosen(effective.outputs, outputs or ()), name, effective.prediction)
     if not sinks:
         raise ConfigError("no output is enabled", "outputs", "enable one, or name it by --output")
     signals = Signals()

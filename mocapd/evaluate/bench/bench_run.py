@@ -1,10 +1,9 @@
 """Benchmarks of one recording: which trackers, built how, and what was found."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from mocapd.errors import ConfigError
 from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
@@ -29,14 +28,12 @@ class BenchResults:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bench:
-    """`tracker`: its name; None: every tracker that the recording suits; sections: the trackers' own of the
-    configuration, by name."""
+    """`tracker`: its name; None: every tracker that the recording suits."""
 
     recording: BenchInput
     tracker: str | None
     cache_dir: Path
     tracking: TrackingStateParams
-    sections: Mapping[str, Any]
     progress: Progress
 
     def steps(self) -> BenchResults:
@@ -81,7 +78,7 @@ class Bench:
     def _trackers(self, found: BenchResults) -> Iterator[tuple[str, ReadyTracker]]:
         """Each when it is its turn; only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
-            resources = cached(self.cache_dir, self.progress, self.tracking, self.sections)
+            resources = cached(self.cache_dir, self.progress, self.tracking)
             try:
                 ready = ready_tracker(name, self.recording.known, resources)
             except ConfigError as error:

@@ -11,7 +11,6 @@ from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.osc.osc_frame import FrameBundles, Shape, shape_of
-from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.wire import SkeletonFrame
 
 KEY = "osc.destinations"
@@ -19,7 +18,7 @@ MAX_LAYOUTS = 32  # shapes of frames kept laid out; cameras and tracking states 
 
 
 @dataclass(frozen=True, slots=True)
-class Params(PredictionParams):
+class Params:
     """destinations: `address:port`, numeric addresses only. Raises ConfigError otherwise."""
 
     destinations: tuple[str, ...] = ("127.0.0.1:39541",)

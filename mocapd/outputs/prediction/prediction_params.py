@@ -1,30 +1,24 @@
-"""What every output lets a user set of prediction."""
+"""What a user may set of prediction, for every output at once."""
 
 from dataclasses import dataclass
 from typing import Annotated
 
 from msgspec import Meta
 
-from mocapd.errors import ConfigError
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class PredictionParams:
-    """Whether poses are predicted for this output.
+    """Whether the outputs send predicted poses.
 
-    predict_hz: send predicted poses so many times a second, also between the cameras' frames [Hz]; 0: each as it was seen
-    predict_ahead_ms: with predict_hz, how long after it is sent a pose will be on the screen [ms]
+    hz: send so many predicted poses a second, also between the cameras' frames [Hz]; 0: each pose as it was measured
+    ahead_ms: with hz, how long after a pose is sent it will be on the screen [ms]
+    outputs: which outputs do so; empty: all. Leave out zenoh where you record
     """
 
-    predict_hz: Annotated[float, Meta(ge=0, le=240)] = 0.0
-    predict_ahead_ms: Annotated[float, Meta(ge=0, le=100)] = 0.0
+    hz: Annotated[float, Meta(ge=0, le=240)] = 0.0
+    ahead_ms: Annotated[float, Meta(ge=0, le=100)] = 0.0
+    outputs: tuple[str, ...] = ()
 
-
-def check_cap(params: PredictionParams, rate_hz: float, output: str) -> None:
-    """Raises ConfigError where an output is to be sent more than its own rate lets through."""
-    if params.predict_hz > rate_hz:
-        raise ConfigError(
-            f"{params.predict_hz:g} Hz, but {output}.rate_hz lets {rate_hz:g} Hz through",
-            f"{output}.predict_hz",
-            f"set {output}.rate_hz = {params.predict_hz:g} too",
-        )
+    def rate_hz(self, output: str, limit_hz: float) -> float:
+        """How many predicted poses an output gets a second [Hz], at most `limit_hz`; 0: none is predicted."""
+        return min(self.hz, limit_hz) if not self.outputs or output in self.outputs else 0.0

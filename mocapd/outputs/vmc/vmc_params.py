@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from mocapd.outputs.osc.osc_sink import parse_destination
-from mocapd.outputs.prediction.prediction_params import PredictionParams, check_cap
 from mocapd.outputs.vmc.vmc_packets import Bundling
 from mocapd.outputs.vmc.vrm_file import read_vrm
 
@@ -18,7 +17,7 @@ _PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 
 @dataclass(frozen=True, slots=True)
-class Params(PredictionParams):
+class Params:
     """How the person is sent. Raises ConfigError for a destination, InputError for a `.vrm` file that does not do.
 
     destinations: list of `address:port`, numeric addresses only
@@ -45,6 +44,5 @@ class Params(PredictionParams):
     def __post_init__(self) -> None:
         for destination in self.destinations:
             parse_destination(destination, KEY)
-        check_cap(self, self.rate_hz, "vmc")
         if self.vrm:
             read_vrm(Path(self.vrm))

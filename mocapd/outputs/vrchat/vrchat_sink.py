@@ -13,7 +13,6 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
-from mocapd.outputs.prediction.prediction_params import PredictionParams, check_cap
 from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
@@ -33,7 +32,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
-class Params(PredictionParams):
+class Params:
     """What goes to VRChat. Raises ConfigError for a destination that does not do.
 
     destination: where VRChat listens, `address:port`, numeric addresses only; `auto`: found in the local network, needs the
@@ -51,7 +50,6 @@ class Params(PredictionParams):
     yaw_deg: Annotated[float, Meta(ge=-360, le=360)] = 0.0
 
     def __post_init__(self) -> None:
-        check_cap(self, self.rate_hz, "vrchat")
         if self.destination == AUTO:
             return
         try:

@@ -14,7 +14,6 @@ from msgspec import Meta
 
 from mocapd.bus.zenoh_limits import receive_limits, unicast_limits
 from mocapd.errors import ConfigError
-from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
 
 LOOPBACK = "127.0.0.1"
@@ -27,7 +26,7 @@ PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 
 @dataclass(frozen=True, slots=True)
-class Params(PredictionParams):
+class Params:
     """How the daemon is on Zenoh. Raises ConfigError naming the value and the mend.
 
     format: `msgpack` or `json`

@@ -7,7 +7,7 @@ from mocapd.body.skeleton import INDEX, global_from_local, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, unprobed
-from mocapd.trackers.canned.section import CannedSection
+from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.types import BodyState, FrameSet, Pose, Skeleton, Tracking
 
 UNCERTAINTY_M = 0.01  # such as clients get of trackers that look
@@ -18,8 +18,8 @@ class CannedTracker:
 
     name = "canned"
 
-    def __init__(self, section: CannedSection | None = None) -> None:
-        self._section = section if section is not None else CannedSection()
+    def __init__(self, motion: CannedMotion | None = None) -> None:
+        self._motion = motion if motion is not None else CannedMotion()
         self.probe: Probe = unprobed
 
     def reset(self, near: BodyState | None = None) -> None:
@@ -30,7 +30,7 @@ class CannedTracker:
         if not frames.frames:
             return Track(lost_body(frames.t_ns, self.name), shape)
         skeleton = skeleton_of(shape)
-        pose = canned_pose(skeleton, self._section, frames.t_ns)
+        pose = canned_pose(skeleton, self._motion, frames.t_ns)
         joints_m = joint_positions(skeleton, pose)
         body = BodyState(
             frames.t_ns,
@@ -45,12 +45,12 @@ class CannedTracker:
         return Track(body, shape, quality=1.0)
 
 
-def canned_pose(skeleton: Skeleton, section: CannedSection, t_ns: int) -> Pose:
+def canned_pose(skeleton: Skeleton, motion: CannedMotion, t_ns: int) -> Pose:
     """The pose at a time: the left hand waves, the right arm swings, the hips sway and turn."""
     # the remainder first: a float has no digits left for days of nanoseconds
-    phase_s = seconds(t_ns % nanoseconds(section.loop_s))
-    loop = 2.0 * np.pi * phase_s / section.loop_s
-    wave = section.waves * loop
+    phase_s = seconds(t_ns % nanoseconds(motion.loop_s))
+    loop = 2.0 * np.pi * phase_s / motion.loop_s
+    wave = motion.waves * loop
     local = np.tile(rotations.IDENTITY_XYZW, (len(skeleton.names), 1))
 
     def turn(bone: str, x_deg: float = 0.0, y_deg: float = 0.0, z_deg: float = 0.0) -> None:
@@ -64,5 +64,5 @@ def canned_pose(skeleton: Skeleton, section: CannedSection, t_ns: int) -> Pose:
     turn("leftLowerArm", z_deg=60.0 + 25.0 * np.sin(wave))
     turn("rightUpperArm", z_deg=70.0, y_deg=20.0 * np.sin(loop))
     turn("rightLowerArm", y_deg=25.0 - 15.0 * np.cos(loop))
-    root_m = skeleton.rest_m[0] + np.array([section.sway_m * np.sin(loop), 0.0, 0.0])
+    root_m = skeleton.rest_m[0] + np.array([motion.sway_m * np.sin(loop), 0.0, 0.0])
     return Pose(root_m, global_from_local(skeleton, local))

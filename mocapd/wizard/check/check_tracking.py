@@ -59,7 +59,7 @@ def prepare(
     ready = ready_tracker(
         name,
         known,
-        cached(cache_dir, progress, section, section.sections),
+        cached(cache_dir, progress, section.tracking),
         rehearsal=lambda done, total: tell(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),

@@ -12,9 +12,8 @@ from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.prediction.predicted_sink import PredictedSink
+from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.registry import OUTPUTS, build_sinks, default_sections
-from mocapd.outputs.vmc.vmc_params import Params as VmcParams
-from mocapd.outputs.vrchat.vrchat_sink import Params as VRChatParams
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import eventually
 from tests.outputs.prediction.moving import UNIX_NS, frame_at, swinging, walking
@@ -143,9 +142,10 @@ def test_what_ends_the_output_ends_the_next_send() -> None:
 
 
 def test_any_output_may_be_predicted() -> None:
+    prediction = PredictionParams(hz=50.0)
     for name, entry in OUTPUTS.items():
         section = type(entry.section())
-        (sink,) = build_sinks({name: section(enabled=True, predict_hz=50.0)}, "pc")  # type: ignore[call-arg]
+        (sink,) = build_sinks({name: section(enabled=True)}, "pc", prediction)  # type: ignore[call-arg]
         assert isinstance(sink, PredictedSink)
         assert sink.name == name
     assert not any(
@@ -153,10 +153,6 @@ def test_any_output_may_be_predicted() -> None:
     )
 
 
-@pytest.mark.parametrize("params", [VmcParams, VRChatParams])
-def test_a_rate_that_the_output_would_not_let_through_is_an_error(
-    params: type[VmcParams] | type[VRChatParams],
-) -> None:
-    with pytest.raises(ConfigError, match="rate_hz lets 60 Hz through"):
-        params(predict_hz=90.0)
-    assert params(predict_hz=90.0, rate_hz=90.0).predict_hz == 90.0
+def test_a_prediction_of_an_output_that_does_not_exist_is_an_error() -> None:
+    with pytest.raises(ConfigError, match="'vcm'"):
+        build_sinks(default_sections(), "pc", PredictionParams(hz=50.0, outputs=("vcm",)))

@@ -1,7 +1,5 @@
 """The published tracker as its users notice it: it starts by itself, follows, and goes when they go."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,9 +8,8 @@ from mocapd.fit.mass_spring.body_points import LIMBS
 from mocapd.fit.mass_spring.mass_spring_body import build_body
 from mocapd.fit.mass_spring.simulation import relaxed
 from mocapd.trackers.base import Track
-from mocapd.trackers.flex_paper.build import build_flex_paper_tracker, params_of
+from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 from mocapd.trackers.flex_paper.confidence import joint_confidence, joint_uncertainty_m
-from mocapd.trackers.flex_paper.section import FlexPaperSection
 from mocapd.trackers.flex_paper.stances import stances_of
 from mocapd.trackers.known import known_shape
 from mocapd.types import FrameSet, Tracking
@@ -53,16 +50,6 @@ def test_somebody_who_comes_is_followed_and_lost_when_gone(
         away.append(np.linalg.norm(joints - truth, axis=1))
     assert np.median(away) < 0.15
     assert run(tracker, film.empty)[-1].body.tracking is Tracking.LOST
-
-
-def test_each_step_of_the_paper_can_be_left_out() -> None:
-    usual = params_of(None)
-    assert usual.particles == 200
-    assert not params_of(FlexPaperSection(depth_noise=False)).motion.depth_noise
-    assert not params_of(FlexPaperSection(particle_constraints=False)).particle_constraints
-    assert not params_of(FlexPaperSection(occlusion=False)).score.occlusion
-    assert not params_of(FlexPaperSection(appearance=False)).score.appearance
-    assert params_of(FlexPaperSection(particles=50)) == replace(usual, particles=50)
 
 
 def test_raised_arms_are_as_long_as_the_bodys_and_reach_outwards() -> None:

@@ -1,4 +1,4 @@
-"""Which trackers the supervisor is made of: what the rig suits, what a user allows, and what is said of it."""
+"""Which trackers the supervisor is made of: what the rig and the clothes suit, and what is said of it."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 from mocapd.calibration.record import Calibration, Wearer
-from mocapd.config.effective import load_config
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
-from mocapd.trackers.flex.section import FlexSection
+from mocapd.trackers.flex.params import Params
 from mocapd.trackers.registry import Resources, build, has_caches, shirt_tracker
-from mocapd.trackers.supervisor.section import AutoSection
 from mocapd.trackers.supervisor.supervisor import Supervisor
 from mocapd.types import Rig
 
@@ -35,13 +33,10 @@ def resources(cache_home: Path) -> Resources:
     return Resources(cache_home / "mocapd")
 
 
-def built(
-    calibration: Calibration, resources: Resources, *trackers: str
-) -> tuple[list[str], list[str]]:
+def built(calibration: Calibration, resources: Resources) -> tuple[list[str], list[str]]:
     """The names of what it is made of, and what was said."""
     said: list[str] = []
-    sections = {"auto": AutoSection(trackers)} if trackers else {}
-    tracker = build("auto", calibration, replace(resources, tell=said.append, sections=sections))
+    tracker = build("auto", calibration, replace(resources, tell=said.append))
     assert isinstance(tracker, Supervisor)
     return [one.name for one in tracker.candidates], said
 
@@ -52,7 +47,6 @@ def test_one_camera_has_the_shirt_alone_and_that_is_no_trouble(resources: Resour
 
 def test_a_pair_has_both_the_shirt_first(resources: Resources) -> None:
     assert built(known(0.0, 0.2), resources) == (["colour", "flex"], [])
-    assert built(known(0.0, 0.2), resources, "flex", "colour") == (["colour", "flex"], [])
 
 
 def test_a_pair_in_one_place_has_the_shirt_alone_and_that_is_said_once(
@@ -65,29 +59,25 @@ def test_a_pair_in_one_place_has_the_shirt_alone_and_that_is_said_once(
     assert "in one" in said[0]
 
 
-def test_a_user_without_a_shirt_may_leave_it_out(tmp_path: Path) -> None:
-    """No pose database is made then."""
-    assert built(known(0.0, 0.2), Resources(tmp_path), "flex") == (["flex"], [])
+def test_somebody_without_a_shirt_needs_no_pose_database(tmp_path: Path) -> None:
+    wearer = replace(known().wearer, has_shirt=False)
+    calibration = replace(known(0.0, 0.2), wearer=wearer)
+    assert built(calibration, Resources(tmp_path)) == (["flex"], [])
     assert not (tmp_path / CACHE_NAME).exists()
 
 
-def test_what_alone_is_allowed_but_cannot_run_is_an_error(tmp_path: Path) -> None:
+def test_without_a_shirt_one_camera_does_not_do(tmp_path: Path) -> None:
+    calibration = replace(known(0.0), wearer=replace(known().wearer, has_shirt=False))
     with pytest.raises(ConfigError, match=r"'flex'.*needs two"):
-        built(known(0.0), Resources(tmp_path), "flex")
+        built(calibration, Resources(tmp_path))
 
 
-def test_each_tracker_below_has_its_own_section(tmp_path: Path) -> None:
-    sections = {"auto": AutoSection(("flex",)), "flex": FlexSection(live_explained=0.33)}
-    tracker = build("auto", known(0.0, 0.2), Resources(tmp_path, sections=sections))
+def test_a_study_gives_a_tracker_below_other_numbers(tmp_path: Path) -> None:
+    calibration = replace(known(0.0, 0.2), wearer=replace(known().wearer, has_shirt=False))
+    params = {"flex": replace(Params(), live_explained=0.33)}
+    tracker = build("auto", calibration, Resources(tmp_path, params=params))
     assert isinstance(tracker, Supervisor)
     assert tracker.candidates[0].tracker.params.live_explained == 0.33  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize("wrong", ["canned", ""])
-def test_a_tracker_that_cannot_be_chosen_is_refused(wrong: str) -> None:
-    text = {"tracker.auto.trackers": f'["{wrong}"]' if wrong else "[]"}
-    with pytest.raises(ConfigError, match="colour, flex"):
-        load_config(text, env={}, candidates=())
 
 
 def test_a_setup_measures_with_the_shirts_own_tracker_and_finds_its_cache(tmp_path: Path) -> None:

@@ -1,0 +1,47 @@
+"""Keys of earlier versions, and what to do about each of them."""
+
+from collections.abc import Iterable, Mapping
+
+
+def _each(prefix: str, names: str, advice: str) -> Mapping[str, str]:
+    return {f"{prefix}.{name}": advice for name in names.split()}
+
+
+def _predictions(outputs: Iterable[str]) -> Mapping[str, str]:
+    found = {}
+    for name in outputs:
+        found[f"{name}.predict_hz"] = "all outputs share it: write hz = ... under [prediction]"
+        found[f"{name}.predict_ahead_ms"] = (
+            "all outputs share it: write ahead_ms = ... under [prediction]"
+        )
+    return found
+
+
+_STUDY = "it served studies only, which lab/ablations.py now does: leave it out"
+
+REMOVED: Mapping[str, str] = {
+    "tracker.variant": 'the published method is a tracker now: tracker.name = "colour_paper"',
+    "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
+    "tracker.confirm_s": "no other value did better: leave it out",
+    "tracker.auto.trackers": 'name one tracker: tracker.name = "colour" for the shirt, "flex" for any clothes',
+    **_each("tracker.canned", "loop_s waves sway_m", _STUDY),
+    **_each("tracker.colour", "learn_shape live_match accept_match", _STUDY),
+    **_each("tracker.colour_paper", "baseline tolerant", _STUDY),
+    **_each(
+        "tracker.flex",
+        "live_explained accept_explained joints texture depths floor arm_search leg_search faces turns shadows "
+        "look_alikes limits steady",
+        _STUDY,
+    ),
+    **_each(
+        "tracker.flex_paper",
+        "particles depth_noise particle_constraints occlusion appearance",
+        _STUDY,
+    ),
+    **_each(
+        "bundler",
+        "period_s slack_periods longest_wait_periods hysteresis_periods patience",
+        "write how long a picture may be late in seconds: wait_s = ... under [bundler]",
+    ),
+    **_predictions(("zenoh", "osc", "vmc", "vrchat")),
+}
