@@ -69,13 +69,26 @@ def read_calibration(place: Path) -> SavedCalibration:
     Raises InputError when there is none, ConfigError naming file and key when it is damaged.
     """
     path = calibration_path(place)
-    saved = _read(path)
+    try:
+        saved = read_setup(path)
+    except MissingError:
+        raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
+    if not saved.is_placed:
+        raise ConfigError(
+            "the setup is not finished: it does not say where the cameras are",
+            str(path),
+            "finish it: `mocapd calibrate`",
+        )
     if not any(is_masked(one.source) for one in saved.camera):
         return saved
     return complete_sources(saved, known_sources(path.parent))
 
 
-def _read(path: Path) -> SavedCalibration:
+def read_setup(path: Path) -> SavedCalibration:
+    """The calibration in a file, or as much of it as a setup in progress has found; sources without passwords.
+
+    Raises MissingError when there is none, InputError, or ConfigError naming file and key when it is damaged.
+    """
     where = str(path)
     data = _toml(path)
     schema = data.get("schema")
@@ -100,7 +113,8 @@ def _read(path: Path) -> SavedCalibration:
     ids = [camera.id for camera in saved.camera]
     if len(set(ids)) != len(ids):
         raise ConfigError("two cameras have one id", where, "rename one of them")
-    saved.rig(where)
+    if saved.is_placed:
+        saved.rig(where)
     return saved
 
 
@@ -123,20 +137,40 @@ def write_calibration(
     try:
         if own_folder:
             private_folder(folder)
-        private_folder(folder / COLOURS)
-        cameras = []
-        for camera in saved.camera:
-            colour = camera.colour
-            if colour is not None:
-                colour = _with_files(folder, camera.id, pictures[camera.id], colour)
-            cameras.append(msgspec.structs.replace(camera, colour=colour))
-        text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
+        text = _text(_with_pictures(folder, saved, pictures))
         if path.exists():
             known = {**_keep_before(path), **known}
         _write(path, text, known)
         _tidy(path)
     except OSError as error:
         raise _cannot_write(error, path) from None
+
+
+def write_setup(
+    path: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
+) -> None:
+    """Write a setup in progress likewise, without passwords and in place of the one before. Raises CannotCreateError."""
+    try:
+        private_folder(path.parent)
+        text = _text(_with_pictures(path.parent, saved, pictures))
+        if len(text) > _MOST_BYTES:
+            raise CannotCreateError(
+                f"would have {len(text) >> 20} MB, at most {_MOST_BYTES >> 20} are kept", str(path)
+            )
+        with whole_file(path, private=True) as partial:
+            partial.write_text(text, encoding="utf-8")
+        _tidy(path)
+    except OSError as error:
+        raise _cannot_write(error, path) from None
+
+
+def remove_setup(path: Path) -> None:
+    """Remove a setup in progress with its pictures, those of files set aside beside it excepted. Raises OSError."""
+    if not path.exists():
+        return
+    now_s = path.stat().st_mtime
+    path.unlink()
+    _tidy_folder(path.parent, now_s)
 
 
 def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
@@ -167,7 +201,7 @@ def _keep_before(path: Path) -> dict[tuple[str, str], str]:
     """The calibration that is there becomes the previous one, and that stays where this one is of no use; the
     passwords that earlier versions kept within it. Raises OSError."""
     try:
-        saved = _read(path)
+        saved = read_setup(path)
     except MocapdError as error:
         aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
         _log.warning("%s cannot be used (%s), and is kept as %s", path, error.what, aside.name)
@@ -194,6 +228,20 @@ def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
 def _text(saved: SavedCalibration) -> str:
     tables: dict[str, Any] = msgspec.to_builtins(shown_sources(saved), builtin_types=(datetime,))
     return _HEADER + toml_text(tables)
+
+
+def _with_pictures(
+    folder: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
+) -> SavedCalibration:
+    """The tables with the names of the pictures' files, which are written. Raises OSError."""
+    private_folder(folder / COLOURS)
+    cameras = []
+    for camera in saved.camera:
+        colour = camera.colour
+        if colour is not None:
+            colour = _with_files(folder, camera.id, pictures[camera.id], colour)
+        cameras.append(msgspec.structs.replace(camera, colour=colour))
+    return msgspec.structs.replace(saved, camera=tuple(cameras))
 
 
 def _with_files(
@@ -232,7 +280,10 @@ def _named(folder: Path) -> str:
 
 def _tidy(path: Path) -> None:
     """Remove what was half written, and pictures of ours that no calibration here names any more."""
-    folder, now_s = path.parent, path.stat().st_mtime
+    _tidy_folder(path.parent, path.stat().st_mtime)
+
+
+def _tidy_folder(folder: Path, now_s: float) -> None:
     tidy(folder, now_s)
     tidy(folder / COLOURS, now_s)
     named = _named(folder)
@@ -244,7 +295,5 @@ def _tidy(path: Path) -> None:
 def _toml(path: Path) -> dict[str, Any]:
     try:
         return parse_toml(read_text(path, _MOST_BYTES))
-    except MissingError:
-        raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
     except MalformedError as error:
         raise ConfigError(f"not valid TOML ({error.what})", str(path), _RECALIBRATE) from None

@@ -1,4 +1,4 @@
-"""What a finished setup leaves behind, as the tables of `calibration.toml`."""
+"""The tables of `calibration.toml`: what a finished setup leaves behind, and as much of it as one in progress has found."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -21,6 +21,8 @@ Factor = Annotated[float, msgspec.Meta(gt=0.3, lt=3.0)]
 Row3 = tuple[Number, Number, Number]
 Matrix3 = tuple[Row3, Row3, Row3]
 Row5 = tuple[Number, Number, Number, Number, Number]
+Index = Annotated[int, msgspec.Meta(ge=-1, le=1 << 40)]
+_MOST_CORNERS = msgspec.Meta(max_length=10_000)
 
 
 class _Table(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -49,7 +51,7 @@ class SavedWearer(_Table, frozen=True, kw_only=True):
     colours of the wearer's own shirt, from the strokes, replace the standard; has_shirt: whether there is one at all, which
     files of earlier versions do not say."""
 
-    stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.5)]
+    stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.5)] | None = None
     proportions: dict[Literal[FACTORS], Factor] | None = None  # type: ignore[valid-type]
     personal_colours: bool = False
     has_shirt: bool = True
@@ -57,7 +59,8 @@ class SavedWearer(_Table, frozen=True, kw_only=True):
 
 class LensFit(_Table, frozen=True, kw_only=True):
     """How well the lens fits; free: which of k1 k2 p1 p2 k3 were solved for; from_earlier: whether it
-    was taken over from an earlier setup."""
+    was taken over from an earlier setup. Of a setup in progress also K and dist of this camera alone, and the indices of
+    the pictures that were used and thrown out."""
 
     rms_px: NotNegative | None = None
     held_out_px: NotNegative | None = None
@@ -65,6 +68,10 @@ class LensFit(_Table, frozen=True, kw_only=True):
     focal_deviation: NotNegative | None = None
     free: tuple[bool, bool, bool, bool, bool] = (True,) * 5
     from_earlier: bool = False
+    K: Matrix3 | None = None
+    dist: Row5 | None = None
+    used: tuple[Index, ...] = ()
+    thrown_out: tuple[Index, ...] = ()
 
 
 class ColourFit(_Table, frozen=True, kw_only=True):
@@ -76,38 +83,64 @@ class ColourFit(_Table, frozen=True, kw_only=True):
     W: Matrix3
 
 
+class SavedBoardView(_Table, frozen=True, kw_only=True):
+    """The board in one picture of a setup in progress, see BoardView: pictures of one index are of one instant."""
+
+    index: Index
+    ids: Annotated[tuple[Annotated[int, msgspec.Meta(ge=0, le=10_000)], ...], _MOST_CORNERS]
+    corners_px: Annotated[tuple[tuple[Number, Number], ...], _MOST_CORNERS]
+    sharpness: Number
+    back: bool = False
+
+
 class SavedCamera(_Table, frozen=True, kw_only=True):
     """One camera. label: what the person calls it; source: what a configuration calls it, its password
-    hidden; K, dist (k1 k2 p1 p2 k3) [px]; camera_from_world R, t_m [m]; rms_px: of its part of the room;
-    controls: what it is locked to."""
+    hidden; K, dist (k1 k2 p1 p2 k3) [px]; camera_from_world R, t_m [m], absent where the cameras are not placed;
+    rms_px: of its part of the room; controls: what it is locked to; board_view: of a setup in progress."""
 
     id: Text
     label: str = ""
     source: Text
     size_px: tuple[Pixels, Pixels]
     fps_hz: Annotated[float, msgspec.Meta(ge=0.1, le=1000.0)] = 30.0
-    K: Matrix3
-    dist: Row5
-    R: Matrix3
-    t_m: Row3
+    K: Matrix3 | None = None
+    dist: Row5 | None = None
+    R: Matrix3 | None = None
+    t_m: Row3 | None = None
     rms_px: NotNegative | None = None
     lens: LensFit | None = None
     controls: Controls = msgspec.field(default_factory=Controls)
     colour: ColourFit | None = None
+    board_view: Annotated[tuple[SavedBoardView, ...], msgspec.Meta(max_length=2000)] = ()
+
+
+class SavedSetup(_Table, frozen=True, kw_only=True):
+    """Of a setup in progress; done: the steps whose result is in the file."""
+
+    done: tuple[Text, ...] = ()
 
 
 class SavedCalibration(_Table, frozen=True, kw_only=True):
-    """The whole file. `board`: what it was made with; `wearer` is None where only cameras were calibrated."""
+    """The whole file. `board`: what it was made with; `wearer` is None where only cameras were calibrated; `setup`: only of
+    one in progress, which may lack the room and the cameras' places."""
 
     schema: int
     made: Made
-    room: RoomFit
+    room: RoomFit | None = None
     wearer: SavedWearer | None = None
     board: BoardSpec | None = None
+    setup: SavedSetup | None = None
     camera: Annotated[tuple[SavedCamera, ...], msgspec.Meta(min_length=1, max_length=100)]
 
+    @property
+    def is_placed(self) -> bool:
+        """Whether it says where all cameras are."""
+        return self.room is not None and all(
+            None not in (one.K, one.dist, one.R, one.t_m) for one in self.camera
+        )
+
     def rig(self, where: str) -> Rig:
-        """The calibrated cameras. Raises ConfigError naming the camera and the field; `where`: the file."""
+        """The cameras of one that is placed. Raises ConfigError naming camera and field; `where`: the file."""
         return Rig(tuple(camera_from_dict(_entry(one), where) for one in self.camera))
 
 

@@ -1,17 +1,21 @@
-"""The draft as a saved calibration, and a saved calibration as a draft to go on with."""
+"""The draft as the tables of a calibration, finished or in progress, and those tables as a draft to go on with."""
 
 import getpass
 import math
 import os
+from collections.abc import Collection
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
+from msgspec import structs
 
 import mocapd
 from mocapd.body.shape import FACTORS
-from mocapd.boundary.numbers import brief
+from mocapd.calibrate.board.board_detection import FEWEST_CORNERS, BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
+from mocapd.calibration.board_spec import BoardSpec
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
     calibration_path,
@@ -26,16 +30,19 @@ from mocapd.calibration.saved_calibration import (
     LensFit,
     Made,
     RoomFit,
+    SavedBoardView,
     SavedCalibration,
     SavedCamera,
+    SavedSetup,
     SavedWearer,
 )
 from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
 from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
+from mocapd.wizard.step_names import StepName
 
-_MOST_VIEWS = 10**6  # of one lens
+_RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 
 NOT_WRITTEN_YET = "-"  # pictures get their names when they are written
 
@@ -52,65 +59,65 @@ def save_draft(draft: Draft, state_dir: Path) -> Path:
 
 
 def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
-    """The draft as the tables of the file, and its pictures by camera."""
+    """The draft as the tables of the file, and its pictures by camera. Raises InputError without a room."""
     if draft.rig is None or draft.extrinsics_quality is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
     by_id = {camera.id: camera for camera in draft.cameras}
-    cameras = tuple(_camera(draft, by_id[one.name], one) for one in draft.rig.cameras)
-    return SavedCalibration(
-        schema=SCHEMA,
-        made=Made(
-            when=datetime.now(UTC).replace(microsecond=0),
-            by=login_name(),
-            mocapd=mocapd.__version__,
-        ),
-        room=RoomFit(
-            method="wearer" if draft.extrinsics_quality.method == "wearer" else "board",
-            rms_px=figure(draft.extrinsics_quality.rms_px),
-            play_area_cm=figure(draft.extrinsics_quality.play_area_cm),
-            floor_known=draft.floor_known,
-        ),
-        wearer=_wearer(draft),
-        board=draft.board,
-        camera=cameras,
-    ), {name: one.picture for name, one in draft.colours.items()}
+    cameras = tuple(_camera(draft, by_id[name]) for name in draft.rig.names)
+    return _tables(draft, cameras, datetime.now(UTC).replace(microsecond=0), None)
+
+
+def setup_of(
+    draft: Draft, when: datetime, done: Collection[StepName]
+) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
+    """The same of a setup in progress, as far as it has come: what it still needs of the board is with it."""
+    cameras = tuple(_with_measurements(draft, _camera(draft, one)) for one in draft.cameras)
+    return _tables(draft, cameras, when, SavedSetup(done=tuple(sorted(done))))
 
 
 def load_draft(place: Path) -> Draft:
     """The saved calibration of a file or state directory as a draft. Raises InputError or ConfigError."""
     path = calibration_path(place)
-    saved = read_calibration(path)
+    draft = draft_of(read_calibration(path), path)
+    return replace(draft, intrinsics_saved=frozenset(draft.intrinsics))
+
+
+def draft_of(saved: SavedCalibration, path: Path) -> Draft:
+    """The tables of a file as a draft. Raises InputError, or ConfigError for what does not belong together."""
     known = from_saved(saved, path)
-    assert known.rig is not None
     shirt = known.shirt or ShirtColours()
     room = saved.room
-    for one in saved.camera:
-        if one.lens is not None and one.lens.views > _MOST_VIEWS:
-            raise ConfigError(
-                f"a lens of {brief(one.lens.views)} pictures",
-                f"{path}, camera {one.id!r}",
-                "calibrate again (`mocapd calibrate`), or restore the file",
-            )
+    cameras = known.rig.cameras if known.rig else (None,) * len(saved.camera)
+    intrinsics = {
+        one.id: _intrinsics(one, camera, path)
+        for one, camera in zip(saved.camera, cameras, strict=True)
+        if one.lens is not None
+    }
     return Draft(
         cameras=tuple(
             DraftCamera(one.id, one.source, one.size_px, one.fps_hz, one.controls, one.label)
             for one in saved.camera
         ),
         board=saved.board,
-        intrinsics={
-            one.id: _lens(one.lens, camera)
-            for one, camera in zip(saved.camera, known.rig.cameras, strict=True)
-            if one.lens is not None
+        board_views={
+            one.id: {view.index: _view(view, saved.board, path) for view in one.board_view}
+            for one in saved.camera
+            if one.board_view
         },
-        intrinsics_saved=frozenset(one.id for one in saved.camera if one.lens is not None),
-        rig=known.rig,
-        extrinsics_quality=ExtrinsicsQuality(
-            room.method,
-            math.nan if room.rms_px is None else room.rms_px,
-            {one.id: math.nan if one.rms_px is None else one.rms_px for one in saved.camera},
-            math.nan if room.play_area_cm is None else room.play_area_cm,
+        intrinsics=intrinsics,
+        intrinsics_saved=frozenset(
+            one.id for one in saved.camera if one.lens is not None and one.lens.from_earlier
         ),
-        floor_known=room.floor_known,
+        rig=known.rig,
+        extrinsics_quality=None
+        if room is None
+        else ExtrinsicsQuality(
+            room.method,
+            nan_of(room.rms_px),
+            {one.id: nan_of(one.rms_px) for one in saved.camera},
+            nan_of(room.play_area_cm),
+        ),
+        floor_known=room is not None and room.floor_known,
         colours={
             one.id: DraftColours(shirt.white_balance[one.id], np.array(one.colour.W))
             for one in saved.camera
@@ -136,25 +143,46 @@ def calibration_of(draft: Draft) -> Calibration:
     )
 
 
-def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamera:
+def _tables(
+    draft: Draft, cameras: tuple[SavedCamera, ...], when: datetime, setup: SavedSetup | None
+) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
+    quality = draft.extrinsics_quality
+    return SavedCalibration(
+        schema=SCHEMA,
+        made=Made(when=when, by=login_name(), mocapd=mocapd.__version__),
+        room=None
+        if quality is None or draft.rig is None
+        else RoomFit(
+            method="wearer" if quality.method == "wearer" else "board",
+            rms_px=figure(quality.rms_px),
+            play_area_cm=figure(quality.play_area_cm),
+            floor_known=draft.floor_known,
+        ),
+        wearer=_wearer(draft),
+        board=draft.board,
+        setup=setup,
+        camera=cameras,
+    ), {name: one.picture for name, one in draft.colours.items()}
+
+
+def _camera(draft: Draft, camera: DraftCamera) -> SavedCamera:
+    placed = (
+        None if draft.rig is None else next(c for c in draft.rig.cameras if c.name == camera.id)
+    )
     lens = draft.intrinsics.get(camera.id)
     colours = draft.colours.get(camera.id)
-    rms_px = (
-        draft.extrinsics_quality.camera_rms_px.get(camera.id, math.nan)
-        if draft.extrinsics_quality
-        else math.nan
-    )
+    quality = draft.extrinsics_quality
     return SavedCamera(
         id=camera.id,
         label=camera.label,
         source=camera.source,
-        size_px=calibrated.size_px,
+        size_px=camera.size_px if placed is None else placed.size_px,
         fps_hz=camera.fps_hz,
-        K=calibrated.K.tolist(),
-        dist=calibrated.dist.tolist(),
-        R=calibrated.R.tolist(),
-        t_m=calibrated.t_m.tolist(),
-        rms_px=figure(rms_px),
+        K=None if placed is None else placed.K.tolist(),
+        dist=None if placed is None else placed.dist.tolist(),
+        R=None if placed is None else placed.R.tolist(),
+        t_m=None if placed is None else placed.t_m.tolist(),
+        rms_px=None if quality is None else figure(quality.camera_rms_px.get(camera.id, math.nan)),
         lens=None if lens is None else _lens_fit(lens, camera.id in draft.intrinsics_saved),
         controls=camera.controls,
         colour=None
@@ -163,8 +191,32 @@ def _camera(draft: Draft, camera: DraftCamera, calibrated: Camera) -> SavedCamer
     )
 
 
+def _with_measurements(draft: Draft, camera: SavedCamera) -> SavedCamera:
+    """With what a later step needs of this camera: its lens as it was solved alone, and the board's corners."""
+    lens, fit = draft.intrinsics.get(camera.id), camera.lens
+    if lens is not None and fit is not None:
+        fit = structs.replace(
+            fit,
+            K=lens.K.tolist(),
+            dist=lens.dist.tolist(),
+            used=lens.views,
+            thrown_out=lens.thrown_out,
+        )
+    views = tuple(
+        SavedBoardView(
+            index=view.index,
+            ids=tuple(view.ids.tolist()),
+            corners_px=tuple(map(tuple, view.corners_px.tolist())),
+            sharpness=view.sharpness,
+            back=view.back,
+        )
+        for view in draft.board_views.get(camera.id, {}).values()
+    )
+    return structs.replace(camera, lens=fit, board_view=views)
+
+
 def _wearer(draft: Draft) -> SavedWearer | None:
-    if draft.stature_m is None:
+    if draft.stature_m is None and draft.has_shirt and not draft.personal:
         return None
     proportions = None
     if draft.factors is not None:
@@ -188,23 +240,49 @@ def _lens_fit(lens: Intrinsics, from_earlier: bool) -> LensFit:
     )
 
 
-def _lens(fit: LensFit, camera: Camera) -> Intrinsics:
+def _intrinsics(saved: SavedCamera, placed: Camera | None, path: Path) -> Intrinsics:
+    """Raises ConfigError."""
+    fit = saved.lens
+    assert fit is not None
+    K = fit.K if placed is None or fit.K is not None else placed.K
+    dist = fit.dist if placed is None or fit.dist is not None else placed.dist
+    if K is None or dist is None:
+        raise ConfigError("a lens without K and dist", f"{path}, camera {saved.id!r}", _RECALIBRATE)
     return Intrinsics(
-        camera.size_px,
-        camera.K,
-        camera.dist,
+        saved.size_px,
+        np.array(K),
+        np.array(dist),
         np.array(fit.free),
-        math.nan if fit.rms_px is None else fit.rms_px,
-        math.nan if fit.held_out_px is None else fit.held_out_px,
-        tuple(range(fit.views)),
-        (),
-        math.nan if fit.focal_deviation is None else fit.focal_deviation,
+        nan_of(fit.rms_px),
+        nan_of(fit.held_out_px),
+        fit.used or tuple(range(fit.views)),
+        fit.thrown_out,
+        nan_of(fit.focal_deviation),
     )
+
+
+def _view(saved: SavedBoardView, board: BoardSpec | None, path: Path) -> BoardView:
+    """Raises ConfigError."""
+    columns, rows = (0, 0) if board is None else board.grid
+    ids = np.array(saved.ids, np.int64)
+    if (
+        len(ids) != len(saved.corners_px)
+        or len(ids) < FEWEST_CORNERS
+        or ids[-1] >= columns * rows
+        or (np.diff(ids) <= 0).any()
+    ):
+        raise ConfigError("has a picture of another board", str(path), _RECALIBRATE)
+    return BoardView(saved.index, ids, np.array(saved.corners_px), saved.sharpness, saved.back)
 
 
 def figure(value: float) -> float | None:
     """Rounded for readers; None for NaN."""
     return None if not math.isfinite(value) else round(value, 4)
+
+
+def nan_of(figure: float | None) -> float:
+    """NaN for a figure that is not known."""
+    return math.nan if figure is None else figure
 
 
 def login_name() -> str:

@@ -10,13 +10,20 @@ from pathlib import Path
 
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
+from mocapd.calibration.calibration_file import remove_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
 from mocapd.set_aside import Why, set_aside
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.kept_setup import FILE_NAME, KeptSetup, read_kept, write_kept
+from mocapd.wizard.draft_file import (
+    FILE_NAME,
+    OF_EARLIER_VERSIONS,
+    KeptSetup,
+    read_draft,
+    write_draft,
+)
 from mocapd.wizard.step_names import StepName
 
 FORGOTTEN = timedelta(days=7)  # rooms and lights are others by then
@@ -125,7 +132,7 @@ class SetupKeeper:
 
     def _write(self, kept: KeptSetup) -> None:
         try:
-            write_kept(self._path, kept)
+            write_draft(self._path, kept)
         except CannotCreateError as error:
             if str(error) != self._trouble:
                 self._trouble = str(error)
@@ -133,14 +140,20 @@ class SetupKeeper:
 
     def _remove(self) -> None:
         with suppress(OSError):  # it is asked about again then
-            self._path.unlink(missing_ok=True)
+            remove_setup(self._path)
 
     # -- what there is ---------------------------------------------------------------------------
 
     def _found(self) -> KeptSetup | None:
+        earlier = self._path.parents[1] / OF_EARLIER_VERSIONS
+        if earlier.exists():
+            _log.warning(
+                "%s: a setup in progress of an earlier mocapd: go on with that version, or remove the file",
+                earlier,
+            )
         kept: KeptSetup | None = None
         try:
-            kept = read_kept(self._path)
+            kept = read_draft(self._path)
             why_not = self._why_not(kept)
         except MissingError:
             return None
@@ -177,7 +190,7 @@ def kept_cameras(state_dir: Path, saved: Sequence[DraftCamera]) -> tuple[DraftCa
     """The cameras of the setup that is kept, then those saved that are not among them: to open each under
     the name and in the mode that it had."""
     try:
-        kept = read_kept(state_dir / FILE_NAME).draft.cameras
+        kept = read_draft(state_dir / FILE_NAME).draft.cameras
     except MocapdError:  # none, or one that is not offered
         return tuple(saved)
     ids, sources = {one.id for one in kept}, {one.source for one in kept}

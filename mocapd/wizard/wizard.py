@@ -15,7 +15,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, Wear, read_command
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.kept_setup import KeptSetup
+from mocapd.wizard.draft_file import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Json, Problem, Scene, StepState, T, Tell

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from mocapd.wizard.kept_setup import KeptSetup
+from mocapd.wizard.draft_file import KeptSetup
 from mocapd.wizard.step import Json, Problem, StepState, StepView
 from mocapd.wizard.step_names import StepName
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
-from mocapd.wizard.kept_setup import FILE_NAME
+from mocapd.wizard.draft_file import FILE_NAME
 from tests.browser.conftest import Served, problems_of
 
 STEP_MS = 600_000

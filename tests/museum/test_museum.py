@@ -26,10 +26,10 @@ from mocapd.service.room_memory import FILE_NAME as ROOMS
 from mocapd.types import Camera
 from mocapd.web.kept_key import kept_key
 from mocapd.wizard.cameras.camera_locks import CameraLocks
+from mocapd.wizard.draft_file import FILE_NAME as DRAFT
+from mocapd.wizard.draft_file import OF_EARLIER_VERSIONS, read_draft
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
 from mocapd.wizard.intrinsics.saved_intrinsics import read_intrinsics, store_intrinsics
-from mocapd.wizard.kept_setup import _DIGEST, read_kept
-from mocapd.wizard.kept_setup import FILE_NAME as DRAFT
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.setup_keeper import SetupKeeper
 from tests.museum.make_exhibit import PASSWORD, URL, WHEN, make_exhibit
@@ -100,9 +100,9 @@ def test_lenses_of_any_version_are_offered(exhibit: Path) -> None:
 
 
 @pytest.mark.parametrize("exhibit", with_a(f"state/{DRAFT}"), ids=lambda one: one.name)
-def test_a_setup_in_progress_of_any_version_is_gone_on_with(exhibit: Path, tmp_path: Path) -> None:
+def test_a_setup_in_progress_is_gone_on_with(exhibit: Path, tmp_path: Path) -> None:
     state = shutil.copytree(exhibit / "state", tmp_path / "state")
-    kept = read_kept(state / DRAFT)
+    kept = read_draft(state / DRAFT)
     now = kept.when + timedelta(hours=1)
     keeper = SetupKeeper(state, kept.draft, NO_LOCKS, lambda: now)
     assert keeper.offer is not None
@@ -111,6 +111,20 @@ def test_a_setup_in_progress_of_any_version_is_gone_on_with(exhibit: Path, tmp_p
     assert draft.stature_m == 1.72
     assert set(draft.colours) == {"cam0", "cam1"}
     keeper.close()
+
+
+@pytest.mark.parametrize(
+    "exhibit", with_a(f"state/{OF_EARLIER_VERSIONS}"), ids=lambda one: one.name
+)
+def test_a_setup_in_progress_of_an_earlier_version_is_named_and_left(
+    exhibit: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    state = shutil.copytree(exhibit / "state", tmp_path / "state")
+    keeper = SetupKeeper(state, full_draft(), NO_LOCKS, lambda: WHEN)
+    assert keeper.offer is None
+    keeper.close()
+    assert "go on with that version" in caplog.text
+    assert (state / OF_EARLIER_VERSIONS).exists()
 
 
 @pytest.mark.parametrize("exhibit", with_a(f"state/{ROOMS}"), ids=lambda one: one.name)
@@ -168,9 +182,8 @@ def _layout(folder: Path) -> dict[str, set[str]]:
     """The keys of every file that has some."""
     state = folder / "state"
     layout = {}
-    for name in (FILE_NAME, SECRETS, LENSES):
+    for name in (FILE_NAME, SECRETS, LENSES, DRAFT):
         layout[name] = set(_keys(tomllib.loads((state / name).read_text())))
-    layout[DRAFT] = set(_keys(msgspec.msgpack.decode((state / DRAFT).read_bytes()[32:])))
     layout[ROOMS] = set(_keys(msgspec.msgpack.decode((state / ROOMS).read_bytes()[DIGEST_BYTES:])))
     layout["rig.json"] = set(_keys(json.loads((folder / "rig.json").read_text())))
     with np.load(folder / "track.npz") as track:
@@ -204,12 +217,6 @@ def future_toml(data: bytes) -> bytes:
     return data.replace(b"schema = 1\n", b"schema = 2\n")
 
 
-def future_draft(data: bytes) -> bytes:
-    tree = msgspec.msgpack.decode(data[32:])
-    body = msgspec.msgpack.encode({"schema": 2, "when": tree["when"], "what": "nobody knows yet"})
-    return _DIGEST(body).digest() + body
-
-
 def future_rooms(data: bytes) -> bytes:
     body = msgspec.msgpack.encode({"schema": 2, "what": "nobody knows yet"})
     return digest_of(body) + body
@@ -240,7 +247,7 @@ def changed(path: Path, change: Change) -> bytes:
         (f"state/{FILE_NAME}", read_calibration),
         (f"state/{SECRETS}", lambda path: known_sources(path.parent)),
         (f"state/{LENSES}", lambda path: read_intrinsics(path.parent)),
-        (f"state/{DRAFT}", read_kept),
+        (f"state/{DRAFT}", read_draft),
         (f"state/{ROOMS}", lambda path: kept_rooms(path, {})),
         ("rig.json", load_rig),
         ("state/frames.key", kept_key),
@@ -301,7 +308,7 @@ def test_lenses_that_cannot_be_read_are_set_aside_by_the_next_save(state: Path, 
 def test_a_setup_in_progress_that_cannot_be_read_is_set_aside_and_told(
     state: Path, why: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    data = changed(state / DRAFT, future_draft if why == "newer" else cut_short)
+    data = changed(state / DRAFT, future_toml if why == "newer" else cut_short)
     caplog.set_level(logging.WARNING)
     keeper = SetupKeeper(state, full_draft(), NO_LOCKS, lambda: WHEN)
     assert keeper.offer is None

@@ -77,7 +77,7 @@ def drafted() -> Draft:
     return replace(
         draft,
         cameras=(one, replace(other, source="rtsp://admin:hunter2@10.0.0.7/live")),
-        board_views={"cam0": views, "gone": views},
+        board_views={"cam0": views},
     )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
 
@@ -24,8 +25,8 @@ from mocapd.wizard.check.check_step import missing
 from mocapd.wizard.check.check_verdict import Delivery, camera_verdict
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
+from mocapd.wizard.draft_file import FILE_NAME, KeptSetup, read_draft, write_draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
-from mocapd.wizard.kept_draft import draft_of, kept_draft
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName, after_shirt
@@ -140,7 +141,8 @@ def test_it_is_remembered_in_both_files(tmp_path: Path) -> None:
     path = calibration_path(tmp_path)
     assert not load_draft(tmp_path).has_shirt
     assert not from_saved(read_calibration(path), path).wearer.has_shirt
-    assert not draft_of(kept_draft(draft), "here").has_shirt
+    write_draft(tmp_path / FILE_NAME, KeptSetup(datetime.now(UTC), frozenset(), draft))
+    assert not read_draft(tmp_path / FILE_NAME).draft.has_shirt
 
 
 def test_a_file_that_does_not_say_is_of_somebody_with_a_shirt(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.kept_setup import FILE_NAME, read_kept
+from mocapd.wizard.draft_file import FILE_NAME, read_draft
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import StepState, StepView
 from mocapd.wizard.step_names import StepName
@@ -124,7 +124,7 @@ def interrupted(folder: Path) -> None:
     run.after("go", step="lens")
     run.after("find")
     wait_for(folder / FILE_NAME)
-    while StepName.LENS not in read_kept(folder / FILE_NAME).done:
+    while StepName.LENS not in read_draft(folder / FILE_NAME).done:
         wait_for(folder / FILE_NAME)
     data = (folder / FILE_NAME).read_bytes()
     run.stop()
@@ -184,7 +184,7 @@ def test_what_was_found_last_is_written_before_the_end(tmp_path: Path) -> None:
     run.wizard.send("find")
     run.after("go", step="room")
     run.stop()
-    assert same(read_kept(tmp_path / FILE_NAME).draft.factors, drafted().factors)
+    assert same(read_draft(tmp_path / FILE_NAME).draft.factors, drafted().factors)
 
 
 def test_where_nothing_can_be_written_the_setup_goes_on(

@@ -24,6 +24,7 @@ def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibrati
     if saved is None:
         return CalibrationFacts(None), None
     made, room = saved.tables.made.when, saved.tables.room
+    assert room is not None  # one that is not placed is refused when it is read
     when = made if made.tzinfo else made.replace(tzinfo=UTC)
     facts = CalibrationFacts(
         saved.path,
