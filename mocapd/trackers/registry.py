@@ -68,8 +68,7 @@ class TrackerEntry:
     of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
     that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
     which a setup measures; reads_outline: whether it is all of the body, whatever is worn; make_caches: what it
-    keeps in the cache folder, made if need be; caches: the names of those files; compared_with: what
-    `mocapd eval --compare` sets beside it, by label a tracker and its section.
+    keeps in the cache folder, made if need be; caches: the names of those files.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -80,7 +79,6 @@ class TrackerEntry:
     reads_outline: bool = False
     make_caches: Callable[[Resources], object] = _quiet
     caches: tuple[str, ...] = ()
-    compared_with: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
 
 
 def _nothing_lacks(_calibration: Calibration, _cameras: Collection[str]) -> str:
@@ -217,10 +215,6 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             reads_shirt=True,
             make_caches=_database,
             caches=(CACHE_NAME,),
-            compared_with={
-                "paper": ("colour_paper", ColourPaperSection()),
-                "baseline": ("colour_paper", ColourPaperSection(baseline=True)),
-            },
         ),
         "colour_paper": TrackerEntry(
             _colour_paper,
@@ -237,36 +231,12 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             _pair_lacks,
             sees=True,
             reads_outline=True,
-            compared_with={
-                "paper": ("flex_paper", FlexPaperSection()),
-                "no joints": ("flex", FlexSection(joints=False)),
-                "no texture": ("flex", FlexSection(texture=False)),
-                "no depths": ("flex", FlexSection(depths=False)),
-                "no floor": ("flex", FlexSection(floor=False)),
-                "no arm search": ("flex", FlexSection(arm_search=False)),
-                "no shadows": ("flex", FlexSection(shadows=False)),
-                "no leg search": ("flex", FlexSection(leg_search=False)),
-                "no faces": ("flex", FlexSection(faces=False)),
-                "no turns": ("flex", FlexSection(turns=False)),
-                "no look-alikes": ("flex", FlexSection(look_alikes=False)),
-                "no limits": ("flex", FlexSection(limits=False)),
-                "not steady": ("flex", FlexSection(steady=False)),
-            },
         ),
         "flex_paper": TrackerEntry(
             _flex_paper,
             FlexPaperSection,
             _pair_lacks,
             sees=True,
-            compared_with={
-                "no depth noise": ("flex_paper", FlexPaperSection(depth_noise=False)),
-                "no particle constraints": (
-                    "flex_paper",
-                    FlexPaperSection(particle_constraints=False),
-                ),
-                "no occlusion": ("flex_paper", FlexPaperSection(occlusion=False)),
-                "no appearance": ("flex_paper", FlexPaperSection(appearance=False)),
-            },
         ),
     }
 )

@@ -3,7 +3,7 @@
 from mocapd.calibration.record import Calibration, ShirtColours
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.colour_paper.params import published
+from mocapd.trackers.colour_paper.params import Params, published
 from mocapd.trackers.colour_paper.section import ColourPaperSection
 from mocapd.trackers.colour_paper.tracker import PaperTracker
 from mocapd.trackers.known import known_rig, stature_m
@@ -18,9 +18,19 @@ def build_paper_tracker(
 ) -> PaperTracker:
     """The tracker as a user set it. Raises ConfigError naming what is missing."""
     section = section if section is not None else ColourPaperSection()
+    params = published(section.baseline, section.tolerant)
+    return paper_tracker(calibration, database, params, tracking)
+
+
+def paper_tracker(
+    calibration: Calibration,
+    database: PoseDatabase,
+    params: Params,
+    tracking: TrackingStateParams | None = None,
+) -> PaperTracker:
+    """The tracker with these numbers. Raises ConfigError naming what is missing."""
     shirt = calibration.shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = white_balances(shirt.white_balance, colours, plain=True)
-    params = published(section.baseline, section.tolerant)
     rig = known_rig(calibration)
     return PaperTracker(rig, stature_m(calibration), colours, W, database, params, tracking)
