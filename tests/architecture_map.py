@@ -12,7 +12,8 @@ ROOT = Path(__file__).resolve().parents[1]
 def first_lines() -> dict[Path, str]:
     """By path within the project; a folder's is that of its `__init__.py`. Empty where there is none."""
     found = {}
-    for path in sorted((ROOT / "mocapd").rglob("*.py"), key=lambda p: (str(p.parent), p.name)):
+    modules = (*(ROOT / "mocapd").rglob("*.py"), *(ROOT / "lab").rglob("*.py"))
+    for path in sorted(modules, key=lambda p: (str(p.parent), p.name)):
         doc = ast.get_docstring(ast.parse(path.read_text())) or ""
         found[path.relative_to(ROOT)] = doc.strip().split("\n")[0]
     return found

@@ -15,19 +15,20 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # each begins at the root of the checkout, or at the package
 ROOMS = {p.name for p in (ROOT / "mocapd").iterdir() if p.is_dir()} - {"__pycache__"}
-TOPS = ("mocapd", "docs", "tests", "calib", "clients", "deb", "locks")
+TOPS = ("mocapd", "docs", "tests", "calib", "clients", "deb", "lab", "locks")
 PAGES = (
     *ROOT.glob("*.md"),
     *(ROOT / "docs").rglob("*.md"),
+    *(ROOT / "lab").rglob("*.md"),
     *(ROOT / "locks").rglob("*.md"),
     *(page for page in (ROOT / "clients").rglob("*.md") if "node_modules" not in page.parts),
     *(ROOT / "mocapd").rglob("*.md"),
 )
-MODULES = tuple((ROOT / "mocapd").rglob("*.py"))
+MODULES = (*(ROOT / "mocapd").rglob("*.py"), *(ROOT / "lab").rglob("*.py"))
 
 _PATH = re.compile(r"(?<![\w./~$<-])((?:[A-Za-z_][\w-]*/)+[\w.*<>-]*)")
 _NAME = re.compile(r"`([\w]+\.(?:py|js|md))`")
-_MODULE = re.compile(r"(?<![\w/.])mocapd(?:\.[a-z_]\w*)+(?:\.[A-Z]\w*)?")
+_MODULE = re.compile(r"(?<![\w/.])(?:mocapd|lab)(?:\.[a-z_]\w*)+(?:\.[A-Z]\w*)?")
 _LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 _QUOTED = re.compile(r"`([A-Za-z_][\w.]*)(?:\(\))?`")
 _COMMENT = re.compile(r"(?:^|  )#:? .*$", re.MULTILINE)
@@ -95,7 +96,7 @@ def missing(text: str, beside: Path) -> Iterator[str]:
 
 @cache
 def _is_module(dotted: str) -> bool:
-    """Whether it begins with a module of the package; what follows a module is a name in it."""
+    """Whether it begins with a module of the package or of the lab; what follows a module is a name in it."""
     here = ROOT
     for part in dotted.split("."):
         if (here / f"{part}.py").is_file():

@@ -17,7 +17,7 @@ def _predictions(outputs: Iterable[str]) -> Mapping[str, str]:
     return found
 
 
-_STUDY = "it served studies only, which lab/ablations.py now does: leave it out"
+_STUDY = "it served studies only, which lab/compared/ablations.py now does: leave it out"
 
 REMOVED: Mapping[str, str] = {
     "tracker.variant": 'the published method is a tracker now: tracker.name = "colour_paper"',

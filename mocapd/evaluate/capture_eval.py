@@ -19,7 +19,7 @@ from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.trackers.base import Probe, Track, Tracker, unprobed
 from mocapd.types import BodyState, Bytes, FrameSet
 
-BuildTracker = Callable[[Calibration, str], ReadyTracker]  # of a method by its label
+BuildTracker = Callable[[Calibration], ReadyTracker]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +94,6 @@ def evaluate(
     build: BuildTracker,
     *,
     stature_m: float,
-    method: str,
     joints: str = "upper",
     keep_evidence: Container[int] = (),
     on_frame: Callable[[int], None] = lambda _: None,
@@ -104,7 +103,7 @@ def evaluate(
     `stature_m` is for captures that do not say. What the tracker is given is what `mocapd track`
     gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
     """
-    ready = build(from_capture(case.folder).assuming(stature_m), method)
+    ready = build(from_capture(case.folder).assuming(stature_m))
     watched = _TimedTracker(ready.tracker, keep_evidence)
     track = track_all(watched, ready.shape, frame_sets(case.folder), on_frame)
     return CaptureResult(

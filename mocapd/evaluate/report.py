@@ -1,4 +1,4 @@
-"""What was measured, as tables, as JSON, and as a page of the docs."""
+"""Scores of captures as tables and as JSON."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.compare import Comparison
 from mocapd.evaluate.reliability import NEAR_CM, TENTHS, Reliability, near_from
-from mocapd.evaluate.roc import Roc, correct_at
 from mocapd.evaluate.tables import number, table
 
-_COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], ...] = (
+# Key in JSON, title, digits, value.
+COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], ...] = (
     ("coverage_percent", "coverage [%]", 1, lambda r: 100.0 * r.score.coverage),
     ("ghost_frames", "ghosts", 0, lambda r: float(r.score.ghost_frames)),
     ("rms_cm", "RMS [cm]", 2, lambda r: r.score.rms_cm),
@@ -28,20 +27,19 @@ _COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], .
     ("recovery_frames", "back after [frames]", 0, lambda r: r.recovery_frames),
     ("step_ms", "step [ms]", 1, lambda r: r.step_ms),
 )
-FALSE_RATES = (0.005, 0.01, 0.02, 0.05, 0.1)
 
 
 def score_table(results: Sequence[CaptureResult]) -> str:
     """One row per capture, and a row of means for each number of cameras."""
     rows = [
-        [result.case.name, *(number(value(result), digits) for _, _, digits, value in _COLUMNS)]
+        [result.case.name, *(number(value(result), digits) for _, _, digits, value in COLUMNS)]
         for result in results
     ]
-    for name, group in _groups(results):
-        means = [_mean([value(result) for result in group]) for _, _, _, value in _COLUMNS]
-        digits = [max(digits, 1) for _, _, digits, _ in _COLUMNS]
+    for name, group in groups_by_cameras(results):
+        means = [mean_known([value(result) for result in group]) for _, _, _, value in COLUMNS]
+        digits = [max(digits, 1) for _, _, digits, _ in COLUMNS]
         rows.append([name, *map(number, means, digits)])
-    return table(["capture", *(title for _, title, _, _ in _COLUMNS)], rows)
+    return table(["capture", *(title for _, title, _, _ in COLUMNS)], rows)
 
 
 def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
@@ -51,7 +49,7 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
             "capture": result.case.name,
             "cameras": len(result.case.folder.cameras),
             "frames": result.score.frames,
-            **{key: _plain(value(result)) for key, _, _, value in _COLUMNS},
+            **{key: _plain(value(result)) for key, _, _, value in COLUMNS},
             "per_joint_rms_cm": {
                 name: _plain(rms) for name, rms in result.score.per_joint_rms_cm.items()
             },
@@ -60,32 +58,10 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
         for result in results
     ]
     means = {
-        name: {key: _plain(_mean([value(r) for r in group])) for key, _, _, value in _COLUMNS}
-        for name, group in _groups(results)
+        name: {key: _plain(mean_known([value(r) for r in group])) for key, _, _, value in COLUMNS}
+        for name, group in groups_by_cameras(results)
     }
     return {"captures": captures, "means": means}
-
-
-def comparison_tables(comparison: Comparison) -> list[str]:
-    """Per capture and method: RMS error [cm], as in the paper's Fig. 9; its median; the coverage [%].
-
-    An error is that of the tracked frames alone, so the coverage belongs to it; the median tells a
-    tracker that is a little off everywhere from one that is right but for a few frames.
-    """
-    return [_side_by_side(comparison, key) for key in ("rms_cm", "median_cm", "coverage_percent")]
-
-
-def roc_table(roc: Roc) -> str:
-    """Share of the shirt classified correctly at some rates of false positives."""
-    rows = [
-        [
-            f"{100 * rate:g} %",
-            number(100.0 * correct_at(roc.alone, rate), 1),
-            number(100.0 * correct_at(roc.assisted, rate), 1),
-        ]
-        for rate in FALSE_RATES
-    ]
-    return table(["false positives", "step 1 alone [%]", "pose-assisted [%]"], rows)
 
 
 def reliability_table(of: Reliability) -> str:
@@ -104,29 +80,7 @@ def reliability_table(of: Reliability) -> str:
     return table(["confidence", "joints [%]", "RMS [cm]", near, "and above [%]"], rows)
 
 
-def roc_json(roc: Roc) -> dict[str, Any]:
-    """The curves as lists of shares."""
-    curves = {"step_1": roc.alone, "pose_assisted": roc.assisted, "tracker": roc.tracker}
-    return {
-        name: {"false": counts.false.tolist(), "correct": counts.correct.tolist()}
-        for name, counts in curves.items()
-    }
-
-
-def _side_by_side(comparison: Comparison, key: str) -> str:
-    title, digits, value = next(column[1:] for column in _COLUMNS if column[0] == key)
-    columns = list(comparison.values())
-    rows = [
-        [results[0].case.name, *(number(value(result), digits) for result in results)]
-        for results in zip(*columns, strict=True)
-    ]
-    for groups in zip(*map(_groups, columns), strict=True):
-        means = [_mean([value(result) for result in group]) for _, group in groups]
-        rows.append([groups[0][0], *(number(mean, digits) for mean in means)])
-    return table([title, *comparison], rows)
-
-
-def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:
+def groups_by_cameras(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:
     """Captures with as many cameras, where there is more than one."""
     out = []
     for cameras in sorted({len(result.case.folder.cameras) for result in results}, reverse=True):
@@ -136,7 +90,7 @@ def _groups(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureRes
     return out
 
 
-def _mean(values: Sequence[float | None]) -> float:
+def mean_known(values: Sequence[float | None]) -> float:
     """Of what there is to tell; NaN if one of them was not tracked at all, or none tells anything."""
     known = [value for value in values if value is not None]
     return float(np.mean(known)) if known else float("nan")

@@ -1,4 +1,4 @@
-"""Where arms are when nobody looks, trained by `mocapd.evaluate.train_arm_motion` on clips of real motion."""
+"""Where arms are when nobody looks, trained by `lab.training.train_arm_motion` on clips of real motion."""
 
 from dataclasses import dataclass
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lab.studies.colour_proposals import score_by_labels, score_by_strokes, table
 from mocapd.calibrate.colours.colour_solution import personal_colour_model
 from mocapd.calibrate.colours.light_hypotheses import black_body_rgb, light_hypotheses
 from mocapd.calibrate.colours.stroke_proposal import (
@@ -13,7 +14,6 @@ from mocapd.calibrate.colours.stroke_proposal import (
     propose_strokes_together,
 )
 from mocapd.errors import InputError
-from mocapd.evaluate.colour_proposals import score_by_labels, score_by_strokes, table
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase

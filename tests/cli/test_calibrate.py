@@ -135,6 +135,7 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     saved = load_saved(out)
     assert saved.known.rig is not None
     assert saved.known.rig.names == ("cam0", "cam1")
+    assert saved.tables.room is not None
     assert saved.tables.room.floor_known
     assert saved.known.shirt is not None
     assert set(saved.known.shirt.white_balance) == {"cam0"}

@@ -2,17 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from mocapd.capture.capture_folder import CaptureFolder, RecordedCamera
 from mocapd.evaluate.capture_eval import CaptureResult, Case
 from mocapd.evaluate.recovery import recovery
-from mocapd.evaluate.roc import ALONE_THRESHOLDS, Counts, Roc
 from mocapd.evaluate.score import score
 from mocapd.types import Floats, Rig
 from tests.evaluate.tracks import EMPTY, FRAMES, moving_truth, track_of
-
-N = len(ALONE_THRESHOLDS)
 
 
 def result_of(
@@ -36,13 +31,4 @@ def result_of(
         recovery(truth, track),
         5.25,
         {},
-    )
-
-
-def a_roc() -> Roc:
-    """Colour alone finds half of what the pose helps to find."""
-    return Roc(
-        Counts(np.linspace(10.0, 45.0, N), np.linspace(0.0, 200.0, N), 100.0, 1000.0),
-        Counts(np.linspace(20.0, 90.0, N), np.linspace(0.0, 200.0, N), 100.0, 1000.0),
-        Counts(np.array([80.0]), np.array([10.0]), 100.0, 1000.0),
     )

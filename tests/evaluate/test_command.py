@@ -1,5 +1,6 @@
 """`mocapd eval` as a user runs it, on a capture that the simulator exported."""
 
+import importlib.util
 import json
 import re
 import shutil
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import LAMP_OFF_S, scenario
 
@@ -82,24 +83,26 @@ def test_a_capture_without_truth_is_one_clear_line(
     assert str(blind / "truth.npz") in outcome.err
 
 
-def test_the_published_tracker_is_set_beside_itself_without_each_of_its_steps(
-    capture: Path, clean_env: dict[str, str]
+@pytest.mark.parametrize(
+    ("words", "module"),
+    [
+        (("--compare", "baseline"), "lab.evaluation"),
+        (("--simulated", "clips"), "lab.evaluation"),
+        (("--clothes", "plain"), "lab.evaluation"),
+        (("--failures",), "lab.failures"),
+        (("--interruptions",), "lab.interruptions"),
+        (("--prediction",), "lab.prediction"),
+    ],
+)
+def test_an_option_that_moved_to_the_checkout_is_answered_with_its_command(
+    words: tuple[str, ...], module: str, clean_env: dict[str, str]
 ) -> None:
-    words = ("eval", capture, "--tracker", "flex_paper", "--compare", "baseline")
-    outcome = mocapd(clean_env, *words)
-    assert outcome.code == 0, outcome.err
-    compared = next(line for line in outcome.out.splitlines() if line.startswith("| RMS"))
-    assert [cell.strip() for cell in compared.split("|")[2:-1]] == [
-        "full", "no depth noise", "no particle constraints", "no occlusion", "no appearance",
-    ]  # fmt: skip
-
-
-def test_only_the_colour_tracker_has_a_baseline(capture: Path, clean_env: dict[str, str]) -> None:
-    words = ("eval", capture, "--tracker", "canned", "--compare", "baseline")
-    outcome = mocapd(clean_env, *words)
+    outcome = mocapd_here(clean_env, "eval", "capture", *words)
     assert outcome.code == 78
-    assert "canned" in outcome.err
-    assert "--tracker colour" in outcome.err
+    assert words[0] in outcome.err
+    assert f"python -m {module}" in outcome.err
+    assert outcome.err.count("\n") == 1
+    assert importlib.util.find_spec(module) is not None
 
 
 def test_truth_is_for_scoring_only(capture: Path) -> None:
@@ -110,5 +113,5 @@ def test_truth_is_for_scoring_only(capture: Path) -> None:
         for path in package.rglob("*.py")
         if "truth.npz" in path.read_text() or '"labels"' in path.read_text()
     }
-    assert readers <= {"evaluate", "sim", "cli"}  # the simulator writes it, the help names it
+    assert readers <= {"evaluate", "cli"}  # the help names it
     assert np.load(capture / "truth.npz")["visible"].any()

@@ -8,7 +8,7 @@ import pytest
 
 from mocapd.body.bones import NAMES
 from mocapd.errors import InputError
-from mocapd.evaluate.truth import labelled_frames, load_truth
+from mocapd.evaluate.truth import load_truth
 from tests.evaluate.tracks import moving_truth
 
 
@@ -74,11 +74,3 @@ def test_a_capture_in_which_nobody_is_seen_cannot_be_scored(tmp_path: Path) -> N
     )
     with pytest.raises(InputError, match="nobody is visible"):
         load_truth(tmp_path)
-
-
-def test_labelled_frames_are_those_of_the_video(tmp_path: Path) -> None:
-    (tmp_path / "labels").mkdir()
-    for name in ("cam0_000030", "cam0_000015", "cam1_000045", "cam0_other"):
-        (tmp_path / "labels" / f"{name}.png").touch()
-    assert labelled_frames(tmp_path, Path("cam0.mp4")) == (15, 30)
-    assert labelled_frames(tmp_path, Path("cam2.mp4")) == ()

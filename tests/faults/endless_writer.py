@@ -70,7 +70,8 @@ def saved_number(folder: Path) -> int | None:
         return None
     wearer = read_calibration(folder).wearer
     pictures = {one.picture.pixels[0, 0].tobytes() for one in load_draft(folder).colours.values()}
-    number = 0 if wearer is None else round((wearer.stature_m - 1.0) * _PER_M)
+    stature_m = None if wearer is None else wearer.stature_m
+    number = 0 if stature_m is None else round((stature_m - 1.0) * _PER_M)
     if pictures != {number.to_bytes(3, "little")}:
         raise InputError(f"the pictures are not those of {number}", str(folder))
     return number

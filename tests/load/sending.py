@@ -8,8 +8,8 @@ from contextlib import ExitStack
 
 import msgspec
 
+from lab.bench_outputs import moving_frames
 from mocapd.clock import monotonic_ns
-from mocapd.evaluate.bench.bench_outputs import moving_frames
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 

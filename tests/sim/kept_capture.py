@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from mocapd.sim.export import export_capture
+from lab.simulated.export import export_capture
 from mocapd.sim.film import film_key
 from mocapd.sim.scenario import Scenario
 

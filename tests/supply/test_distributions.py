@@ -49,6 +49,10 @@ def test_the_wheel_holds_every_file_of_the_package_and_of_calib(wheel: Path) -> 
         assert f"mocapd/{one}" in held
 
 
+def test_the_wheel_holds_nothing_of_the_lab_and_no_test(wheel: Path) -> None:
+    assert {name.split("/")[0] for name in names(wheel)} == {"mocapd"}
+
+
 def test_the_source_distribution_makes_the_same_wheel_and_has_tests_and_pages(
     wheel: Path, tmp_path: Path
 ) -> None:
@@ -63,6 +67,7 @@ def test_the_source_distribution_makes_the_same_wheel_and_has_tests_and_pages(
         "tests/conftest.py",
         "docs/service.md",
         "deb/build.sh",
+        "lab/README.md",
     ):
         assert (source / one).is_file()
 

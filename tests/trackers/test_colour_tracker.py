@@ -20,7 +20,7 @@ UPPER = [
     j for name, j in INDEX.items() if not any(s in name for s in ("Leg", "Foot", "Toes", "head"))
 ]
 WRISTS = [INDEX["leftHand"], INDEX["rightHand"]]
-CONFIRM = 2  # frames that a return is looked at before it is believed (tracker.confirm_s)
+CONFIRM = 2  # frames that a return is looked at before it is believed
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
+from lab.simulated.export import export_capture
 from mocapd import __version__
 from mocapd.assets import asset_path
 from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
@@ -24,7 +25,6 @@ from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.geometry.rig_file import load_rig
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
-from mocapd.sim.export import export_capture
 from mocapd.sim.scenario import load_scenario
 from mocapd.wizard.saving import NOT_WRITTEN_YET
 

@@ -1,7 +1,7 @@
 """Nearest id maps quickly: a short vector per map, cells of similar ones, the exact distance last.
 
 Recall against the exact distance over all maps is measured by
-`python -m mocapd.trackers.colour_paper.measure_database`; see docs/decisions/pose-database.md.
+`python -m lab.measure_database`; see docs/decisions/pose-database.md.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The three covariances of the inverse kinematics, trained by `train_covariances`. [section 5.2, step 4]"""
+"""The three covariances of the inverse kinematics, trained by `lab.training.train_covariances`. [section 5.2, step 4]"""
 
 from dataclasses import dataclass
 
@@ -38,7 +38,7 @@ def load_covariances() -> Covariances:
             raise ConfigError(
                 f"{key!r} is not a covariance matrix of size {n}",
                 str(path),
-                "train it again: python -m mocapd.trackers.colour_paper.train_covariances",
+                "install mocapd again",
             )
         matrices.append(matrix)
     return Covariances(*matrices)

@@ -3,7 +3,7 @@
 One map a joint, as Tompson et al. 2014 (Joint training of a convolutional network and a graphical model for human pose
 estimation), read by its moments (Sun et al. 2018, Integral human pose regression); and how much farther away than the hips
 each joint is, with the scale of a Laplace distribution. It was trained on pictures of the simulator alone, of random people
-in random clothes, rooms and lights (`training/` in the checkout, `mocapd.evaluate.heatmaps`).
+in random clothes, rooms and lights (`lab/training/` in the checkout).
 """
 
 from dataclasses import dataclass

@@ -1,0 +1,112 @@
+"""The trackers without a shirt, each with one step that decides nothing: edits of their `Params`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.trackers.flex.params import Params
+from mocapd.trackers.flex_paper.params import Params as PaperParams
+from mocapd.trackers.steadying import Following
+
+_SOFT_M, _SOFT_RAD = 1e3, 1e3  # standard deviations that hold nothing
+_CERTAIN = 1e-6  # share of a limb's pixels, which any limb that is drawn has
+_FOREVER = 1 << 30
+_MORE_THAN_SAME = 1.01  # share of two regions' colours that is the same, correlation of two patches
+
+
+def _no_joints(params: Params) -> Params:
+    term = replace(params.joints.term, weight=0.0)
+    return replace(params, joints=replace(params.joints, term=term))
+
+
+def _no_texture(params: Params) -> Params:
+    return replace(params, distances=replace(params.distances, least_alike=_MORE_THAN_SAME))
+
+
+def _no_depths(params: Params) -> Params:
+    return replace(params, depths=replace(params.depths, least_alike=_MORE_THAN_SAME))
+
+
+def _no_floor(params: Params) -> Params:
+    return replace(params, floor=FloorParams(under_sd_m=_SOFT_M, standing_sd_m=_SOFT_M))
+
+
+def _no_arm_search(params: Params) -> Params:
+    return replace(params, limbs=replace(params.limbs, uncertain_arm=_CERTAIN))
+
+
+def _no_leg_search(params: Params) -> Params:
+    never = replace(params.legs, uncertain=_CERTAIN)
+    return replace(params, legs=never, crossed_looks=_FOREVER)
+
+
+def _no_faces(params: Params) -> Params:
+    return replace(params, facing=replace(params.facing, sure=float("inf")))
+
+
+def _no_turns(params: Params) -> Params:
+    return replace(params, turning=replace(params.turning, sure=float("inf")))
+
+
+def _no_shadows(params: Params) -> Params:
+    return replace(params, background=replace(params.background, likely_shadow=(1.0, 0.0)))
+
+
+def _no_look_alikes(params: Params) -> Params:
+    return replace(params, alike=_MORE_THAN_SAME)
+
+
+def _no_limits(params: Params) -> Params:
+    soft = replace(params.fit, limit_sd_rad=_SOFT_RAD, collision_sd_m=_SOFT_M)
+    return replace(params, fit=soft)
+
+
+def _not_steady(params: Params) -> Params:
+    at_once = Following(sure=1.0, doubtful=0.0, least=1.0, doubtful_rad_s=_SOFT_RAD)
+    steadying = replace(params.steadying, sure_rad_s=_SOFT_RAD).with_all(at_once)
+    return replace(params, steadying=steadying)
+
+
+FLEX_ABLATIONS: Mapping[str, Callable[[Params], Params]] = MappingProxyType(
+    {
+        "no joints": _no_joints,
+        "no texture": _no_texture,
+        "no depths": _no_depths,
+        "no floor": _no_floor,
+        "no arm search": _no_arm_search,
+        "no shadows": _no_shadows,
+        "no leg search": _no_leg_search,
+        "no faces": _no_faces,
+        "no turns": _no_turns,
+        "no look-alikes": _no_look_alikes,
+        "no limits": _no_limits,
+        "not steady": _not_steady,
+    }
+)
+
+
+def _no_depth_noise(params: PaperParams) -> PaperParams:
+    return replace(params, motion=replace(params.motion, depth_noise=False))
+
+
+def _no_particle_constraints(params: PaperParams) -> PaperParams:
+    return replace(params, particle_constraints=False)
+
+
+def _no_occlusion(params: PaperParams) -> PaperParams:
+    return replace(params, score=replace(params.score, occlusion=False))
+
+
+def _no_appearance(params: PaperParams) -> PaperParams:
+    return replace(params, score=replace(params.score, appearance=False))
+
+
+FLEX_PAPER_ABLATIONS: Mapping[str, Callable[[PaperParams], PaperParams]] = MappingProxyType(
+    {
+        "no depth noise": _no_depth_noise,
+        "no particle constraints": _no_particle_constraints,
+        "no occlusion": _no_occlusion,
+        "no appearance": _no_appearance,
+    }
+)

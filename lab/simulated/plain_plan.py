@@ -1,0 +1,204 @@
+"""Which sessions without the shirt are recorded: whole bodies in plain clothes, many before a pair 12 cm apart.
+
+As the other plan, it follows from the names of the clips alone: half of the sessions are of clips whose names tell
+of legs or of turning, the rest are spread over all others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import cycle
+
+import msgspec
+import numpy as np
+
+from lab.simulated.motion_clip import MotionClip, Placement, within
+from lab.simulated.session_plan import (
+    BLEND_S,
+    EMPTY_S,
+    LAMP_OFF_S,
+    SECONDS,
+    STAND_S,
+    PlannedSession,
+    is_wide,
+)
+from lab.simulated.variation import (
+    Variation,
+    stereo_pair,
+    varied_body,
+    varied_clothes,
+    varied_lights,
+)
+from mocapd.sim.person_spec import Bystander, MotionSpec, PoseKeyframe
+from mocapd.sim.scenario import CameraSpec, Scenario, Thing
+
+PLAIN_SESSIONS = 20
+_MOST_WAY_M = 2.2
+_LOOK_AT_M = (0.0, 0.92, 0.0)
+# of whole-body motion, in the names of the public collections of clips
+_LEG_WORDS = (
+    "squat",
+    "kick",
+    "jog",
+    "jump",
+    "hop",
+    "soccer",
+    "elbowtoknee",
+    "walk",
+    "turn",
+    "sneak",
+    "deposit",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PlainRig:
+    """azimuths_deg: about the person, 0 is in front of it; of a stereo pair, 12 cm apart, the middle's."""
+
+    name: str
+    azimuths_deg: tuple[float, ...]
+    distance_m: float
+    height_m: float = 1.35
+    stereo: bool = False
+    outdoors_or_hall: bool = False
+
+
+PLAIN_RIGS = (
+    PlainRig("stereo", (0.0,), 3.2, stereo=True),
+    PlainRig("pair", (-35.0, 38.0), 3.2),
+    PlainRig("stereo", (18.0,), 3.3, 1.2, stereo=True),
+    PlainRig("around", (-40.0, 50.0, 140.0, 225.0), 3.5, 1.7, outdoors_or_hall=True),
+    PlainRig("stereo", (-12.0,), 3.0, 1.5, stereo=True),
+    PlainRig("pair", (-20.0, 30.0), 3.3),
+    PlainRig("stereo", (6.0,), 3.4, stereo=True, outdoors_or_hall=True),
+    PlainRig("three", (-45.0, 0.0, 42.0), 3.1),
+)
+_YAWS_DEG = (
+    0.0,
+    20.0,
+    -35.0,
+    10.0,
+    50.0,
+    -15.0,
+    30.0,
+)  # nobody begins with the back to the cameras
+_STANCES = ("relaxed", "relaxed", "t_pose")
+
+
+def plain_plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[PlannedSession]:
+    """The sessions, by number; fewer when few clips are long enough and stay in one place."""
+    clip_s = SECONDS - EMPTY_S - STAND_S - BLEND_S
+    starts = [(clip, within(clip, clip_s, _MOST_WAY_M)) for clip in clips]
+    usable = [(clip, begin) for clip, begin in starts if begin is not None]
+    legs = [one for one in usable if any(word in one[0].name.lower() for word in _LEG_WORDS)]
+    others = [one for one in usable if one not in legs]
+    chosen = _spread(legs, PLAIN_SESSIONS // 2)
+    chosen = _in_turn(chosen, _spread(others, PLAIN_SESSIONS - len(chosen)))
+    rooms, halls = cycle(scenes), cycle([scene for scene in scenes if is_wide(scene)] or scenes)
+    sessions = []
+    for number, (clip, begin) in enumerate(chosen):
+        rig = PLAIN_RIGS[number % len(PLAIN_RIGS)]
+        scene = next(halls if rig.outdoors_or_hall else rooms)
+        yaw_deg, stance = _YAWS_DEG[number % len(_YAWS_DEG)], _STANCES[number % len(_STANCES)]
+        where = Placement(
+            begin,
+            round(clip_s * clip.rate_hz),
+            yaw_deg,
+            EMPTY_S + STAND_S,
+            BLEND_S,
+            stance,
+            grounded=True,
+        )
+        name = f"plain{number:02d}_{rig.name}_{scene.name}_{clip.name}"
+        scenario = _scenario(name, number, scene, rig, where)
+        sessions.append(PlannedSession(name, scenario, clip, where))
+    return sessions
+
+
+def _in_turn(
+    a: list[tuple[MotionClip, int]], b: list[tuple[MotionClip, int]]
+) -> list[tuple[MotionClip, int]]:
+    """Three of one, three of the other, so that every rig gets of both."""
+    longest = max(len(a), len(b))
+    return [one for i in range(0, longest, 3) for one in (*a[i : i + 3], *b[i : i + 3])]
+
+
+def _spread(usable: list[tuple[MotionClip, int]], most: int) -> list[tuple[MotionClip, int]]:
+    """At most so many, evenly over the list."""
+    picked = np.unique(np.linspace(0, len(usable) - 1, most).round().astype(int))
+    return [usable[i] for i in picked.tolist()] if usable else []
+
+
+def _scenario(name: str, number: int, scene: Scenario, rig: PlainRig, where: Placement) -> Scenario:
+    vary = Variation(np.random.default_rng([2027, number]))
+    body = varied_body(
+        vary, whole=True, thigh_length=vary(0.02), shank_length=vary(0.02), hip_width=vary(0.04),
+        leg_girth=vary(0.06), head_size=vary(0.02),
+    )  # fmt: skip
+    stance = PoseKeyframe(t_s=0.0, pose=where.stance, yaw_deg=where.yaw_deg)
+    behind = is_wide(scene) and number % 3 == 0
+    return msgspec.structs.replace(
+        scene,
+        name=name,
+        seed=2000 + number,
+        loop_s=SECONDS,
+        scribble_s=0.2,
+        person_appears_s=EMPTY_S,
+        cameras=_cameras(scene.cameras[0], rig, vary),
+        body=body,
+        clothes=varied_clothes(vary, number),
+        lights=varied_lights(scene, vary, LAMP_OFF_S if number % 4 == 3 else None),
+        motion=MotionSpec(keyframes=[stance], sway_deg=0.0),
+        others=(_walks_behind(vary, number),) if behind else (),
+        room=msgspec.structs.replace(
+            scene.room, things=(*scene.room.things, *_portrait(scene, number))
+        ),
+    )
+
+
+def _cameras(seen: CameraSpec, rig: PlainRig, vary: Variation) -> list[CameraSpec]:
+    """Like the scene's first camera, at other places; a stereo pair is rigid and exposes together."""
+    out = []
+    for k, azimuth_deg in enumerate(rig.azimuths_deg):
+        azimuth_rad, away_m = np.radians(azimuth_deg), rig.distance_m * vary(0.03)
+        camera = msgspec.structs.replace(
+            seen, name=f"cam{k}",
+            position_m=(
+                float(away_m * np.sin(azimuth_rad)), rig.height_m * vary(0.05), float(away_m * np.cos(azimuth_rad)),
+            ),
+            look_at_m=_LOOK_AT_M, roll_deg=float(vary.rng.normal(0.0, 1.0)), focal_px=None, centre_px=None,
+            fov_deg=float(vary.rng.uniform(56.0, 64.0)), dropped=0.0, gain=seen.gain * vary(0.05),
+            clock_offset_s=0.0 if k == 0 else float(vary.rng.uniform(0.0, 0.016)),
+        )  # fmt: skip
+        out.append(camera)
+    return stereo_pair(out[0]) if rig.stereo else out
+
+
+def _walks_behind(vary: Variation, number: int) -> Bystander:
+    """Somebody who crosses the background to and fro."""
+    z = -2.4 + 0.2 * float(vary.rng.normal())
+    keys = [
+        PoseKeyframe(t_s=0.0, at_m=(-1.6, z), yaw_deg=90.0),
+        PoseKeyframe(t_s=2.9, at_m=(1.4, z), yaw_deg=90.0),
+        PoseKeyframe(t_s=3.6, at_m=(1.5, z), yaw_deg=270.0),
+        PoseKeyframe(t_s=6.3, at_m=(-1.5, z), yaw_deg=270.0),
+    ]
+    body = varied_body(vary, whole=True)
+    return Bystander(
+        body=body, motion=MotionSpec(keyframes=keys), clothes=varied_clothes(vary, number + 5)
+    )
+
+
+def _portrait(scene: Scenario, number: int) -> list[Thing]:
+    """A face on paper on the wall behind, in some of the rooms."""
+    room = scene.room
+    if room.outdoors or number % 3 != 1:
+        return []
+    z = room.middle_m[1] - 0.5 * room.size_m[2] + 0.02
+    return [
+        Thing(
+            kind="portrait",
+            base_m=(-0.45, 1.25, z),
+            size_m=(0.55, 0.75, 0.02),
+            srgb=(206, 200, 188),
+        )
+    ]

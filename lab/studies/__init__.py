@@ -1,0 +1,1 @@
+"""What the studies measure; the commands are beside this folder."""

@@ -1,0 +1,172 @@
+"""Draw pictures of random people with the places of their joints, to train the network of heatmaps on.
+
+python -m lab.training.training_pictures CLIPS OUT --minutes 9 --seed 101
+
+Each file OUT/SEED_NUMBER.npz has pictures (N,128,128,6): what a camera shows about somebody, and the same without
+anybody, both BGR; uv (N,J,2): the joints in them [px]; farther (N,J): than the hips along the camera's axis [m, of
+somebody 1.75 m tall].
+A hundred a second and processor; run it once for each processor, with another seed.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import msgspec
+import numpy as np
+
+from lab.simulated.motion_clip import MotionClip, read_clip
+from lab.simulated.recorded_set import SCENES
+from lab.training.random_poses import MovingPose, random_pose
+from lab.training.random_scenes import random_body, random_clothes, random_scene
+from mocapd.assets import asset_path
+from mocapd.body.skeleton import INDEX, joint_positions
+from mocapd.geometry.camera_model import project, to_camera
+from mocapd.sim.person.group import Body
+from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
+from mocapd.sim.renderer import CameraRenderer, figure_of, furnished_set
+from mocapd.sim.scenario import Scenario, load_scenario
+from mocapd.sim.world import World, light_levels
+from mocapd.types import Bytes, Camera, Floats, Pose
+from mocapd.vision.heatmaps.joint_network import JOINTS, STATURE_M
+from mocapd.vision.heatmaps.person_crop import crop_about, middle_of
+
+PICTURE_PX, SIDE_M = 128, 3.0  # of somebody 1.75 m tall
+_SCENES_A_FILE, _PEOPLE_A_SCENE, _POSES, _POSES_A_LIGHT = 4, 3, 24, 8
+_BESIDE = 0.2  # share of people behind whom another one stands
+_NEAREST_M = 0.6
+_JOINTS = np.array([INDEX[name] for name in JOINTS])
+_GREY = (128, 128, 128)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Example:
+    """One picture; see above."""
+
+    picture: Bytes
+    uv: Floats
+    farther: Floats
+
+
+def examples_of(
+    rng: np.random.Generator, scene: Scenario, clips: Sequence[MotionClip]
+) -> list[Example]:
+    """Of one person in this scene."""
+    world, other = (_somebody(rng, scene) for _ in range(2))
+    two = rng.uniform() < _BESIDE
+    figures = [figure_of(one) for one in ((world, other) if two else (world,))]
+    renderer = CameraRenderer(world, figures, furnished_set(scene), 0, samples=1)
+    shutter_s = renderer.spec.shutter_s
+    out, empty, levels = [], np.zeros(0, np.uint8), np.zeros(0)
+    for k in range(_POSES):
+        if k % _POSES_A_LIGHT == 0:
+            levels = _random_levels(rng, scene)
+            empty = renderer.picture(None, levels, int(rng.integers(1 << 20)))
+        at_m = rng.normal(0.0, [0.35, 0.0, 0.35])
+        pose = _moved(random_pose(rng, world.skeleton, clips, shutter_s), at_m)
+        opened, closed = [Body(pose.opened)], [Body(pose.closed)]
+        if two:
+            behind = random_pose(rng, other.skeleton, clips, shutter_s)
+            behind = _moved(behind, 0.3 * at_m + _behind(rng, renderer.spec.position_m))
+            opened.append(Body(behind.opened))
+            closed.append(Body(behind.closed))
+        shown = renderer.picture_of_group(opened, closed, levels, int(rng.integers(1 << 20)))
+        joints_m = joint_positions(world.skeleton, pose.middle)
+        example = _example(renderer.camera, shown, empty, joints_m, world.shape.stature_m)
+        if example is not None:
+            out.append(example)
+    return out
+
+
+def _somebody(rng: np.random.Generator, scene: Scenario) -> World:
+    dressed = msgspec.structs.replace(
+        scene, body=random_body(rng), clothes=random_clothes(rng), seed=int(rng.integers(1_000_000)),
+        motion=MotionSpec(keyframes=[PoseKeyframe(t_s=0.0)]),
+    )  # fmt: skip
+    return World(dressed)
+
+
+def _random_levels(rng: np.random.Generator, scene: Scenario) -> Floats:
+    levels = light_levels(scene, 0.0)
+    if rng.uniform() < 0.5:
+        levels = levels * rng.uniform(0.5, 1.1, len(levels))
+    if rng.uniform() < 0.15 and len(levels) > 1:
+        levels[rng.integers(len(levels))] = 0.0
+    return levels
+
+
+def _behind(rng: np.random.Generator, camera_m: tuple[float, float, float]) -> Floats:
+    """From the person away from the camera, and aside."""
+    towards = np.array(camera_m) * [1.0, 0.0, 1.0]
+    towards /= np.linalg.norm(towards)
+    aside = np.array([towards[2], 0.0, -towards[0]])
+    out: Floats = aside * rng.uniform(-0.9, 0.9) - towards * rng.uniform(0.9, 1.8)
+    return out
+
+
+def _moved(pose: MovingPose, by_m: Floats) -> MovingPose:
+    opened, closed, middle = (
+        Pose(one.root_m + by_m, one.quats_xyzw) for one in (pose.opened, pose.closed, pose.middle)
+    )
+    return MovingPose(opened, closed, middle)
+
+
+def _example(
+    camera: Camera, shown: Bytes, empty: Bytes, joints_m: Floats, stature_m: float
+) -> Example | None:
+    """What is about the person, unless that is too near."""
+    there_m = to_camera(camera, joints_m)
+    if there_m[:, 2].min() < _NEAREST_M:
+        return None
+    size = stature_m / STATURE_M
+    middle_m = middle_of(there_m[0], there_m[INDEX["neck"]])
+    crop = crop_about(camera, middle_m, SIDE_M * size, PICTURE_PX)
+    M, square = crop.affine, (PICTURE_PX, PICTURE_PX)
+    crops = [
+        cv2.warpAffine(one, M, square, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+        for one in (shown, empty)
+    ]
+    uv = project(camera, joints_m)[_JOINTS] * crop.scale + crop.corner_px
+    farther = (there_m[_JOINTS, 2] - there_m[0, 2]) / size
+    return Example(np.concatenate(crops, axis=2), uv, farther)
+
+
+def main() -> int:
+    """Draw and write."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("clips", type=Path, help="a folder of clips of motion")
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--minutes", type=float, default=9.0)
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args()
+    cv2.setNumThreads(1)
+    clips = [read_clip(path) for path in sorted(args.clips.glob("cmu*.npz"))]
+    scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
+    args.out.mkdir(parents=True, exist_ok=True)
+    rng = np.random.default_rng(args.seed)
+    until_s, number = time.monotonic() + 60.0 * args.minutes, 0
+    while time.monotonic() < until_s:
+        examples: list[Example] = []
+        for _ in range(_SCENES_A_FILE):
+            scene = random_scene(rng, scenes)
+            for _ in range(_PEOPLE_A_SCENE):
+                examples += examples_of(rng, scene, clips)
+        np.savez(
+            args.out / f"{args.seed}_{number:04d}.npz",
+            pictures=np.array([one.picture for one in examples]),
+            uv=np.array([one.uv for one in examples], np.float32),
+            farther=np.array([one.farther for one in examples], np.float32),
+        )
+        number += 1
+        sys.stdout.write(f"{number} files\r")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,1 +1,0 @@
-"""Pictures of random people, on which the network of heatmaps is trained."""

@@ -1,0 +1,50 @@
+"""Random people to train on: they stand on the floor in poses that bodies have, and their joints are where they are drawn."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from lab.simulated.motion_clip import read_clip
+from lab.training.random_poses import random_pose
+from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
+from mocapd.vision.heatmaps.joint_network import JOINTS
+from tests.lab.test_train_arm_motion import clip
+
+
+def test_people_stand_on_the_floor_or_just_above_it(tmp_path: Path) -> None:
+    clip(tmp_path, "cmu_arms", 0.4)
+    clips, skeleton = [read_clip(tmp_path / "cmu_arms.npz")], standard_skeleton(1.75)
+    rng = np.random.default_rng(4)
+    faces, lowest_m = [], []
+    for _ in range(60):
+        pose = random_pose(rng, skeleton, clips, 0.02)
+        joints_m = joint_positions(skeleton, pose.opened)
+        feet = [INDEX[side + joint] for side in ("left", "right") for joint in ("Foot", "Toes")]
+        lowest_m.append((joints_m - skeleton.rest_m)[feet, 1].min())
+        across = joints_m[INDEX["leftUpperLeg"]] - joints_m[INDEX["rightUpperLeg"]]
+        faces.append(np.arctan2(across[2], across[0]))
+        away_m = joint_positions(skeleton, pose.closed) - joints_m
+        assert np.linalg.norm(away_m, axis=1).max() < 0.6  # nobody moves as fast as that
+    assert min(lowest_m) > -0.03
+    assert max(lowest_m) < 0.3
+    assert max(faces) - min(faces) > 5.0  # all the way round
+
+
+def test_joints_are_on_somebody_who_was_not_in_the_empty_picture(tmp_path: Path) -> None:
+    clip(tmp_path, "cmu_arms", 0.4)
+    subprocess.run(
+        [sys.executable, "-m", "lab.training.training_pictures", str(tmp_path), str(tmp_path / "out"),
+         "--minutes", "0.0001", "--seed", "3"], check=True, capture_output=True,
+    )  # fmt: skip
+    (path,) = (tmp_path / "out").glob("*.npz")
+    with np.load(path) as data:
+        pictures, uv, farther = data["pictures"], data["uv"], data["farther"]
+    assert len(pictures) > 200
+    assert farther.shape == (len(pictures), len(JOINTS))
+    off = np.abs(pictures[..., :3].astype(int) - pictures[..., 3:]).max(axis=-1)
+    at = np.rint(uv[:, [JOINTS.index("hips"), JOINTS.index("neck")]]).astype(int).clip(0, 127)
+    on_body = off[np.arange(len(off))[:, None], at[..., 1], at[..., 0]]
+    assert np.median(on_body) > 2.0 * np.median(off)
+    assert (on_body > 8).mean() > 0.8
