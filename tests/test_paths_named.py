@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # each begins at the root of the checkout, or at the package
 ROOMS = {p.name for p in (ROOT / "mocapd").iterdir() if p.is_dir()} - {"__pycache__"}
-TOPS = ("mocapd", "docs", "tests", "calib", "clients", "deb", "lab", "locks")
+TOPS = ("mocapd", "docs", "tests", "calib", "clients", "deb", "lab", "locks", "systemd")
 PAGES = (
     *ROOT.glob("*.md"),
     *(ROOT / "docs").rglob("*.md"),

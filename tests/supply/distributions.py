@@ -36,8 +36,13 @@ def package_files() -> set[str]:
         for path in (ROOT / "mocapd").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    calib = {f"mocapd/{p.relative_to(ROOT)}" for p in (ROOT / "calib").rglob("*") if p.is_file()}
-    return inside | calib
+    beside = {
+        f"mocapd/{path.relative_to(ROOT)}"
+        for folder in ("calib", "systemd")
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file()
+    }
+    return inside | beside
 
 
 @dataclass(frozen=True)

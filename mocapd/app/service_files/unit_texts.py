@@ -1,11 +1,10 @@
-"""The files of `mocapd/systemd` as they are installed: with the command that starts this very mocapd."""
+"""The files of `systemd/` as they are installed: with the command that starts this very mocapd."""
 
 from pathlib import Path
 
-import mocapd
+from mocapd.assets import systemd_path
 from mocapd.errors import ConfigError
 
-FOLDER = Path(mocapd.__file__).parent / "systemd"
 UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
 USER_UNIT = "mocapd-user.service"
 EXAMPLE = "network.conf"
@@ -18,8 +17,8 @@ _SPECIAL = "\"'\\$"  # to systemd, in a command line
 
 
 def text_of(name: str) -> str:
-    """A file as it stands in the package."""
-    return (FOLDER / name).read_text("utf-8")
+    """A file as it stands there."""
+    return systemd_path(name).read_text("utf-8")
 
 
 def unit_text(name: str, python: Path) -> str:
