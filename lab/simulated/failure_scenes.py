@@ -83,18 +83,7 @@ FAILURE_SCENES = (
 
 def failure_sessions(scene: Scenario) -> list[PlannedSession]:
     """Each failure in this room, before a pair 12 cm apart and a wide one; then the interruptions."""
-    seen = msgspec.structs.replace(
-        scene.cameras[0],
-        focal_px=None,
-        centre_px=None,
-        fov_deg=58.0,
-        dropped=0.0,
-        clock_offset_s=0.0,
-    )
-    rigs = {
-        "stereo": stereo_pair(_placed(seen, "cam0", (0.2, 1.35, 3.1))),
-        "pair": [_placed(seen, "cam0", (-1.7, 1.4, 2.6)), _placed(seen, "cam1", (1.8, 1.3, 2.5))],
-    }
+    rigs = _rigs(scene)
     sessions = []
     for number, one in enumerate(FAILURE_SCENES):
         last = one.keys[-1]
@@ -146,6 +135,41 @@ def interruptions(scene: Scenario, cameras: list[CameraSpec]) -> PlannedSession:
         absences=(Span(from_s=15.6, to_s=18.4),),
     )  # fmt: skip
     return PlannedSession("interruptions", scenario)
+
+
+def standing_sessions(scene: Scenario) -> list[tuple[PlannedSession, float]]:
+    """Somebody who stands still for ten seconds, in the shirt and in plain clothes, before both rigs; and since when [s]."""
+    still_s = 3.0  # arms hang since 2.2 s; whoever is found then settles
+    keys = [
+        _key(0.0, "t_pose", at_m=(0.0, 0.0), yaw_deg=0.0), _key(1.4, "t_pose"), _key(2.2),
+        _key(still_s + 10.4, at_m=(0.0, 0.0), yaw_deg=0.0),
+    ]  # fmt: skip
+    sessions = []
+    for number, (rig, cameras) in enumerate(_rigs(scene).items()):
+        for worn, clothes in (("shirt", scene.clothes), ("plain", _CLOTHES)):
+            scenario = msgspec.structs.replace(
+                scene, name=f"rest_{rig}_{worn}", seed=3200 + number, loop_s=still_s + 10.4, person_appears_s=EMPTY_S,
+                scribble_s=1.0, cameras=cameras, body=_BODY, clothes=clothes, motion=MotionSpec(keyframes=keys),
+                lights=_steady(scene),
+            )  # fmt: skip
+            sessions.append((PlannedSession(scenario.name, scenario), still_s))
+    return sessions
+
+
+def _rigs(scene: Scenario) -> dict[str, list[CameraSpec]]:
+    """A pair 12 cm apart and a wide one, which see the whole body."""
+    seen = msgspec.structs.replace(
+        scene.cameras[0],
+        focal_px=None,
+        centre_px=None,
+        fov_deg=58.0,
+        dropped=0.0,
+        clock_offset_s=0.0,
+    )
+    return {
+        "stereo": stereo_pair(_placed(seen, "cam0", (0.2, 1.35, 3.1))),
+        "pair": [_placed(seen, "cam0", (-1.7, 1.4, 2.6)), _placed(seen, "cam1", (1.8, 1.3, 2.5))],
+    }
 
 
 def _placed(camera: CameraSpec, name: str, at_m: tuple[float, float, float]) -> CameraSpec:

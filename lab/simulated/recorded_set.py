@@ -13,7 +13,7 @@ from mocapd.assets import asset_path
 from mocapd.errors import CannotCreateError, ConfigError, InputError
 from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import film_key
-from mocapd.sim.scenario import load_scenario
+from mocapd.sim.scenario import Scenario, load_scenario
 from mocapd.trackers.registry import TRACKERS, entry
 
 SCENES = ("living_room", "outdoor", "gym_mono")
@@ -37,7 +37,12 @@ def planned(clips: Path, *, plain: bool = False) -> list[PlannedSession]:
 
 def failures() -> list[PlannedSession]:
     """The scenes for the known failures, in the first of the rooms."""
-    return failure_sessions(load_scenario(asset_path("scenarios") / f"{SCENES[0]}.toml"))
+    return failure_sessions(first_scene())
+
+
+def first_scene() -> Scenario:
+    """The first of the rooms."""
+    return load_scenario(asset_path("scenarios") / f"{SCENES[0]}.toml")
 
 
 def interrupted() -> PlannedSession:

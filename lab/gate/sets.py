@@ -1,0 +1,78 @@
+"""The sets of recordings: which tracker follows them, which joints are scored, and how often each is tracked."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from lab.simulated import recorded_set
+from lab.simulated.failure_scenes import standing_sessions
+from lab.simulated.session_plan import PlannedSession
+from mocapd.errors import InputError
+from mocapd.evaluate.capture_eval import Case, open_case
+from mocapd.session.tracker_setup import Progress
+
+SETS = ("dev", "shirt", "plain", "failures", "interruptions", "rest")
+_SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GateCase:
+    """One recording of a set. joints: which are scored; by_chance: whether runs that hardly differ end apart, so that it
+    is tracked several times; still_from_s: from then on nobody moves, None for a recording of motion."""
+
+    set_name: str
+    case: Case
+    joints: str
+    by_chance: bool = True
+    still_from_s: float | None = None
+
+
+def cases_of(
+    names: tuple[str, ...], clips: Path, captures: Path, cache_dir: Path, progress: Progress
+) -> Iterator[GateCase]:
+    """The recordings of these sets, those that are simulated made if need be. Raises InputError."""
+    makers: dict[str, Callable[[], Iterator[GateCase]]] = {
+        "dev": lambda: _dev(captures),
+        "shirt": lambda: _simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
+        "plain": lambda: _simulated(
+            "plain", recorded_set.planned(clips, plain=True), cache_dir, progress
+        ),
+        "failures": lambda: _simulated(
+            "failures", recorded_set.failures()[:-1], cache_dir, progress
+        ),
+        "interruptions": lambda: _simulated(
+            "interruptions", [recorded_set.interrupted()], cache_dir, progress
+        ),
+        "rest": lambda: _still(cache_dir, progress),
+    }
+    for name in names:
+        if name not in makers:
+            raise InputError(f"there is no set {name!r}", "--sets", f"some of: {', '.join(SETS)}")
+        yield from makers[name]()
+
+
+def _dev(captures: Path) -> Iterator[GateCase]:
+    folders = sorted(path.parent for path in captures.glob("*/rig.json"))
+    if not folders:
+        raise InputError("holds no capture", str(captures), "give the folder with --captures")
+    for folder in folders:
+        joints = "full" if folder.name.startswith(_SCORED_WHOLE) else "upper"
+        yield GateCase("dev", open_case(folder), joints)
+
+
+def _simulated(
+    name: str,
+    sessions: list[PlannedSession],
+    cache_dir: Path,
+    progress: Progress,
+) -> Iterator[GateCase]:
+    for session in sessions:
+        (folder,) = recorded_set.recorded([session], cache_dir, progress)
+        joints = "full" if session.scenario.body.whole else "upper"
+        yield GateCase(name, open_case(folder), joints, by_chance=name != "shirt")
+
+
+def _still(cache_dir: Path, progress: Progress) -> Iterator[GateCase]:
+    for session, still_from_s in standing_sessions(recorded_set.first_scene()):
+        (folder,) = recorded_set.recorded([session], cache_dir, progress)
+        yield GateCase("rest", open_case(folder), "full", still_from_s=still_from_s)
