@@ -27,7 +27,7 @@ from lab.compared.comparison_report import comparison_tables, roc_json, roc_tabl
 from lab.compared.rivals import RIVALS, ready_rival
 from lab.pages.evaluation_page import write_page
 from lab.simulated.recorded_set import check_suits, planned, recorded
-from mocapd.app.progress import ProgressBars
+from mocapd.app.terminal.progress import ProgressBars
 from mocapd.cli.eval import Joints
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.errors import ConfigError

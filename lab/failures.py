@@ -19,7 +19,7 @@ from lab.command_line import (
 )
 from lab.pages import failures_page as page
 from lab.simulated import recorded_set
-from mocapd.app.progress import ProgressBars
+from mocapd.app.terminal.progress import ProgressBars
 from mocapd.cli.eval import Joints
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate import report, runs

@@ -18,7 +18,7 @@ from lab.command_line import (
 from lab.pages import interruptions_page as page
 from lab.simulated import recorded_set
 from lab.studies import speakers
-from mocapd.app.progress import ProgressBars
+from mocapd.app.terminal.progress import ProgressBars
 from mocapd.calibration.from_origin import from_capture
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate.capture_eval import open_case

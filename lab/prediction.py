@@ -11,7 +11,7 @@ import typer
 
 from lab.command_line import TrackerOption, prepared_config, run
 from lab.studies.prediction_error import prediction_table
-from mocapd.app.progress import ProgressBars
+from mocapd.app.terminal.progress import ProgressBars
 from mocapd.calibration.from_origin import from_capture
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate.capture_eval import Case, open_case

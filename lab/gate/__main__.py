@@ -1,6 +1,6 @@
 """Track every set of recordings, and compare the figures with those of another commit.
 
-python -m lab.gate CLIPS --captures CAPTURES --against lab/gate/old/ce8d1af.json --out new.json
+python -m lab.gate CLIPS --captures CAPTURES --against OLD.json --out NEW.json
 """
 
 import sys
@@ -16,7 +16,7 @@ from lab.gate.measuring import measure
 from lab.gate.report import report
 from lab.gate.sets import SETS, cases_of
 from lab.gate.verdict import failures
-from mocapd.app.progress import ProgressBars
+from mocapd.app.terminal.progress import ProgressBars
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import Progress, cached, ready_tracker

@@ -78,7 +78,7 @@ def bench_command(
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.app.progress import ProgressBars
+    from mocapd.app.terminal.progress import ProgressBars
     from mocapd.evaluate.bench import bench_report
     from mocapd.evaluate.bench.bench_input import open_input
     from mocapd.evaluate.bench.bench_run import Bench

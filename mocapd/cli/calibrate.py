@@ -107,7 +107,7 @@ def calibrate(
         config, settings, cameras, state_dir=None if state_dir is None else str(state_dir)
     ).config
     if from_folder is not None:
-        from mocapd.app.folder_calibration_run import FolderOptions, calibrate_folder
+        from mocapd.app.setup.folder_calibration_run import FolderOptions, calibrate_folder
 
         options = FolderOptions(
             from_folder, out, size, square, board, marker, dictionary, inverted, legacy, two_sided,
@@ -115,7 +115,7 @@ def calibrate(
         )  # fmt: skip
         calibrate_folder(options, effective)
         return
-    from mocapd.app.setup_run import PageOptions, calibrate_page
+    from mocapd.app.setup.setup_run import PageOptions, calibrate_page
 
     if out is not None or strokes is not None or floor_frame is not None or as_json:
         from mocapd.errors import ConfigError

@@ -49,7 +49,7 @@ def camera_node(
 
     Example: mocapd camera-node --name attic --camera left=usb:1-3:046d:0825: --listen tls/0.0.0.0:7447
     """
-    from mocapd.app.camera_node_run import run_camera_node
+    from mocapd.app.daemon.camera_node_run import run_camera_node
 
     effective = effective_config(
         config,

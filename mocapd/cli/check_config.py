@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mocapd.app.unsafe_settings import unsafe_settings
+from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
 
 if TYPE_CHECKING:

@@ -77,7 +77,7 @@ def evaluate_captures(
     name = effective.tracker.name
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.app.progress import ProgressBars
+    from mocapd.app.terminal.progress import ProgressBars
     from mocapd.evaluate import runs, score_page
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.report import score_json, score_table

@@ -3,7 +3,7 @@
 import os
 import sys
 
-from mocapd.app.first_signals import SIGINT_EXIT, end_at_once, ended, interruptible
+from mocapd.app.daemon.early_signals import SIGINT_EXIT, end_at_once, ended, interruptible
 
 # Read by the libraries while they are imported. A pool of threads costs more than it brings at the
 # sizes met here: one thread per camera, and the libraries at one each.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.app.unsafe_settings import unsafe_settings
+from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.cli.options import (
     CameraOption,
     CaptureOption,
@@ -65,7 +65,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     """Run with the configuration that is read, now and whenever it is to be read again, until it ends; the
     exit code. `hint` is logged once it runs."""
     from mocapd.app.libraries import prepare_libraries
-    from mocapd.app.logs import set_up_logs
+    from mocapd.app.terminal.logs import set_up_logs
 
     effective = read()
     config = effective.config
@@ -74,12 +74,12 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     for line in unsafe_settings(effective):
         _log.warning("unsafe: %s", line)
 
-    from mocapd.app.daemon_page import DaemonPage
-    from mocapd.app.first_session import prepared_session
-    from mocapd.app.running import Signals, end_despite_work, run_daemon
-    from mocapd.app.session_change import SessionChange
-    from mocapd.app.supervised.notifier import Notifier
-    from mocapd.app.supervised.supervision import Supervision
+    from mocapd.app.daemon.daemon_page import DaemonPage
+    from mocapd.app.daemon.initial_session import prepared_session
+    from mocapd.app.daemon.main_loop import Signals, end_despite_work, run_daemon
+    from mocapd.app.daemon.notifier import Notifier
+    from mocapd.app.daemon.session_change import SessionChange
+    from mocapd.app.daemon.supervision import Supervision
     from mocapd.config.runtime_folder import runtime_folder
     from mocapd.control.daemon_control import DaemonControl
     from mocapd.control.last_trouble import LastTrouble

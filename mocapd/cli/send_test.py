@@ -37,7 +37,7 @@ def send_test_command(
     Example: mocapd send-test --output vrchat --host 192.168.1.20
     """
     from mocapd.app.libraries import prepare_libraries
-    from mocapd.app.logs import set_up_logs
+    from mocapd.app.terminal.logs import set_up_logs
     from mocapd.outputs.aim import resolved
     from mocapd.outputs.instance import instance_name
     from mocapd.outputs.registry import OUTPUTS
@@ -53,7 +53,7 @@ def send_test_command(
     if host is not None or port is not None:
         section = entry.aimed(section, None if host is None else resolved(host), port)
 
-    from mocapd.app.send_test_run import send_test
+    from mocapd.app.terminal.send_test_run import send_test
 
     instance = instance_name(effective.instance)
     raise typer.Exit(send_test(entry.build(section, instance), instance, seconds))

@@ -65,14 +65,14 @@ def track(
     Example: mocapd track captures/office --out office.npz --tracker colour
     """
     from mocapd.app.libraries import prepare_libraries
-    from mocapd.app.logs import set_up_logs
+    from mocapd.app.terminal.logs import set_up_logs
 
     refuse_variant(variant)
     effective = effective_config(config, settings, tracker__name=tracker).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.app.progress import ProgressBars
+    from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.session.offline import check_writable, learn_room, track_all, write_track

@@ -58,7 +58,7 @@ def watch(
     zenoh = zenoh_section(effective_config(config, settings).config.outputs)
     link = link_of(zenoh, endpoint, instance, timeout_s)
     if every:
-        from mocapd.app.watch_all import watch_all
+        from mocapd.app.terminal.watch_all import watch_all
 
         watch_all(link, as_json, count)
         return

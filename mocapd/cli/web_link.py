@@ -20,7 +20,7 @@ def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from urllib.parse import urlsplit
 
-    from mocapd.app.chosen_page import page_meant
+    from mocapd.app.setup.chosen_page import page_meant
     from mocapd.web.games.frames_access import FramesAccess
 
     daemon = page_meant(effective_config(config, settings).config)

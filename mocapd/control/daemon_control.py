@@ -18,7 +18,7 @@ _log = logging.getLogger(__name__)
 
 
 class DaemonControl:
-    """A context manager, and beside the service when there is one (see app.running.Beside). Its socket is there from
+    """A context manager, and a hook of the loop when there is one (see main_loop.LoopHook). Its socket is there from
     `open` on, while the first session is still prepared. `path`: where."""
 
     def __init__(
@@ -49,11 +49,11 @@ class DaemonControl:
         if self._death is not None:
             service.died(self._death)
 
-    def beat(self, _snapshot: Snapshot) -> None:
-        """See Beside."""
+    def on_tick(self, _snapshot: Snapshot) -> None:
+        """See LoopHook."""
 
     def let_go(self) -> None:
-        """See Beside."""
+        """See LoopHook."""
         self._socket.close()
 
     def _died(self, error: BaseException) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from mocapd.app.recordings.published import PublishedStream
 from mocapd.app.recordings.recording_run import Recorder, duration
-from mocapd.app.status_line import StatusLine
+from mocapd.app.terminal.status_line import StatusLine
 from mocapd.boundary.mcap_records import McapAttachment, McapFile
 from mocapd.capture.recording.mcap_origin import open_recording
 from mocapd.capture.recording.recorded_known import known_of

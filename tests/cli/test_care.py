@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from mocapd.app.status_text import duration, status_lines
+from mocapd.app.terminal.status_text import duration, status_lines
 from mocapd.config.runtime_folder import runtime_folder
 from mocapd.control.control_socket import ControlSocket
 from mocapd.control.messages import Recentered, Reloaded, StatusReport, Trouble, Verb

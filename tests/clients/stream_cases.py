@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from mocapd.app.waving_person import waving_person
+from mocapd.app.terminal.waving_person import waving_person
 from mocapd.body.shape import mean_shape
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.osc import osc_encoding as osc

@@ -4,9 +4,9 @@ import os
 import sys
 import threading
 
-from mocapd.app.running import Signals, run_daemon
-from mocapd.app.supervised.notifier import Notifier
-from mocapd.app.supervised.supervision import Supervision
+from mocapd.app.daemon.main_loop import Signals, run_daemon
+from mocapd.app.daemon.notifier import Notifier
+from mocapd.app.daemon.supervision import Supervision
 from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.config.sections import Config
 from mocapd.service.service import Service, Snapshot
@@ -40,7 +40,7 @@ class _Beats:
     def __init__(self, notifier: Notifier) -> None:
         self._notifier, self._count = notifier, 0
 
-    def beat(self, snapshot: Snapshot) -> None:
+    def on_tick(self, snapshot: Snapshot) -> None:
         self._count += 1
         self._notifier.status(f"beat {self._count}")
 
@@ -58,7 +58,7 @@ def main() -> int:
     )
     signals = Signals()
     watched = (Supervision(notifier), _Beats(beside))
-    return run_daemon(Service(Config(outputs={}), session), signals, beside=watched)
+    return run_daemon(Service(Config(outputs={}), session), signals, hooks=watched)
 
 
 if __name__ == "__main__":

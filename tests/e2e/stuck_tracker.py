@@ -2,7 +2,7 @@
 
 import sys
 
-from mocapd.app.running import Signals, run_daemon
+from mocapd.app.daemon.main_loop import Signals, run_daemon
 from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.config.sections import Config, TrackerSection
 from mocapd.errors import MocapdError

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from pythonosc.osc_bundle import OscBundle
 
-from mocapd.app.status_line import status_text
+from mocapd.app.terminal.status_line import status_text
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.service.health import camera_message
 from mocapd.service.service import Service

@@ -106,7 +106,7 @@ def test_without_a_terminal_sighup_ends_nothing_from_its_first_import_on(
 def test_who_ends_with_what_while_it_is_imported(words: str, number: int, code: int) -> None:
     program = (
         "import os, sys, time\n"
-        "from mocapd.app.first_signals import end_at_once\n"
+        "from mocapd.app.daemon.early_signals import end_at_once\n"
         "end_at_once(['mocapd', *sys.argv[2:]])\n"
         "os.kill(os.getpid(), int(sys.argv[1]))\n"
         "time.sleep(10)\n"

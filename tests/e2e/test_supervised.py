@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.supervised.manager import Manager
+from tests.app.daemon.manager import Manager
 from tests.capture.films import write_film
 from tests.cli.mocapd_process import COMMAND
 from tests.cli.own_time import end_within

@@ -14,7 +14,7 @@ import zenoh
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
-from mocapd.app.daemon_pictures import RecordingHeader
+from mocapd.app.daemon.daemon_pictures import RecordingHeader
 from mocapd.boundary.messages import decode_json, decode_msgpack
 from mocapd.client import Link
 from mocapd.client import connect as connect_to_bus

@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.app.first_start import MARKER, prepare_apart
+from mocapd.app.daemon.cache_warmup import MARKER, prepare_apart
 from mocapd.config.sections import Config
 from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME

@@ -7,7 +7,7 @@ import socket
 import string
 from random import Random
 
-from mocapd.app.supervised.notifier import Notifier
+from mocapd.app.daemon.notifier import Notifier
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 

@@ -18,7 +18,7 @@ from tests.outputs.zenoh_pair import GET_S, other_program, running_sink
 # A daemon that sends to its subscribers until somebody says so, then ends as `mocapd run` does.
 DAEMON = """
 import sys, threading
-from mocapd.app.running import end_despite_work
+from mocapd.app.daemon.main_loop import end_despite_work
 from mocapd.outputs.zenoh.zenoh_config import Params
 from mocapd.outputs.zenoh.zenoh_sink import ZenohSink
 from tests.cli.own_time import own_time

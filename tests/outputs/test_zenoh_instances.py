@@ -6,7 +6,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from mocapd.app.watch_all import as_dict, as_text, watch_all
+from mocapd.app.terminal.watch_all import as_dict, as_text, watch_all
 from mocapd.client import Link
 from mocapd.outputs.messages import CameraStatus, Health
 from mocapd.outputs.zenoh import keys

@@ -36,7 +36,7 @@ wanted 5 "it is ready while the tracker is compiled" "$(state compiling) && $(is
 wanted 20 "a line in the log says so" "$(logged 'compiling the tracker')"
 wanted 1800 "somebody is tracked" "$(state 'somebody is tracked')"
 told 'systemctl status mocapd --no-pager --lines=0'
-told 'journalctl -u mocapd -o cat --no-pager | grep first_start'
+told 'journalctl -u mocapd -o cat --no-pager | grep cache_warmup'
 wanted 60 "games get frames" "timeout 50 mocapd watch --count 2"
 
 pid=$(systemctl show mocapd -P MainPID)

@@ -31,7 +31,7 @@ echo "ready after $((SECONDS - began)) s"
 wanted 1 "it is ready while the tracker is compiled" "$(state compiling) && $(is ActiveState active)"
 wanted 30 "a line in the log says so" "$(logged 'compiling the tracker')"
 every=5 wanted 3600 "somebody is tracked by two USB webcams" "$tracked"
-told 'journalctl -u mocapd -o cat --no-pager | grep -e first_start -e supervision'
+told 'journalctl -u mocapd -o cat --no-pager | grep -e cache_warmup -e supervision'
 told 'systemctl status mocapd --no-pager --lines=0'
 told mocapd status
 wanted 60 "games get frames" "timeout 50 mocapd watch --count 2"

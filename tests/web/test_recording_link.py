@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from mocapd.app.daemon_pictures import DaemonPictures
+from mocapd.app.daemon.daemon_pictures import DaemonPictures
 from mocapd.capture.kinds.source_kinds import open_origin
 from mocapd.config.web_params import Params
 from mocapd.errors import UnavailableError

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.app.daemon_pictures import DaemonPictures
+from mocapd.app.daemon.daemon_pictures import DaemonPictures
 from mocapd.app.recordings.published import Published, PublishedStream
-from mocapd.app.status_line import StatusLine
+from mocapd.app.terminal.status_line import StatusLine
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
 from mocapd.latch import Latch

@@ -45,7 +45,7 @@ def status(
 
     Example: mocapd status --json | jq .state
     """
-    from mocapd.app.status_text import status_lines
+    from mocapd.app.terminal.status_text import status_lines
     from mocapd.control.meant import daemons_found, meant, why_none
 
     effective, error = config_to_look_after(config, settings)
@@ -68,7 +68,7 @@ def status(
 
 def _print_all(link: "Link", as_json: bool) -> int:
     """The exit code."""
-    from mocapd.app.watch_all import as_dict, as_text, is_able, on_the_bus
+    from mocapd.app.terminal.watch_all import as_dict, as_text, is_able, on_the_bus
     from mocapd.errors import UnavailableError
 
     try:

@@ -36,8 +36,8 @@ def export(
 
     Example: mocapd export training.mcap --to glb
     """
-    from mocapd.app.logs import set_up_logs
     from mocapd.app.recordings.exporting import motion_of
+    from mocapd.app.terminal.logs import set_up_logs
     from mocapd.exports.formats import FORMATS, write_export
     from mocapd.outputs.mcap.recording_reader import RecordingReader
 

@@ -55,12 +55,12 @@ def record(
     """
     from contextlib import ExitStack
 
-    from mocapd.app.daemon_pictures import DaemonPictures
-    from mocapd.app.logs import set_up_logs
+    from mocapd.app.daemon.daemon_pictures import DaemonPictures
+    from mocapd.app.daemon.main_loop import Signals
     from mocapd.app.recordings.published import PublishedStream
     from mocapd.app.recordings.recording_run import Recorder, default_path, duration
-    from mocapd.app.running import Signals
-    from mocapd.app.status_line import StatusLine
+    from mocapd.app.terminal.logs import set_up_logs
+    from mocapd.app.terminal.status_line import StatusLine
     from mocapd.cli.watch import link_of
     from mocapd.clock import monotonic_ns
     from mocapd.clock import seconds as in_seconds

@@ -49,10 +49,10 @@ def replay(
     """
     from contextlib import ExitStack
 
-    from mocapd.app.logs import set_up_logs
+    from mocapd.app.daemon.main_loop import Signals
     from mocapd.app.recordings.replay_run import Replay, ReplayParams
-    from mocapd.app.running import Signals
-    from mocapd.app.status_line import StatusLine
+    from mocapd.app.terminal.logs import set_up_logs
+    from mocapd.app.terminal.status_line import StatusLine
     from mocapd.outputs.instance import instance_name
     from mocapd.outputs.mcap.recording_reader import RecordingReader
     from mocapd.outputs.registry import build_sinks

@@ -27,6 +27,6 @@ def as_service(
 
     Example: sudo mocapd as-service calibrate
     """
-    from mocapd.app.service_files.as_service import become
+    from mocapd.app.install.as_service import become
 
     become(rig, words)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from mocapd.app.service_files.installing import Done
+    from mocapd.app.install.installing import Done
 
 UserOption = Annotated[
     bool, typer.Option("--user", help="A service of your own, which runs while you are logged in.")
@@ -48,7 +48,7 @@ def install_service(
 
     Example: sudo /opt/mocapd/bin/mocapd install-service
     """
-    from mocapd.app.service_files.installing import (
+    from mocapd.app.install.installing import (
         Target,
         hidden_hint,
         install,
@@ -77,7 +77,7 @@ def uninstall_service(
 
     Example: sudo /opt/mocapd/bin/mocapd uninstall-service
     """
-    from mocapd.app.service_files.installing import (
+    from mocapd.app.install.installing import (
         Target,
         steps_after,
         uninstall,
@@ -102,7 +102,7 @@ def _print(done: "list[Done]", dry_run: bool) -> None:
 
 
 def _outcome(one: "Done") -> str:
-    from mocapd.app.service_files.own_file import Outcome
+    from mocapd.app.install.own_file import Outcome
 
     if one.is_admins and one.outcome is Outcome.UNCHANGED:
         return "yours, left alone"

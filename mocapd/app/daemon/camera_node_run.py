@@ -1,0 +1,90 @@
+"""What `mocapd camera-node` runs: the cameras of the configuration, one line of state, an orderly end."""
+
+import logging
+import threading
+import traceback
+from typing import TYPE_CHECKING
+
+from mocapd.app.daemon.unsafe_settings import unsafe_settings
+from mocapd.app.libraries import prepare_libraries
+from mocapd.app.terminal.logs import set_up_logs
+from mocapd.errors import ConfigError
+
+if TYPE_CHECKING:
+    from mocapd.config.effective import Effective
+    from mocapd.node.camera_node import CameraNode
+
+SHOW_EVERY_S = 0.5  # how often the status line changes [s]
+
+_log = logging.getLogger(__name__)
+
+
+def run_camera_node(effective: "Effective", imperfect: str) -> int:
+    """Run until it is told to end; the exit code. Raises MocapdError."""
+    config = effective.config
+    set_up_logs(config.log_level)
+    if not config.camera:
+        raise ConfigError(
+            "no camera is configured",
+            "camera-node",
+            "add [[camera]] (see `mocapd cameras`), or --camera ID=SOURCE",
+        )
+    prepare_libraries(config.cache_dir)
+    for line in unsafe_settings(effective):
+        _log.warning("unsafe: %s", line)
+
+    from mocapd.app.daemon.main_loop import INTERNAL_ERROR, Signals, end_despite_work
+    from mocapd.app.daemon.notifier import Notifier
+    from mocapd.app.terminal.progress import ProgressBars
+    from mocapd.app.terminal.status_line import StatusLine
+    from mocapd.capture.kinds.source_kinds import open_origin
+    from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
+    from mocapd.node.imperfections import parse_imperfections
+    from mocapd.outputs.registry import zenoh_section
+    from mocapd.session.camera_inputs import camera_inputs, common_origin
+
+    signals, notifier = Signals(), Notifier.of_environment()
+    origin = common_origin(config.camera)
+    with ProgressBars() as progress:
+        opened = open_origin(origin, config.cache_dir, progress) if origin else None
+    inputs = camera_inputs(config.camera, None, opened, config.node.size_px)
+    faults = parse_imperfections(imperfect) if imperfect else None
+    node = CameraNode(config.instance, zenoh_section(config.outputs), config.node, inputs, faults)
+    # a thread nobody watches must not die unseen either
+    threading.excepthook = lambda args: node.died(args.exc_value or RuntimeError(args.exc_type))
+    signals.ends(node)
+    try:
+        with node, StatusLine() as shown:
+            print("\n".join(_how_to(node)), flush=True)
+            notifier.ready(_how_cameras_fare(node))
+            while not node.wait(SHOW_EVERY_S):
+                shown.say(lambda: state_text(node))
+                notifier.status(_how_cameras_fare(node))
+                if notifier.wants_life:
+                    notifier.alive()
+            notifier.stopping()
+    except NodeThreadDiedError as error:
+        traceback.print_exception(error.__cause__)
+        return INTERNAL_ERROR
+    end_despite_work(signals.exit_code)
+    return signals.exit_code
+
+
+def _how_to(node: "CameraNode") -> list[str]:
+    sources = [f'    source = "{address}"' for address in node.addresses()]
+    return ["in the daemon's configuration, one [[camera]] for each of:", *sources]
+
+
+def _how_cameras_fare(node: "CameraNode") -> str:
+    """In a word each; it changes only when something happens."""
+    return ", ".join(f"{one.name} {one.state.state}" for one in node.cameras)
+
+
+def state_text(node: "CameraNode") -> str:
+    """Each camera with its rate or its trouble, and how much was sent, in one line."""
+    parts = []
+    for camera in node.cameras:
+        state = camera.state
+        how = f"{state.rate_hz:.1f} Hz" if state.state == "live" else state.state
+        parts.append(f"{camera.name} {how}, {camera.sent} sent")
+    return f"{node.name} | " + " | ".join(parts)

@@ -1,0 +1,102 @@
+"""The page of a running service: served once bodies come, over one session after another."""
+
+import logging
+import time
+from typing import TYPE_CHECKING
+
+from mocapd.errors import MocapdError
+
+if TYPE_CHECKING:
+    from mocapd.service.service import Service, Snapshot
+    from mocapd.web.server import WebServer
+    from mocapd.wizard.hosts.daemon_host import DaemonHost
+
+PATIENCE_S = 5.0  # that the page waits for the first body, so as not to delay it [s]
+HANG_UP_S = 0.5  # for browsers, at the end [s]
+SHOWN_S = 2.0  # a saved setup is shown as saved before it ends [s]
+
+_log = logging.getLogger(__name__)
+
+
+class DaemonPage:
+    """Used by the main thread, apart from what its host's own words say."""
+
+    def __init__(self, service: "Service") -> None:
+        self._service = service
+        self._host: DaemonHost | None = None
+        self._server: WebServer | None = None
+        self._began_s = time.monotonic()
+        self._saved_s: float | None = None
+
+    def on_tick(self, snapshot: "Snapshot") -> None:
+        """Called several times a second."""
+        if self._host is None:
+            waited_s = time.monotonic() - self._began_s
+            if snapshot.metrics.published > 0 or waited_s > PATIENCE_S:
+                self._begin()
+            return
+        self._host.beat()
+        if self._host.saved.is_set() and self._saved_s is None:
+            self._saved_s = time.monotonic()
+            if not self._runs_on_saved():
+                _log.info("a calibration is saved; this daemon goes on with what it was started on")
+
+    def take_saved(self) -> bool:
+        """Whether a setup has saved what the service runs on, and has been shown as saved; once."""
+        if self._saved_s is None or time.monotonic() - self._saved_s < SHOWN_S:
+            return False
+        if self._host is not None:
+            self._host.saved.clear()
+        self._saved_s = None
+        return self._runs_on_saved()
+
+    def rest(self) -> None:
+        """The session is about to be changed: a setup on it ends, and none begins."""
+        if self._host is not None:
+            self._host.rest()
+
+    def resume(self) -> None:
+        """A session runs that stays."""
+        if self._host is not None:
+            self._host.resume()
+
+    def let_go(self) -> None:
+        """The service is about to end; never blocks for long."""
+        if self._server is not None:
+            self._server.let_go()
+        self.rest()
+
+    def close(self) -> None:
+        """For ever."""
+        if self._server is not None:
+            self._server.stop(HANG_UP_S)
+
+    def _begin(self) -> None:
+        # here, as it takes a third of a second that nobody waits for now
+        from mocapd.config.runtime_folder import runtime_folder
+        from mocapd.web.runtime_file import Place
+        from mocapd.web.server import WebServer
+        from mocapd.wizard.hosts.daemon_host import DaemonHost
+
+        service, config = self._service, self._service.config
+        self._host = DaemonHost(service)
+        place = Place(runtime_folder(config.state_dir), config.state_dir, service.instance)
+        server = WebServer(self._host, config.web, service.died, place)
+        try:
+            server.start()
+        except MocapdError as error:  # bodies are what the daemon is for: it goes on without a page
+            _log.warning("no page: %s", error)
+            return
+        self._server = server
+        _log.info("`mocapd calibrate` opens the page with the live view and the setup")
+
+    def _runs_on_saved(self) -> bool:
+        """Whether a session that is made now takes up what was saved."""
+        from mocapd.calibration.calibration_file import calibration_path
+        from mocapd.wizard.hosts.daemon_host import state_dir_of
+
+        config = self._service.config
+        if config.rig is None:
+            return state_dir_of(config, self._service.session) == config.state_dir
+        saved = calibration_path(config.state_dir)
+        return calibration_path(config.rig).resolve() == saved.resolve()

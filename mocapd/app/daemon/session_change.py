@@ -1,0 +1,147 @@
+"""Another session for a running service: prepared beside the one that runs, then put in its place."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from mocapd.app.daemon.daemon_page import DaemonPage
+from mocapd.app.daemon.heap import give_back
+from mocapd.app.daemon.main_loop import Signals
+from mocapd.app.daemon.notifier import Notifier
+from mocapd.app.daemon.unsafe_settings import unsafe_settings
+from mocapd.app.terminal.logs import set_up_logs
+from mocapd.config.effective import Effective
+from mocapd.config.live_changes import taken_live
+from mocapd.control.messages import Reloaded
+from mocapd.control.reloads import Reloads
+from mocapd.errors import MocapdError
+from mocapd.service.service import Service, Snapshot
+from mocapd.session.session import Session, open_session
+
+_log = logging.getLogger(__name__)
+
+SAVED = "a calibration was saved"
+ASKED = "told to read the configuration again"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ready:
+    """What is to run next; `waiting`: what of the configuration is left for the next start."""
+
+    effective: Effective
+    waiting: tuple[str, ...]
+    session: Session
+
+
+class _Preparation:
+    """One preparation, in a thread of its own; the process does not wait for it when it ends.
+
+    Configuration and calibration are read again from where they came, and the tracker is built and
+    rehearsed: seconds, in which the session before goes on.
+    """
+
+    def __init__(self, service: Service, read: Callable[[], Effective]) -> None:
+        self._service, self._read = service, read
+        self.ready: _Ready | None = None
+        self.refused: MocapdError | None = None
+        self._thread = threading.Thread(target=self._run, name="next-session")
+        self._thread.start()
+
+    @property
+    def over(self) -> bool:
+        """Whether it has come to an end, good or bad."""
+        return not self._thread.is_alive()
+
+    def _run(self) -> None:
+        try:
+            effective = self._read()
+            config, waiting = taken_live(self._service.config, effective.config)
+            session = open_session(config, _quiet)
+        except MocapdError as error:
+            self.refused = error
+            return
+        changed = Effective(config, effective.settings, effective.file)
+        self.ready = _Ready(changed, waiting, session)
+
+
+class SessionChange:
+    """See LoopHook. Changes the session when a setup has saved what the service runs on, and when a signal or
+    another thread, by `reloads`, asks for it. `page`: what the browser shows, None without one."""
+
+    def __init__(
+        self,
+        service: Service,
+        read: Callable[[], Effective],
+        signals: Signals,
+        page: DaemonPage | None,
+        notifier: Notifier,
+    ) -> None:
+        """read: the configuration from its sources, as at the start."""
+        self._service, self._read, self._signals, self._page = service, read, signals, page
+        self.reloads = Reloads()
+        self._notifier = notifier  # hears when a reload begins and ends
+        self._preparation: _Preparation | None = None
+        self._why = ""
+
+    def on_tick(self, snapshot: Snapshot) -> None:
+        """See LoopHook."""
+        if self._page is not None:
+            self._page.on_tick(snapshot)
+        if self._preparation is None:
+            self._begin_if_asked()
+        elif self._preparation.over:
+            preparation, self._preparation = self._preparation, None
+            if preparation.ready is not None:
+                self._take(preparation.ready)
+            elif preparation.refused is not None:
+                _log.warning(
+                    "%s, but the session goes on as it was: %s", self._why, preparation.refused
+                )
+                self.reloads.settle(preparation.refused)
+            if self._why == ASKED:
+                self._notifier.reloaded()
+            if self._page is not None:
+                self._page.resume()
+
+    def let_go(self) -> None:
+        """See LoopHook."""
+        self.reloads.close()
+        if self._page is not None:
+            self._page.let_go()
+
+    def _begin_if_asked(self) -> None:
+        if self._page is not None and self._page.take_saved():
+            # its own tracker goes before another one comes
+            self._page.rest()
+            self._begin(SAVED)
+        elif self._signals.take_reload() | self.reloads.take():
+            self._notifier.reloading()
+            self._begin(ASKED)
+
+    def _begin(self, why: str) -> None:
+        self._why = why
+        _log.info("%s: preparing another session while this one goes on", why)
+        self._preparation = _Preparation(self._service, self._read)
+
+    def _take(self, ready: _Ready) -> None:
+        config = ready.effective.config
+        if config.log_level != self._service.config.log_level:
+            set_up_logs(config.log_level)
+        for line in unsafe_settings(ready.effective):
+            _log.warning("unsafe: %s", line)
+        if ready.waiting:
+            _log.warning("changed, but only for the next start: %s", ", ".join(ready.waiting))
+        if self._page is not None:
+            self._page.rest()
+        began_s = time.monotonic()
+        self._service.replace(config, ready.session)
+        took_s = time.monotonic() - began_s
+        give_back()
+        _log.info("%s: taken up, within %.2f s", self._why, took_s)
+        self.reloads.settle(Reloaded(took_s, ready.waiting))
+
+
+def _quiet(_what: str, _done: int, _total: int) -> None:
+    """Bars would be in the way of the status line."""

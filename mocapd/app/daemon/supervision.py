@@ -1,0 +1,50 @@
+"""What goes on beside a running daemon for its service manager: its state in words, and signs of life."""
+
+import logging
+
+from mocapd.app.daemon.notifier import Notifier
+from mocapd.app.daemon.progress_watch import ProgressWatch
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.service.service import Snapshot
+from mocapd.types import Tracking
+
+_log = logging.getLogger(__name__)
+
+
+class Supervision:
+    """See LoopHook."""
+
+    def __init__(self, notifier: Notifier) -> None:
+        self._notifier = notifier
+        self._watch = ProgressWatch()
+        self._runs = False
+
+    def on_tick(self, snapshot: Snapshot) -> None:
+        """See LoopHook."""
+        self._notifier.status(state_text(snapshot))
+        if self._notifier.wants_life and self._watch.has_progressed(snapshot):
+            self._notifier.alive()
+        if not self._runs and snapshot.metrics.published:
+            self._runs = True
+            _log.info("the first body is sent: %s", state_text(snapshot))
+
+    def let_go(self) -> None:
+        """See LoopHook."""
+        self._notifier.stopping()
+
+
+def state_text(snapshot: Snapshot) -> str:
+    """Who is tracked, and each camera: only what changes seldom, so no figures."""
+    if not snapshot.metrics.published:
+        who = "waiting for the first frame"
+    elif snapshot.metrics.tracking is Tracking.LOST:
+        who = "nobody is seen"
+    else:
+        who = "somebody is tracked"
+    return "; ".join([who, *(_camera(status) for status in snapshot.cameras.values())])
+
+
+def _camera(status: CaptureStatus) -> str:
+    if status.state is CaptureState.LIVE:
+        return f"{status.camera} {'silent' if status.is_silent else 'live'}"
+    return f"{status.camera} {status.state.value}{f' ({status.reason})' if status.reason else ''}"

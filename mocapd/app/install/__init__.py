@@ -1,0 +1,1 @@
+"""What systemd needs of us, put in place and taken away."""

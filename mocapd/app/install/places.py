@@ -1,0 +1,98 @@
+"""Where the service's files go: of this machine, of one user, or of a package that is being built."""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from mocapd.app.install.own_file import marked
+from mocapd.app.install.unit_texts import (
+    CONFIG,
+    EXAMPLE,
+    RULES,
+    SYSUSERS,
+    UNITS,
+    USER_UNIT,
+    text_of,
+    unit_text,
+)
+
+UNIT = "mocapd.service"
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedFile:
+    """One file; `is_admins`: made once, and from then on not ours."""
+
+    path: Path
+    text: str
+    is_admins: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Folders; None for what is not placed. `units`, `user_units`: of systemd, `examples`: drop-ins that
+    nothing reads, `rules`: of udev, `config`: of mocapd."""
+
+    units: Path | None
+    user_units: Path | None
+    examples: Path | None = None
+    sysusers: Path | None = None
+    rules: Path | None = None
+    config: Path | None = None
+
+
+def of_machine() -> Places:
+    """Where an admin's own units are."""
+    units = Path("/etc/systemd/system")
+    return Places(
+        units=units,
+        user_units=None,
+        examples=units / f"{UNIT}.d",
+        sysusers=Path("/etc/sysusers.d"),
+        rules=Path("/etc/udev/rules.d"),
+        config=Path("/etc/mocapd"),
+    )
+
+
+def of_user() -> Places:
+    """Of whoever runs this. No configuration: it would hide that of the machine."""
+    given = os.environ.get("XDG_CONFIG_HOME", "")
+    base = Path(given) if given.startswith("/") else Path.home() / ".config"
+    return Places(units=None, user_units=base / "systemd/user")
+
+
+def of_package(root: Path) -> Places:
+    """Below `root`, where packages have theirs."""
+    lib = root / "usr/lib"
+    return Places(
+        units=lib / "systemd/system",
+        user_units=lib / "systemd/user",
+        examples=root / "usr/share/doc/mocapd/examples",
+        sysusers=lib / "sysusers.d",
+        rules=lib / "udev/rules.d",
+        config=root / "etc/mocapd",
+    )
+
+
+def files(places: Places, python: Path) -> Iterator[PlacedFile]:
+    """Every file with its text; the units start mocapd with this interpreter. Raises ConfigError."""
+    drop_in = "`systemctl edit {}`"
+    if places.units is not None:
+        for name in UNITS:
+            text = marked(unit_text(name, python), drop_in.format(name.removesuffix(".service")))
+            yield PlacedFile(places.units / name, text)
+    if places.user_units is not None:
+        text = marked(unit_text(USER_UNIT, python), drop_in.format("--user mocapd"))
+        yield PlacedFile(places.user_units / UNIT, text)
+    if places.examples is not None:
+        text = marked(text_of(EXAMPLE), "a copy")
+        yield PlacedFile(places.examples / f"{EXAMPLE}.example", text)
+    if places.sysusers is not None:
+        text = marked(text_of(SYSUSERS), "a file of your own beside it")
+        yield PlacedFile(places.sysusers / "mocapd.conf", text)
+    if places.rules is not None:
+        text = marked(text_of(RULES), "a file of your own after it")
+        yield PlacedFile(places.rules / "70-mocapd-webcams.rules", text)
+    if places.config is not None:
+        yield PlacedFile(places.config / CONFIG, text_of(CONFIG), is_admins=True)

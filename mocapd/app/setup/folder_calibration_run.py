@@ -1,0 +1,148 @@
+"""`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from mocapd.errors import ConfigError
+
+if TYPE_CHECKING:
+    from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration
+    from mocapd.calibration.board_spec import BoardSpec
+    from mocapd.config.sections import Config
+
+
+@dataclass(frozen=True, slots=True)
+class FolderOptions:
+    """What was said on the command line; None or "" where it was not."""
+
+    folder: Path
+    out: Path | None
+    size: str | None
+    square_m: float | None
+    board: str
+    marker_m: float
+    dictionary: str
+    inverted: bool
+    legacy: bool
+    two_sided: bool
+    floor_frame: int | None
+    strokes: Path | None
+    as_json: bool
+
+
+def calibrate_folder(options: FolderOptions, config: "Config") -> None:
+    """Find the board, solve, write. Raises MocapdError; what is there already stays then."""
+    from mocapd.app.libraries import prepare_libraries
+    from mocapd.app.terminal.logs import set_up_logs
+
+    out, spec = _complete(options)
+    set_up_logs(config.log_level)
+    prepare_libraries(config.cache_dir)
+
+    from mocapd.app.terminal.progress import ProgressBars
+    from mocapd.calibrate.extrinsics.folder_calibration import calibrate_folder as solve
+    from mocapd.calibrate.extrinsics.rig_writing import write_rig
+    from mocapd.session.offline import check_writable
+
+    check_writable(out)
+    with ProgressBars() as progress:
+        found = solve(options.folder, spec, progress, options.floor_frame)
+    if out.suffix == ".toml":
+        from mocapd.app.setup.saving_from_folder import save_from_folder, stroked_pictures
+
+        strokes = options.strokes
+        pictures = stroked_pictures(strokes, found.rig) if strokes is not None else {}
+        floor_known = options.floor_frame is not None
+        save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
+    else:
+        write_rig(out, found.rig)
+    for note in found.notes:
+        typer.echo(f"mocapd: {note}", err=True)
+    if options.as_json:
+        print(json.dumps(_as_dict(found)))
+    else:
+        print(_as_text(found, out))
+
+
+def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
+    """The file to write and the board. Raises ConfigError naming every option that is missing."""
+    from mocapd.calibration.board_spec import BoardKind, BoardSpec, board_size
+
+    wanted = {"--out": options.out, "--board-size": options.size, "--square": options.square_m}
+    missing = [name for name, value in wanted.items() if value is None]
+    if options.out is None or options.size is None or options.square_m is None:
+        raise ConfigError(
+            f"--from-folder needs {' and '.join(missing)} too",
+            "command line",
+            "add what is missing",
+        )
+    if options.board not in tuple(BoardKind):
+        raise ConfigError(f"--board {options.board}", "command line", "charuco or chessboard")
+    if options.strokes is not None and options.out.suffix != ".toml":
+        raise ConfigError(
+            "--strokes with a rig file", "command line", "colours go into --out NAME.toml only"
+        )
+    columns, rows = board_size(options.size)
+    return options.out, BoardSpec(
+        BoardKind(options.board), columns, rows, options.square_m, options.marker_m,
+        options.dictionary, options.inverted, options.legacy, options.two_sided,
+    )  # fmt: skip
+
+
+def _as_dict(found: "FolderCalibration") -> dict[str, object]:
+    area = found.play_area
+    return {
+        "rms_px": round(found.rms_px, 4),
+        "play_area_cm": None
+        if area is None
+        else {"median": round(area.median_cm, 3), "p95": round(area.p95_cm, 3)},
+        "positions": found.positions,
+        "cameras": {
+            name: {
+                "rms_px": round(one.rms_px, 4),
+                "held_out_px": round(one.held_out_px, 4),
+                "views": one.views,
+                "backs": one.backs,
+                "pictures": one.pictures,
+                "covered": round(one.covered, 3),
+                "delay_frames": round(one.delay_frames, 3),
+                "focal_deviation": round(one.focal_deviation, 5),
+            }
+            for name, one in found.cameras.items()
+        },
+        "refused": {
+            name: {
+                "no_board": one.pictures - one.views - len(one.refused_views),
+                "views": list(one.refused_views),
+                "corners": one.refused_corners,
+            }
+            for name, one in found.cameras.items()
+        },
+        "board": {
+            "inverted": found.board.inverted,
+            "legacy": found.board.legacy,
+            "two_sided": found.board.two_sided,
+        },
+        "back": None
+        if found.gluing is None
+        else {name: round(value, 2) for name, value in asdict(found.gluing).items()},
+        "notes": list(found.notes),
+    }
+
+
+def _as_text(found: "FolderCalibration", out: Path) -> str:
+    area = found.play_area
+    cm = "" if area is None else f", {area.median_cm:.2f} cm in the play area"
+    lines = [f"{out}: {found.rms_px:.2f} px{cm}, {found.positions} positions of the board"]
+    lines += [
+        f"{name}  {one.rms_px:.2f} px, {one.held_out_px:.2f} px held out, "
+        f"{one.views} of {one.pictures} pictures"
+        + (f", {one.backs} of the board's back" if one.backs else "")
+        for name, one in found.cameras.items()
+    ]
+    lines += [] if found.gluing is None else [f"the back of the board lies {found.gluing}"]
+    return "\n    ".join(lines)

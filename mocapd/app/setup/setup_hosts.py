@@ -1,0 +1,123 @@
+"""Whose cameras a setup by itself uses: the webcams of this machine, or simulated ones."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mocapd.boundary.files import is_file
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.calibration.saved_sources import require_password, sources_by_shown
+from mocapd.errors import ConfigError
+from mocapd.wizard.check.check_settings import CheckSettings
+from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.hosts.own_host import OwnHost
+from mocapd.wizard.saving import load_draft
+
+if TYPE_CHECKING:
+    from mocapd.config.sections import Config
+    from mocapd.wizard.step_names import StepName
+
+
+def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
+    """The cameras of the configuration, else all that are plugged in. Raises MocapdError."""
+    from mocapd.capture.webcam.listing import list_cameras
+    from mocapd.wizard.cameras.found_cameras import (
+        configured_cameras,
+        identities,
+        plugged_cameras,
+        where_now,
+    )
+    from mocapd.wizard.cameras.same_port import find_port_changes
+    from mocapd.wizard.setup_keeper import kept_cameras
+
+    before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
+    known = kept_cameras(config.state_dir, before.cameras)
+    if step is not None:
+        for one in before.cameras:
+            require_password(one.id, one.source, str(config.state_dir))
+        draft = replace(before, cameras=where_now(before.cameras, infos))
+    else:
+        cameras = (
+            configured_cameras(config.camera, known)
+            if config.camera
+            else plugged_cameras(infos, known)
+        )
+        # what was typed once need not be typed again
+        draft = Draft(
+            cameras=cameras,
+            board=before.board,
+            stature_m=before.stature_m,
+            has_shirt=before.has_shirt,
+        )
+    return OwnHost(
+        draft,
+        settings_of(config),
+        config.state_dir,
+        config.cache_dir,
+        step,
+        nodes=list_cameras,
+        moved=find_port_changes(before.cameras, identities(infos)),
+    )
+
+
+def _with_passwords(draft: Draft, config: "Config") -> Draft:
+    """With those of the configuration, where they are not kept with the calibration."""
+    known = sources_by_shown((one.id, one.source) for one in config.camera)
+    cameras = (
+        replace(one, source=known.get((one.id, one.source), one.source)) for one in draft.cameras
+    )
+    return replace(draft, cameras=tuple(cameras))
+
+
+def saved_draft(config: "Config", step: "StepName | None") -> Draft:
+    """The saved calibration, empty without one. Raises ConfigError when `step` alone needs it."""
+    if is_file(config.state_dir / FILE_NAME):
+        return load_draft(config.state_dir)
+    if step is not None:
+        raise ConfigError(
+            f"there is no calibration yet of which {step.value!r} could be done anew",
+            str(config.state_dir),
+            "do all steps: `mocapd calibrate`",
+        )
+    return Draft()
+
+
+def settings_of(config: "Config") -> CheckSettings:
+    """How the daemon of this configuration tracks."""
+    from mocapd.session.camera_inputs import bundler_params
+
+    return CheckSettings(config.tracker, config.smoothing.preset, bundler_params(config))
+
+
+def demo_host(config: "Config", step: "StepName | None") -> OwnHost:
+    """Simulated cameras, before which board and wearer do what each step asks for. Raises MocapdError."""
+    from mocapd.app.terminal.progress import ProgressBars
+    from mocapd.calibration.board_spec import BoardKind, BoardSpec
+    from mocapd.session.setup_demo import open_demo
+
+    before = saved_draft(config, step)
+    with ProgressBars() as progress:
+        demo = open_demo(config.cache_dir, progress)
+    sizes = {camera.name: camera.size_px for camera in demo.rig.cameras}
+    cameras = tuple(
+        DraftCamera(name, demo.source_of(name), sizes[name], demo.fps_hz)
+        for name, _ in demo.cameras
+    )
+    known = before
+    if step is None:
+        shown = demo.board
+        board = BoardSpec(
+            BoardKind.CHARUCO, shown.columns, shown.rows, shown.square_m, shown.marker_m,
+            shown.dictionary,
+        )  # fmt: skip
+        known = Draft(  # nobody can measure them here
+            board=board, stature_m=demo.stature_m, has_shirt=before.has_shirt
+        )
+    return OwnHost(
+        replace(known, cameras=cameras),
+        settings_of(config),
+        config.state_dir,
+        config.cache_dir,
+        step,
+        dict(demo.cameras),
+        demo.stage.play,
+    )

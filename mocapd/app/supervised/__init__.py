@@ -1,1 +1,0 @@
-"""What the service manager that started the daemon is told."""

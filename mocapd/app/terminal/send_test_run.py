@@ -1,0 +1,66 @@
+"""`mocapd send-test`: a known person to one output, without cameras or a daemon, and whether anybody listens."""
+
+import sys
+import time
+from contextlib import closing
+
+from mocapd.app.terminal.waving_person import waving_person
+from mocapd.body.shape import mean_shape
+from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds
+from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.outputs.base import Sink, SinkStatus
+from mocapd.outputs.from_rig import calibration_info
+from mocapd.service.publisher import Publisher
+
+RATE_HZ = 60.0
+STATURE_M = 1.75
+NAME = "send-test"  # of the camera that there is not, and of what calibrated it
+CAMERA_PX = (640, 480)
+FEWEST = 3  # frames; of fewer it is not known whether they were refused
+NOBODY_LISTENS = 1  # exit code
+SAY_EVERY_NS = NS_PER_S
+
+
+def send_test(sink: Sink, instance: str, duration_s: float) -> int:
+    """Send for so long, saying each second how it goes; the exit code. Raises what opening the sink raises."""
+    shape = mean_shape(STATURE_M)
+    publisher = Publisher([sink], instance)
+    with closing(sink):
+        sink.open()
+        print("a person waves its left hand, and steps to its left and back", file=sys.stderr)
+        # some receivers leave the avatar as it is while a sender says that it is not calibrated
+        rig = nominal_rig(NAME, CAMERA_PX)
+        publisher.tell(calibration_info(rig, instance=instance, source=NAME))
+        publisher.begin(waving_person(shape, 0, 0).skeleton, STATURE_M)
+        frames, said, halfway = 0, 0, None
+        began_ns, lasts_ns = monotonic_ns(), nanoseconds(duration_s)
+        while (gone_ns := monotonic_ns() - began_ns) < lasts_ns or frames < FEWEST:
+            publisher.put(waving_person(shape, gone_ns, monotonic_ns()))
+            frames += 1
+            if halfway is None and 2 * gone_ns >= lasts_ns:
+                halfway = sink.status()
+            if gone_ns // SAY_EVERY_NS > said:
+                said = gone_ns // SAY_EVERY_NS
+                print(f"{said} of {duration_s:g} s: {sink.status().detail}", file=sys.stderr)
+            time.sleep(max(0.0, frames / RATE_HZ - (monotonic_ns() - began_ns) / NS_PER_S))
+        status = sink.status()
+    heard = is_heard(status, halfway)
+    print(f"{sink.name}: {status.sent} of {frames} frames were sent: {outcome(status, heard)}")
+    return 0 if heard else NOBODY_LISTENS
+
+
+def is_heard(status: SinkStatus, halfway: SinkStatus | None) -> bool:
+    """Whether somebody listens at the end, as far as it can be known: on other machines, whether anybody has refused
+    since halfway."""
+    if status.listeners < 0:
+        return status.sent > 0 and (halfway is None or status.refused == halfway.refused)
+    return status.listeners > 0
+
+
+def outcome(status: SinkStatus, heard: bool) -> str:
+    """One line for people."""
+    if not heard:
+        return f"nobody listens ({status.detail})"
+    if status.listeners < 0:
+        return f"{status.detail}; whether anybody listens there is not told"
+    return status.detail

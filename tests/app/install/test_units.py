@@ -1,0 +1,116 @@
+"""The units as systemd itself reads them: nothing to complain of, and a sandbox as tight as a webcam allows."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mocapd.app.install.installing import Target, install
+from mocapd.config.effective import load_config
+
+TIGHT_ENOUGH = "20"  # in tenths: 2.0 of 10, "OK"
+UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Everything, as in a package."""
+    root = tmp_path_factory.mktemp("package")
+    install(Target(root=root))
+    return root
+
+
+@pytest.fixture
+def analyze() -> str:
+    """systemd-analyze; skips where there is none, unless MOCAPD_REQUIRE_SYSTEMD is set (.ci/run)."""
+    found = shutil.which("systemd-analyze")
+    if found is None:
+        assert not os.environ.get("MOCAPD_REQUIRE_SYSTEMD"), "no systemd-analyze: install systemd"
+        pytest.skip("no systemd-analyze: install systemd")
+    return found
+
+
+def said(*words: str | Path, env: dict[str, str] | None = None) -> tuple[int, str]:
+    done = subprocess.run(
+        words,
+        env=os.environ | {"SYSTEMD_COLORS": "0"} | (env or {}),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    return done.returncode, done.stdout
+
+
+@pytest.mark.parametrize(
+    "unit", ["mocapd.service", "mocapd@hall.service", "mocapd-camera-node.service"]
+)
+def test_systemd_has_nothing_to_complain_of(analyze: str, package: Path, unit: str) -> None:
+    path = package / "usr/lib/systemd/system" / unit
+    assert said(analyze, "verify", "--man=no", path) == (0, "")
+
+
+def test_nor_in_a_users_own_unit(analyze: str, package: Path, tmp_path: Path) -> None:
+    path = package / "usr/lib/systemd/user/mocapd.service"
+    env = {"XDG_RUNTIME_DIR": str(tmp_path)}
+    assert said(analyze, "verify", "--user", "--man=no", path, env=env) == (0, "")
+
+
+def test_a_drop_in_of_the_example_is_read(analyze: str, package: Path, tmp_path: Path) -> None:
+    unit = tmp_path / "mocapd.service"
+    shutil.copy(package / "usr/lib/systemd/system/mocapd.service", unit)
+    drop_in = tmp_path / "mocapd.service.d" / "network.conf"
+    drop_in.parent.mkdir()
+    shutil.copy(package / "usr/share/doc/mocapd/examples/network.conf.example", drop_in)
+    assert said(analyze, "verify", "--man=no", unit) == (0, "")
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_the_sandbox_is_tight(analyze: str, package: Path, unit: str) -> None:
+    path = package / "usr/lib/systemd/system" / unit
+    words = ("security", "--offline=true", f"--threshold={TIGHT_ENOUGH}", "--no-pager")
+    code, table = said(analyze, *words, path)
+    assert code == 0, table
+    assert "Overall exposure level" in table
+
+
+@pytest.mark.skipif(shutil.which("systemd-sysusers") is None, reason="no systemd-sysusers")
+def test_the_user_is_made_in_the_group_of_the_webcams(package: Path) -> None:
+    path = package / "usr/lib/sysusers.d/mocapd.conf"
+    code, out = said("systemd-sysusers", f"--root={package}", path)
+    assert code == 0, out
+    groups = (package / "etc/group").read_text()
+    assert re.search(r"^video:.*:mocapd$", groups, re.MULTILINE)
+
+
+def test_the_units_start_the_mocapd_that_installed_them(package: Path) -> None:
+    for path in package.glob("usr/lib/systemd/*/mocapd*.service"):
+        (started,) = re.findall(r"^ExecStart=(.*)$", path.read_text(), re.MULTILINE)
+        command = "camera-node" if "camera-node" in path.name else "run"
+        assert started == f"{sys.executable} -P -m mocapd.cli.main {command}"
+        shown = said(*started.split()[:-1], "version")
+        assert shown[0] == 0, shown[1]
+
+
+def test_the_sample_is_a_configuration_and_changes_nothing(
+    package: Path, empty_home: Path, tmp_path: Path
+) -> None:
+    sample = package / "etc/mocapd/config.toml"
+    assert load_config(file=sample, env={}).config == load_config(candidates=(), env={}).config
+
+
+def test_each_key_of_the_sample_is_one_when_it_is_taken_up(package: Path, tmp_path: Path) -> None:
+    """As an admin does: by removing its mark."""
+    lines = (package / "etc/mocapd/config.toml").read_text().splitlines()
+    taken = [re.sub(r"^#(?=\S)", "", line) for line in lines]
+    assert taken != lines
+    config = tmp_path / "config.toml"
+    config.write_text("\n".join(taken))
+    effective = load_config(file=config, env={})
+    changed = {one.key.path for one in effective.settings if one.changed}
+    assert {"camera", "tracker.stature_m", "zenoh.port", "vmc.enabled"} <= changed
