@@ -1,5 +1,7 @@
 """Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
 
+from dataclasses import dataclass
+
 
 def one_line(text: str) -> str:
     """As it may be told in a terminal or a log. Others named what is told of: a file, a webcam, a node of the network, and
@@ -71,3 +73,16 @@ class EndOfStream(MocapdError):
     """A recorded source has no further frame."""
 
     exit_code = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Trouble told to the person: what, where (a camera, a file; may be empty), and how to mend it."""
+
+    what: str
+    where: str = ""
+    fix: str = ""
+
+    @classmethod
+    def of(cls, error: MocapdError) -> "Problem":
+        return cls(error.what, error.where, error.fix)

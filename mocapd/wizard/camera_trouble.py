@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 from mocapd.capture.capture_status import CaptureState
+from mocapd.errors import Problem
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.step import Problem
 
 FEWEST_WITHOUT_SHIRT = 2
 _FIX = "plug it in again: the step goes on by itself; or leave it out in the step Cameras"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeVar
 
-from mocapd.errors import MocapdError
+from mocapd.errors import Problem
 
 T = TypeVar("T")
 Tell = Callable[[str, float], None]  # what is being done, share done 0..1; from the job's thread
@@ -32,19 +32,6 @@ class StepState(StrEnum):
     WORKING = "working"
     DONE = "done"
     FAILED = "failed"
-
-
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """Trouble told to the person: what, where (a camera, a file; may be empty), and how to mend it."""
-
-    what: str
-    where: str = ""
-    fix: str = ""
-
-    @classmethod
-    def of(cls, error: MocapdError) -> "Problem":
-        return cls(error.what, error.where, error.fix)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from mocapd.boundary.numbers import brief
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.clock import monotonic_ns
-from mocapd.errors import InputError
+from mocapd.errors import InputError, Problem
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, Wear, read_command
 from mocapd.wizard.context import Context, Step
@@ -18,7 +18,7 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.draft_file import KeptSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
-from mocapd.wizard.step import Json, Problem, Scene, StepState, T, Tell
+from mocapd.wizard.step import Json, Scene, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
 from mocapd.wizard.step_names import StepName, after_shirt, steps_done, steps_wanted
 from mocapd.wizard.wizard_view import WizardView, with_offer

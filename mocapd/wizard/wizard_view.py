@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from mocapd.errors import Problem
 from mocapd.wizard.draft_file import KeptSetup
-from mocapd.wizard.step import Json, Problem, StepState, StepView
+from mocapd.wizard.step import Json, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 

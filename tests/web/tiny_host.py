@@ -10,7 +10,7 @@ from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
-from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
@@ -24,7 +24,7 @@ from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.step import Problem, Shape, StepState, StepView
+from mocapd.wizard.step import Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import Wizard
 from tests.geometry.rigs import ring

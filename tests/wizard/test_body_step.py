@@ -8,6 +8,7 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
+from mocapd.calibrate.body_shape.body_observations import BodyObservationParams, BodyObservations
 from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
@@ -15,7 +16,6 @@ from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour.build import build_colour_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import FrameSet, Rig
-from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality

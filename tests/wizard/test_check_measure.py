@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
 from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from tests.trackers.filmed import Filmed, film, tracker_of
 from tests.trackers.stepping import Stepping

@@ -11,13 +11,13 @@ from mocapd.body.regions import as_silhouette
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import joint_positions
+from mocapd.calibrate.verification.check_measure import EVERY, Measure, MeasuringTracker
 from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, unprobed
 from mocapd.types import BodyState, Camera, Floats, Frame, FrameSet, Pose, Rig, Tracking
-from mocapd.wizard.check.check_measure import EVERY, Measure, MeasuringTracker
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.config.sections import TrackerSection
-from mocapd.errors import InputError
-from mocapd.wizard.check.check_measure import CameraMeasure, Measure
-from mocapd.wizard.check.check_settings import CheckSettings
-from mocapd.wizard.check.check_step import CheckStep, Phase, missing
-from mocapd.wizard.check.check_verdict import (
+from mocapd.calibrate.verification.check_measure import CameraMeasure, Measure
+from mocapd.calibrate.verification.check_verdict import (
     Delivery,
     Grade,
     camera_verdict,
     room_problems,
     verdict_json,
 )
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.config.sections import TrackerSection
+from mocapd.errors import InputError
+from mocapd.wizard.check.check_settings import CheckSettings
+from mocapd.wizard.check.check_step import CheckStep, Phase, missing
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import load_draft, save_draft

@@ -10,6 +10,7 @@ import pytest
 
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationParams
+from mocapd.calibrate.self_calibration.walk_coverage import WalkParams
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -18,7 +19,6 @@ from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
-from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.context import FakeContext, do
 from tests.wizard.playing import playing

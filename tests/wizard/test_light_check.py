@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mocapd.calibrate.light.light_check import Flicker, find_flicker, light_problems
 from mocapd.types import Bytes, Floats, Ints
-from mocapd.wizard.cameras.light_check import Flicker, find_flicker, light_problems
 
 
 def film(

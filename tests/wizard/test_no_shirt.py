@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapd.calibrate.verification.check_measure import MeasuringTracker
+from mocapd.calibrate.verification.check_verdict import Delivery, camera_verdict
 from mocapd.calibration.calibration_file import calibration_path, read_calibration
 from mocapd.calibration.from_saved import from_saved
 from mocapd.calibration.record import Calibration, Wearer
@@ -20,9 +22,7 @@ from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build, measuring_tracker
 from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
-from mocapd.wizard.check.check_measure import MeasuringTracker
 from mocapd.wizard.check.check_step import missing
-from mocapd.wizard.check.check_verdict import Delivery, camera_verdict
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.draft_file import FILE_NAME, KeptSetup, read_draft, write_draft

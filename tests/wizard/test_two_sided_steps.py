@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.calibration.board_spec import corners_m
 from mocapd.sim.board.board_picture import BoardFilm
 from mocapd.types import Bytes
 from mocapd.wizard.board.board_form import board_of, form_of
-from mocapd.wizard.board.board_look import BoardObservation, Look
-from mocapd.wizard.board.sightings import BoardSightings
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.intrinsics.intrinsics_verbs import Board

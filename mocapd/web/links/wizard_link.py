@@ -15,12 +15,11 @@ from msgspec import Meta
 from starlette.websockets import WebSocket
 
 from mocapd.boundary.messages import decode_json
-from mocapd.errors import MalformedError, MocapdError
+from mocapd.errors import MalformedError, MocapdError, Problem
 from mocapd.web.host import Host
 from mocapd.web.links.socket_link import MOST_HZ, received, send_json, serve
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
-from mocapd.wizard.step import Problem
 from mocapd.wizard.wizard_view import WizardView
 
 NOT_THE_DRIVER = Problem(

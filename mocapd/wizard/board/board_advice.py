@@ -11,12 +11,13 @@ from mocapd.calibrate.board.board_detection import (
     Reason,
     settle_variant,
 )
+from mocapd.calibrate.board.board_look import Look
 from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
 from mocapd.calibration.board_spec import BoardSpec
+from mocapd.errors import Problem
 from mocapd.types import Frame
-from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.context import Context
-from mocapd.wizard.step import Problem, Tell
+from mocapd.wizard.step import Tell
 
 _BLIND_NS = 2_000_000_000  # without the board, before it is asked
 _PAUSE_NS = 1_500_000_000  # between two askings

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Mapping
 
 from mocapd.calibrate.board.board_detection import BoardDetector
+from mocapd.calibrate.board.board_look import BoardObservation, Look, motion_px
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Floats, Frame
-from mocapd.wizard.board.board_look import BoardObservation, Look, motion_px
 from mocapd.wizard.recent_frames import RecentFrames
 from mocapd.wizard.step import Shape
 

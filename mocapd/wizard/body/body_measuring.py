@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.calibrate.body_shape.body_observations import BodyObservationParams, BodyObservations
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
 from mocapd.clock import monotonic_ns, seconds
@@ -17,7 +18,6 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
-from mocapd.wizard.body.body_observations import BodyObservationParams, BodyObservations
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mocapd.body.shape import FACTORS, BodyShape, mean_shape
+from mocapd.calibrate.body_shape.body_lengths import lengths_cm
+from mocapd.calibrate.body_shape.body_observations import BodyObservationParams
 from mocapd.calibrate.body_shape.body_scale import scale_trouble
-from mocapd.errors import InputError, MocapdError
-from mocapd.wizard.body.body_lengths import lengths_cm
+from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.body.body_measuring import (
     READY,
     SEEN,
@@ -19,13 +20,12 @@ from mocapd.wizard.body.body_measuring import (
     measure,
     measuring_tracker,
 )
-from mocapd.wizard.body.body_observations import BodyObservationParams
 from mocapd.wizard.body.body_verbs import BODY, MeasureBody, SkipBody, Stature
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
-from mocapd.wizard.step import Json, Problem, Scene, Shape, StepState, StepView
+from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 

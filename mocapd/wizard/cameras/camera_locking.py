@@ -6,16 +6,15 @@ from enum import StrEnum
 
 import numpy as np
 
+from mocapd.calibrate.light.light_check import Flicker, find_flicker
+from mocapd.calibrate.light.value_search import ValueSearch
 from mocapd.capture.webcam.camera_controls import Control
 from mocapd.capture.webcam.control_lock import UNITS_PER_S
 from mocapd.capture.webcam.controls import Controls
 from mocapd.clock import NS_PER_S
-from mocapd.errors import UnavailableError
+from mocapd.errors import Problem, UnavailableError
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.cameras.light_check import Flicker, find_flicker
 from mocapd.wizard.cameras.picture_watch import PictureWatch, Recent
-from mocapd.wizard.cameras.value_search import ValueSearch
-from mocapd.wizard.step import Problem
 
 _SETTLE_NS = 2 * NS_PER_S
 _SETTLE_LONGEST_NS = 8 * NS_PER_S

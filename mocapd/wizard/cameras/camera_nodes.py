@@ -11,8 +11,8 @@ from mocapd.capture.kinds.source_kinds import identity_of
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
 from mocapd.capture.webcam.webcams import SYSFS
+from mocapd.errors import Problem
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Problem
 
 
 def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | None:

@@ -12,23 +12,23 @@ from dataclasses import asdict, replace
 
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
+from mocapd.calibrate.light.light_check import light_problems
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.clock import NS_PER_S
-from mocapd.errors import InputError, MocapdError
+from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.camera_trouble import too_few_cameras
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.camera_nodes import node_of, offers, unused_nodes
 from mocapd.wizard.cameras.cameras_verbs import CAMERAS, ChangeMode, LeaveOut, Lock, Name, TakeIn
-from mocapd.wizard.cameras.light_check import light_problems
 from mocapd.wizard.cameras.picture_watch import PictureWatch
 from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Json, Problem, StepState, StepView, Tell
+from mocapd.wizard.step import Json, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
 _LIST_EVERY_NS = 4 * NS_PER_S

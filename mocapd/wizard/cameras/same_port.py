@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, replace
 from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
 from mocapd.capture.kinds.source_kinds import identities_of
 from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
-from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.wizard.cameras.cameras_verbs import PORTS, SamePort
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.step import Problem, StepState, StepView, T
+from mocapd.wizard.step import StepState, StepView, T
 from mocapd.wizard.wizard import MakeStep
 
 

@@ -12,29 +12,29 @@ from enum import StrEnum
 from functools import partial
 
 from mocapd.body.skeleton import INDEX, standard_skeleton
-from mocapd.clock import NS_PER_S, seconds
-from mocapd.errors import InputError, MocapdError
-from mocapd.pipeline.bundler import CameraCounts
-from mocapd.pipeline.loop import OnDeath
-from mocapd.types import Tracking
-from mocapd.wizard.check.check_measure import Measure
-from mocapd.wizard.check.check_settings import CheckSettings
-from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
-from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
-from mocapd.wizard.check.check_verdict import (
+from mocapd.calibrate.verification.check_measure import Measure
+from mocapd.calibrate.verification.check_verdict import (
     CameraVerdict,
     Delivery,
     camera_verdict,
     room_problems,
     verdict_json,
 )
+from mocapd.clock import NS_PER_S, seconds
+from mocapd.errors import InputError, MocapdError, Problem
+from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.loop import OnDeath
+from mocapd.types import Tracking
+from mocapd.wizard.check.check_settings import CheckSettings
+from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
+from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
-from mocapd.wizard.step import Problem, Scene, StepState, StepView
+from mocapd.wizard.step import Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0

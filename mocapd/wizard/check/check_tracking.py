@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
 from mocapd.calibration.record import Calibration
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import FrameCollector
@@ -17,7 +18,6 @@ from mocapd.trackers.base import Tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.types import Rig
-from mocapd.wizard.check.check_measure import Measure, MeasuringTracker
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody

@@ -3,7 +3,7 @@
 import threading
 from dataclasses import dataclass, field
 
-from mocapd.wizard.check.check_measure import Measure
+from mocapd.calibrate.verification.check_measure import Measure
 
 
 @dataclass(slots=True, eq=False)

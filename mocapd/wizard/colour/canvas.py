@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, replace
 
+from mocapd.errors import Problem
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.wizard.colour.colour_solving import CameraSolution, StrokeDrawing
 from mocapd.wizard.colour.stroke_images import encode_picture, encode_strokes
-from mocapd.wizard.step import Json, Problem, Shape
+from mocapd.wizard.step import Json, Shape
 
 SERVICE = "mocapd"  # who drew proposed strokes
 

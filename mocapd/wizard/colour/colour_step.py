@@ -12,7 +12,7 @@ from dataclasses import replace
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.boundary.numbers import brief
 from mocapd.calibrate.colours.stroke_proposal import Proposal
-from mocapd.errors import InputError, MocapdError
+from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
 from mocapd.wizard.colour.colour_solving import (
@@ -28,7 +28,7 @@ from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, p
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftColours
-from mocapd.wizard.step import Json, Problem, Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
 _COUNTDOWN_S = 3.0

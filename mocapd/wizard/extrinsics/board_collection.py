@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_sightings import BoardSightings, Views
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
-from mocapd.wizard.board.board_look import BoardObservation, Look
-from mocapd.wizard.board.sightings import BoardSightings, Views
 from mocapd.wizard.draft import DraftCamera
 
 ENOUGH = 10  # sightings in all

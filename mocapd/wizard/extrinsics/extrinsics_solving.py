@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.board.board_sightings import Views
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     SceneExtrinsics,
@@ -21,7 +22,6 @@ from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
-from mocapd.wizard.board.sightings import Views
 from mocapd.wizard.draft import DraftCamera
 
 # positions are never of neighbouring frames, so no motion is followed: one round is enough

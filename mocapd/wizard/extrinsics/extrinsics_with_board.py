@@ -8,6 +8,13 @@ from enum import StrEnum
 from itertools import combinations
 
 from mocapd.calibrate.board.back_side import gluing_trouble
+from mocapd.calibrate.board.board_at_rest import (
+    LONG_NS,
+    BoardAtRest,
+    lies_on_its_face,
+    looks_like_floor,
+)
+from mocapd.calibrate.board.board_look import Look
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     SceneExtrinsics,
     WorldExtrinsics,
@@ -16,26 +23,19 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     with_board,
 )
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError
-from mocapd.errors import ConfigError, InputError, MocapdError
+from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
-from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.extrinsics.board_at_rest import (
-    LONG_NS,
-    BoardAtRest,
-    lies_on_its_face,
-    looks_like_floor,
-)
 from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
-from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView, Tell
+from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
 
 _FACING = (
     "; cameras that face each other need a board printed on both sides (mocapd board --two-sided)"

@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.errors import InputError, MocapdError
+from mocapd.calibrate.self_calibration.walk_coverage import WalkParams
+from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
 from mocapd.wizard.commands import Command
@@ -19,9 +20,8 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.extrinsics_verbs import WEARER_ROOM, StartWalk, StopWalk
 from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
-from mocapd.wizard.extrinsics.walk_coverage import WalkParams
 from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
-from mocapd.wizard.step import Json, Problem, Scene, StepState, StepView
+from mocapd.wizard.step import Json, Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 _SHOWN_PLACES = 12  # of the wearer's way, in the plan of the rig

@@ -10,6 +10,7 @@ import numpy as np
 from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, place_nominally
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
+from mocapd.calibrate.self_calibration.walk_coverage import Coverage, WalkParams
 from mocapd.calibration.record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.errors import InputError
@@ -20,7 +21,6 @@ from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.types import Camera, Floats, Rig
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.extrinsics.walk_coverage import Coverage, WalkParams
 from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell

@@ -9,15 +9,15 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.boundary.numbers import brief
+from mocapd.calibrate.board.board_look import Look
+from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.view_picking import PickedViews
 from mocapd.calibration.board_spec import BoardSpec, corners_m
-from mocapd.errors import ConfigError, InputError, MocapdError
+from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
-from mocapd.wizard.board.board_look import Look
 from mocapd.wizard.board.board_watch import BoardWatch
-from mocapd.wizard.board.sightings import BoardSightings
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
@@ -35,7 +35,7 @@ from mocapd.wizard.intrinsics.saved_intrinsics import (
     find_saved_intrinsics,
     read_intrinsics,
 )
-from mocapd.wizard.step import Problem, Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step import Scene, Shape, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
 _SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to

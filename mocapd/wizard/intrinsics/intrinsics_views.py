@@ -7,10 +7,10 @@ from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
 from mocapd.calibrate.intrinsics.views import GRID, Choice, choose_views
-from mocapd.errors import MocapdError
+from mocapd.errors import MocapdError, Problem
 from mocapd.types import Floats
 from mocapd.wizard.draft import DraftCamera
-from mocapd.wizard.step import Json, Problem, Shape
+from mocapd.wizard.step import Json, Shape
 
 _LIMITS = IntrinsicsLimits(focal_deviation=0.05)
 _CHOICE = Choice(most=24)

@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.board.board_look import BoardObservation, Look
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.types import Floats
-from mocapd.wizard.board.board_look import BoardObservation, Look
 
 Views = Mapping[str, Mapping[int, BoardView]]
 

@@ -7,8 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from mocapd.wizard.check.check_measure import CameraMeasure, Measure
-from mocapd.wizard.step import Problem
+from mocapd.calibrate.verification.check_measure import CameraMeasure, Measure
+from mocapd.errors import Problem
 
 GOOD_PX, BAD_PX = 2.5, 6.0  # of a picture 640 px wide
 GOOD_CM, BAD_CM = 1.5, 3.5

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.board.board_look import BoardObservation, Look
 from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
-from mocapd.wizard.board.board_look import BoardObservation, Look
 
 LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
 _SAME_PX = 2.0  # corners this near are of the board at rest

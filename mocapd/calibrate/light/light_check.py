@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from mocapd.errors import Problem
 from mocapd.types import Bytes, Floats, Ints
-from mocapd.wizard.step import Problem
 
 _DARK_LEVEL = 45.0  # of 255, 75th percentile of luma
 _WHITE = 250

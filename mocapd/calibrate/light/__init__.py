@@ -1,0 +1,1 @@
+"""Light: too dark, over-exposed, flickering; and the control value that gives a wanted reading."""

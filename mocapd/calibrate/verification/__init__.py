@@ -1,0 +1,1 @@
+"""Whether a setup is good enough: what a tracker sees of somebody, measured and judged."""
