@@ -40,7 +40,9 @@ class Health(CountingMessage, frozen=True):
     latency_median_ms: Annotated[float, Meta(description="capture to publish, median [ms]")]
     latency_p95_ms: Annotated[float, Meta(description="capture to publish, 95th percentile [ms]")]
     frame_sets: Annotated[Count, Meta(description="frame sets tracked since the start")]
-    dropped: Annotated[Count, Meta(description="frame sets displaced by newer ones since the start")]
+    dropped: Annotated[
+        Count, Meta(description="frame sets displaced by newer ones since the start")
+    ]
     outputs: Annotated[tuple[OutputHealth, ...], Meta(description="every open output")] = ()
     detail: Annotated[
         str, Meta(description="one line for people: what is wrong with it as a whole; mostly empty")

@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapd.body.shape import N_FACTORS
 from mocapd.body.shirt_patches import N_COLOURS
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.board.board_detection import FEWEST_CORNERS, BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
@@ -278,7 +278,7 @@ def _colours(told: Mapping[str, _Colours]) -> dict[str, DraftColours]:
     """Raises MalformedError."""
     found = {}
     for name, one in told.items():
-        pixels = decode_picture(one.picture, cv2.IMREAD_COLOR)
+        pixels = decode_picture(one.picture, cv2.IMREAD_COLOR, most_pixels=MOST_DRAWN_PIXELS)
         height, width = pixels.shape[:2]
         strokes = decode_picture(one.strokes, cv2.IMREAD_GRAYSCALE, (width, height))
         if strokes.max() > N_COLOURS:
