@@ -113,8 +113,8 @@ def pictures(place: Place) -> Attempt:
 
 
 def large_pictures(place: Place) -> Attempt:
-    """Pictures with more work in them than their size needs, as a camera's and as a file: each is over within a second, as the
-    table of the run says, and no library fills the log."""
+    """Pictures with more work in them than their size needs, as a camera's and as a file: the run's table says what they
+    take, and no library fills the log."""
     size_px = (640, 480)
     decode_camera_picture(jpeg(sample(size_px)), size_px)
 

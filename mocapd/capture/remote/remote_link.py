@@ -1,6 +1,5 @@
 """The Zenoh session of one remote camera: its newest picture, questions to its node, and the end of both."""
 
-import itertools
 import json
 import threading
 from contextlib import ExitStack
@@ -8,6 +7,7 @@ from contextlib import ExitStack
 import msgspec
 import zenoh
 
+from mocapd.bus.zenoh_answers import limited_answers
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.bus.zenoh_close import close_soon
@@ -25,7 +25,6 @@ _LOST_S = 1.0  # after which an answer is not expected any more
 _PING_NS = NS_PER_S // 4  # how often the other clock is asked
 _UNSURE_PING_NS = NS_PER_S // 20  # the same while it is not known well: answers wait on their way
 _SURE_NS = 300_000
-_MOST_ANSWERS = 1000
 
 
 class RemoteLink:
@@ -117,23 +116,23 @@ class RemoteLink:
         payload = None if order is None else camera_wire.encode(order)
         try:
             with zenoh_call():
-                replies = self._session.get(
+                samples = limited_answers(
+                    self._session,
                     key,
+                    timeout_s,
+                    camera_wire.MOST_MESSAGE_BYTES,
                     payload=payload,
-                    timeout=timeout_s,
                     target=zenoh.QueryTarget.ALL,
                     # else of two that answer to one name the first is not heard of
                     consolidation=zenoh.ConsolidationMode.NONE,
                 )
-                told = (one.ok.payload.to_bytes() for one in replies if one.ok is not None)
-                answers = list(itertools.islice(told, _MOST_ANSWERS))
         except zenoh.ZError:
             raise self._lost() from None
         understood: list[M] = []
         trouble: MalformedError | None = None
-        for data in answers:
+        for sample in samples:
             try:
-                understood.append(camera_wire.decode(data, kind))
+                understood.append(camera_wire.decode(sample.payload.to_bytes(), kind))
             except MalformedError as error:
                 trouble = error
         if understood or trouble is None:
@@ -149,7 +148,7 @@ class RemoteLink:
 
         def came(reply: zenoh.Reply) -> None:  # on Zenoh's thread
             came_ns = monotonic_ns()
-            if reply.ok is not None:
+            if reply.ok is not None and len(reply.ok.payload) <= camera_wire.MOST_MESSAGE_BYTES:
                 self._told_time(asked_ns, reply.ok.payload.to_bytes(), came_ns)
             if answered is not None:
                 answered.set()
@@ -183,7 +182,11 @@ class RemoteLink:
     def _arrived(self, sample: zenoh.Sample) -> None:
         came_ns = monotonic_ns()
         stamp = sample.attachment
-        if stamp is None or len(sample.payload) > camera_wire.MOST_PICTURE_BYTES:
+        if (
+            stamp is None
+            or len(stamp) > camera_wire.MOST_MESSAGE_BYTES
+            or len(sample.payload) > camera_wire.MOST_PICTURE_BYTES
+        ):
             return
         arrived = Arrived(sample.payload.to_bytes(), stamp.to_bytes(), came_ns)
         with self._changed:
