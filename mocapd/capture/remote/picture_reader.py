@@ -13,7 +13,7 @@ from mocapd.clock import NS_PER_S
 from mocapd.errors import MalformedError
 from mocapd.types import Frame
 
-_OLDEST_NS = 5 * NS_PER_S  # an exposure longer ago than this, or so far ahead, is of another clock
+_OLDEST_NS = NS_PER_S  # an exposure longer ago than this, or so far ahead, is of another clock
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.bus.zenoh_close import close_soon
 from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.camera_wire import M
 from mocapd.capture.remote.clock_track import ClockTrack
 from mocapd.capture.remote.picture_reader import Arrived
@@ -65,14 +66,17 @@ class RemoteLink:
             ) from None
         self._opened.enter_context(self._session)
 
-    def listen(self) -> None:
-        """From now on keep the newest picture, and notice when the camera goes. Raises UnavailableError."""
+    def listen(self, limit: ArrivalLimit) -> None:
+        """From now on keep the newest picture, of at most so many a second, and notice when the camera goes. Raises
+        UnavailableError."""
         pictures = camera_wire.picture(self._address.node, self._address.camera)
         token = camera_wire.alive(self._address.node, self._address.camera)
         try:
             with zenoh_call():
                 # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-                arrived = zenoh.handlers.Callback(self._arrived, indirect=False)
+                arrived = zenoh.handlers.Callback(
+                    lambda sample: self._arrived(sample, limit), indirect=False
+                )
                 self._opened.enter_context(self._session.declare_subscriber(pictures, arrived))
                 told = zenoh.handlers.Callback(self._told, indirect=False)
                 liveliness = self._session.liveliness()
@@ -179,13 +183,14 @@ class RemoteLink:
         if not was_closed:
             close_soon(self._opened, _CLOSE_S)
 
-    def _arrived(self, sample: zenoh.Sample) -> None:
+    def _arrived(self, sample: zenoh.Sample, limit: ArrivalLimit) -> None:
         came_ns = monotonic_ns()
         stamp = sample.attachment
         if (
             stamp is None
             or len(stamp) > camera_wire.MOST_MESSAGE_BYTES
             or len(sample.payload) > camera_wire.MOST_PICTURE_BYTES
+            or not limit.take(came_ns)  # by one thread: Zenoh delivers a key's samples in order
         ):
             return
         arrived = Arrived(sample.payload.to_bytes(), stamp.to_bytes(), came_ns)
@@ -206,7 +211,7 @@ class RemoteLink:
             return  # no answer: a node whose clock does not come is told by who needs it
         if answer.run != self.run:
             self.run = answer.run
-            self.clock.restart()
+            self.clock.restart(came_ns)
         self.clock.answered(asked_ns, answer, came_ns)
 
     def _lost(self) -> UnavailableError:
