@@ -21,6 +21,7 @@ from typing import Self
 
 import zenoh
 
+from mocapd.bus.zenoh_answers import MOST_ANSWERS_BYTES, limited_answers
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.errors import UnavailableError
@@ -195,10 +196,9 @@ class Client:
         anew, and a little while it learns the body. Raises InputError when what comes is none of this version.
         """
         with zenoh_call():
-            replies = list(self._session.get(self._rest_key, timeout=timeout_s))
-        for reply in replies:
-            if reply.ok is not None:
-                return decode_rest_skeleton(reply.ok.payload.to_bytes(), str(reply.ok.encoding))
+            samples = limited_answers(self._session, self._rest_key, timeout_s, MOST_ANSWERS_BYTES)
+        for sample in samples:
+            return decode_rest_skeleton(sample.payload.to_bytes(), str(sample.encoding))
         return None
 
     def __iter__(self) -> Iterator[Body]:

@@ -37,7 +37,10 @@ def read_beginning(path: Path, most_bytes: int) -> bytes:
             told = os.fstat(file.fileno())
             if not stat.S_ISREG(told.st_mode):
                 raise InputError("is no regular file", str(path), _FIX)
-            return file.read(most_bytes)
+            data: bytes | None = file.read(most_bytes)
+            if data is None:  # a file of the kernel's or of FUSE that would have to be waited for
+                raise InputError("has nothing to read", str(path), _FIX)
+            return data
     except FileNotFoundError:
         raise MissingError("no such file", str(path), "check the path") from None
     except ValueError:  # a NUL in the path

@@ -1,54 +1,54 @@
-"""PNG and JPEG from outside: measured by their headers before anything is decoded.
+"""PNG and JPEG from outside: measured before anything is decoded.
 
 OpenCV allocates what a header or a chunk claims: 69 bytes that speak of a chunk of 4 GB take 4 GB and
-nine seconds. So the size is read here, compared with what is wanted, and every length with the data.
+nine seconds. And it does whatever work a file asks for. So size, length and work are read here and limited: no
+picture takes longer than a second or more than 300 MB, and libpng has nothing to complain of on stderr.
 """
 
-import struct
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import cv2
 import numpy as np
 
+from mocapd.boundary.jpeg_segments import JpegHeader, check_work, is_jpeg, jpeg_header
+from mocapd.boundary.png_chunks import PngHeader, is_png, plain_png, png_header
 from mocapd.errors import MalformedError
 from mocapd.types import Bytes
 
 MOST_PIXELS = 40_000_000  # of a picture whose size is not known before: somewhat above 8K
+MOST_DRAWN_PIXELS = 3840 * 2160  # of a picture that a person drew strokes on, and of the strokes
 MOST_FILE_BYTES = 64 << 20
 
-_PNG = b"\x89PNG\r\n\x1a\n"
-_PNG_CHANNELS = {0: 1, 2: 3, 3: 3, 4: 2, 6: 4}  # by colour type; 3: a palette, decoded as colour
-_JPEG = b"\xff\xd8"
-_SOF = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # start of frame; not tables
-_DHT, _SOS, _EOI = 0xC4, 0xDA, 0xD9
-_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})  # markers without a length
-_MOST_STRAY = 1024  # bytes between segments, which some webcams leave and decoders skip
+# What a camera's file may have: noise at the best quality has 3 bytes a pixel.
+_CAMERA_BYTES_PER_PIXEL, _CAMERA_SPARE_BYTES = 4, 64 << 10
 
 
 @dataclass(frozen=True, slots=True)
 class PictureHeader:
-    """size_px: width, height; channels as stored; bits of each."""
+    """size_px: width, height; channels as stored; bits of each; detail: by its kind."""
 
     kind: Literal["png", "jpeg"]
     size_px: tuple[int, int]
     channels: int
     bits: int
+    detail: PngHeader | JpegHeader
 
 
 def read_header(data: bytes | memoryview) -> PictureHeader:
     """What a PNG or JPEG says of itself. Raises MalformedError, also when it says what cannot be."""
     data = memoryview(data)
-    if data[: len(_PNG)] == _PNG:
-        header = _png_header(data)
-    elif data[: len(_JPEG)] == _JPEG:
-        header = _jpeg_header(data)
+    kind: Literal["png", "jpeg"]
+    found: PngHeader | JpegHeader
+    if is_png(data):
+        kind, found = "png", png_header(data)
+    elif is_jpeg(data):
+        kind, found = "jpeg", jpeg_header(data)
     else:
         raise MalformedError("is neither PNG nor JPEG")
-    if min(header.size_px) < 1:
+    if min(found.size_px) < 1:
         raise MalformedError("has no pixels")
-    return header
+    return PictureHeader(kind, found.size_px, found.channels, found.bits, found)
 
 
 def is_plain_jpeg(data: bytes, size_px: tuple[int, int]) -> bool:
@@ -56,11 +56,11 @@ def is_plain_jpeg(data: bytes, size_px: tuple[int, int]) -> bool:
     with its Huffman tables, which some webcams leave out. Raises MalformedError."""
     header = read_header(data)
     return (
-        header.kind == "jpeg"
+        isinstance(header.detail, JpegHeader)
         and header.size_px == size_px
         and header.bits == 8
         and header.channels in (1, 3)
-        and any(marker == _DHT for marker, _ in _jpeg_segments(memoryview(data)))
+        and header.detail.has_tables
     )
 
 
@@ -75,7 +75,7 @@ def decode_picture(
 
     `size_px` (width, height) is what it must have; without it, `most_pixels` is the limit. Of more than
     8 bits a channel, where `most_bits` lets it in, the upper 8 are given. Raises MalformedError: no such
-    picture, cut short, another size, more bits.
+    picture, cut short, another size, more bits, more work than a picture of its size needs.
     """
     array = np.frombuffer(data, dtype=np.uint8)
     header = read_header(array.data)
@@ -86,6 +86,10 @@ def decode_picture(
         raise MalformedError(f"has {width}x{height} pixels, at most {most_pixels} are read")
     if header.bits > most_bits:
         raise MalformedError(f"has {header.bits} bits a channel, wanted {most_bits}")
+    if isinstance(header.detail, PngHeader):
+        array = np.frombuffer(plain_png(array.data, header.detail), dtype=np.uint8)
+    else:
+        check_work(bytes(data), header.detail)
     try:
         picture = cv2.imdecode(array, flags)
     except cv2.error as error:
@@ -95,57 +99,16 @@ def decode_picture(
     return np.asarray(picture, dtype=np.uint8)
 
 
-def _png_header(data: memoryview) -> PictureHeader:
-    header: PictureHeader | None = None
-    at = len(_PNG)
-    while True:
-        if at + 12 > len(data):
-            raise MalformedError("is cut short")
-        length = int.from_bytes(data[at : at + 4], "big")
-        name = bytes(data[at + 4 : at + 8])
-        if at + 12 + length > len(data):
-            raise MalformedError("has a chunk that is longer than the file")
-        if header is None:
-            if name != b"IHDR" or length != 13:
-                raise MalformedError("does not begin with its header")
-            width, height, bits, colour = struct.unpack(">IIBB", data[at + 8 : at + 18])
-            if colour not in _PNG_CHANNELS:
-                raise MalformedError(f"has the unknown colour type {colour}")
-            header = PictureHeader("png", (width, height), _PNG_CHANNELS[colour], bits)
-        elif name == b"acTL":
-            raise MalformedError("is animated")
-        elif name == b"IEND":
-            return header
-        at += 12 + length
+def decode_camera_picture(data: bytes | Bytes, size_px: tuple[int, int] | None = None) -> Bytes:
+    """What a camera of any sort delivered, a JPEG, as (h,w,3) uint8 BGR. size_px: as in `decode_picture`.
 
-
-def _jpeg_header(data: memoryview) -> PictureHeader:
-    for marker, segment in _jpeg_segments(data):
-        if marker in _SOF:
-            if len(segment) < 6:
-                raise MalformedError("has a frame header that is cut short")
-            bits, height, width, channels = struct.unpack(">BHHB", segment[:6])
-            return PictureHeader("jpeg", (width, height), channels, bits)
-    raise MalformedError("has no frame header")
-
-
-def _jpeg_segments(data: memoryview) -> Iterator[tuple[int, memoryview]]:
-    """Marker and content of every segment before the compressed picture."""
-    at, stray = len(_JPEG), 0
-    while at + 4 <= len(data):
-        marker = data[at + 1]
-        if data[at] != 0xFF or marker in (0x00, 0xFF):  # fill bytes may stand before a marker
-            at, stray = at + 1, stray + 1
-            if stray > _MOST_STRAY:
-                return
-            continue
-        if marker in (_SOS, _EOI):
-            return
-        if marker in _ALONE:
-            at += 2
-            continue
-        length = int.from_bytes(data[at + 2 : at + 4], "big")
-        if length < 2 or at + 2 + length > len(data):
-            raise MalformedError("has a segment that is longer than the file")
-        yield marker, data[at + 4 : at + 2 + length]
-        at += 2 + length
+    Raises MalformedError, also for a file that is larger than a picture of its size can be.
+    """
+    array = np.frombuffer(data, dtype=np.uint8)
+    if not is_jpeg(array.data):
+        raise MalformedError("is no JPEG")
+    width, height = jpeg_header(array.data).size_px
+    most_bytes = _CAMERA_BYTES_PER_PIXEL * width * height + _CAMERA_SPARE_BYTES
+    if len(array) > most_bytes:
+        raise MalformedError(f"has {len(array)} bytes for {width}x{height} pixels")
+    return decode_picture(data, cv2.IMREAD_COLOR, size_px)

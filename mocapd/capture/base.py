@@ -37,6 +37,16 @@ class CountsTorn(Protocol):
 
 
 @runtime_checkable
+class Notices(Protocol):
+    """A source that knows what is wrong with its pictures beyond what they show."""
+
+    @property
+    def notice(self) -> str:
+        """One line for people, the same while the trouble is; empty when there is none. By the thread that reads."""
+        ...
+
+
+@runtime_checkable
 class LookedAfter(Protocol):
     """A source whose camera somebody else opens again, and leaves out when that does not help: what fails there is
     counted there alone."""

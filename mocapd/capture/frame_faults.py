@@ -44,8 +44,9 @@ class FrameFaults:
         )  # time, frames and damaged ones until then
         self._frames = 0
 
-    def add(self, frame: Frame, torn: int) -> bool:
-        """A frame, and how many damaged ones its source has left out so far; whether the notice changed."""
+    def add(self, frame: Frame, torn: int, of_source: str = "") -> bool:
+        """A frame, how many damaged ones its source has left out so far, and the source's own notice; whether the notice
+        changed."""
         self._frames += 1
         self._compare(frame)
         if self._looked_ns and frame.t_ns - self._looked_ns < _LOOK_NS:
@@ -55,7 +56,7 @@ class FrameFaults:
         self._torn.append((frame.t_ns, self._frames, torn))
         while frame.t_ns - self._torn[0][0] > _TORN_NS:
             self._torn.popleft()
-        before, self.notice = self.notice, self._notice(frame)
+        before, self.notice = self.notice, self._notice(frame) or of_source
         return self.notice != before
 
     def _compare(self, frame: Frame) -> None:

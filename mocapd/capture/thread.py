@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-from mocapd.capture.base import CountsTorn, LookedAfter, Pluggable, Source
+from mocapd.capture.base import CountsTorn, LookedAfter, Notices, Pluggable, Source
 from mocapd.capture.capture_record import CaptureRecord
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.capture.frame_faults import FrameFaults
@@ -72,6 +72,7 @@ class CaptureThread:
         self._counts_torn = (
             source if isinstance(source, CountsTorn) else None
         )  # asked once: it takes 0.1 ms
+        self._notices = source if isinstance(source, Notices) else None
         self._plug = source if isinstance(source, Pluggable) else None
         self._keeper = source if isinstance(source, LookedAfter) else None
         self._mailbox = mailbox
@@ -234,7 +235,8 @@ class CaptureThread:
 
     def _look_at(self, frame: Frame) -> None:
         """Raises CameraLost for a camera that shows the past."""
-        if self._faults.add(frame, self._torn()):
+        of_source = self._notices.notice if self._notices is not None else ""
+        if self._faults.add(frame, self._torn(), of_source):
             self._record.noticed(self._faults.notice, self._place())
         if self._faults.frozen and self._keeper is None:
             raise CameraLost(

@@ -4,7 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import MOST_PIXELS, decode_picture
+from mocapd.boundary.pictures import MOST_PIXELS, decode_camera_picture
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
@@ -111,7 +111,7 @@ class UrlSource:
             if not self._is_mjpg:
                 return Frame(self.name, seq, t_ns, frozen_pixels(raw))
             try:
-                pixels = frozen_pixels(decode_picture(frozen_pixels(raw), cv2.IMREAD_COLOR))
+                pixels = frozen_pixels(decode_camera_picture(frozen_pixels(raw)))
             except MalformedError:
                 self.torn += 1
                 if t_ns - began_ns < _TORN_LIMIT_NS:

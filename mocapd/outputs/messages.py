@@ -6,6 +6,7 @@ import msgspec
 from msgspec import Meta
 
 from mocapd.errors import InputError
+from mocapd.outputs.counts import Count, CountingMessage
 from mocapd.outputs.wire import Vector, decode_message
 
 HEALTH = "mocapd.Health.v1"
@@ -15,17 +16,17 @@ REST_SKELETON = "mocapd.Skeleton.Rest.v1"
 FACING = "mocapd.Facing.v1"
 
 
-class OutputHealth(msgspec.Struct, frozen=True):
+class OutputHealth(CountingMessage, frozen=True):
     """One output as its sink sees it."""
 
     name: Annotated[str, Meta(description="name of the output: `zenoh`, `osc`, ...")]
-    sent: Annotated[int, Meta(description="frames sent since the start")]
-    refused: Annotated[int, Meta(description="frames that nobody took or the system refused")]
+    sent: Annotated[Count, Meta(description="frames sent since the start")]
+    refused: Annotated[Count, Meta(description="frames that nobody took or the system refused")]
     listeners: Annotated[int, Meta(description="how many listen; -1: the protocol cannot tell")]
     detail: Annotated[str, Meta(description="one line for people")]
 
 
-class Health(msgspec.Struct, frozen=True):
+class Health(CountingMessage, frozen=True):
     """How the daemon fares, about once a second."""
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
@@ -38,8 +39,10 @@ class Health(msgspec.Struct, frozen=True):
     rate_hz: Annotated[float, Meta(description="skeleton frames per second, lately [Hz]")]
     latency_median_ms: Annotated[float, Meta(description="capture to publish, median [ms]")]
     latency_p95_ms: Annotated[float, Meta(description="capture to publish, 95th percentile [ms]")]
-    frame_sets: Annotated[int, Meta(description="frame sets tracked since the start")]
-    dropped: Annotated[int, Meta(description="frame sets displaced by newer ones since the start")]
+    frame_sets: Annotated[Count, Meta(description="frame sets tracked since the start")]
+    dropped: Annotated[
+        Count, Meta(description="frame sets displaced by newer ones since the start")
+    ]
     outputs: Annotated[tuple[OutputHealth, ...], Meta(description="every open output")] = ()
     detail: Annotated[
         str, Meta(description="one line for people: what is wrong with it as a whole; mostly empty")
@@ -47,7 +50,7 @@ class Health(msgspec.Struct, frozen=True):
     schema: Annotated[str, Meta(description=f"always `{HEALTH}`")] = HEALTH
 
 
-class CameraStatus(msgspec.Struct, frozen=True):
+class CameraStatus(CountingMessage, frozen=True):
     """One camera; sent when its state changes and about once a second."""
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
@@ -67,9 +70,9 @@ class CameraStatus(msgspec.Struct, frozen=True):
     ]
     size_px: Annotated[tuple[int, int], Meta(description="width, height of its pictures [px]")]
     rate_hz: Annotated[float, Meta(description="pictures per second, lately [Hz]")]
-    frames: Annotated[int, Meta(description="pictures taken since the start")]
-    lost_frames: Annotated[int, Meta(description="pictures that the source lost or tore")]
-    reopened: Annotated[int, Meta(description="how often it had to be opened again")]
+    frames: Annotated[Count, Meta(description="pictures taken since the start")]
+    lost_frames: Annotated[Count, Meta(description="pictures that the source lost or tore")]
+    reopened: Annotated[Count, Meta(description="how often it had to be opened again")]
     mounting: Annotated[
         str,
         Meta(

@@ -7,6 +7,7 @@ from mocapd.types import Frame
 
 _REMEMBERED = 8  # intervals and delays; the median of so many forgives three outliers
 _LONGEST_PERIOD_NS = NS_PER_S  # a longer interval is an outage, not a rate
+_SHORTEST_PERIOD_NS = NS_PER_S // 1000  # a shorter one is a number that the source made up
 
 
 class CameraQueue:
@@ -18,7 +19,7 @@ class CameraQueue:
         self.received = self.used = self.late = self.lost = 0
         self.missed = 0  # sets in a row that went without this camera after waiting for it
         self.offset_ns = 0  # from the last set's anchor; 0 when not in that set
-        self.period_ns = period_ns
+        self.period_ns = max(period_ns, _SHORTEST_PERIOD_NS)
         self.delay_ns = 0
         self._newest: tuple[int, int] | None = None  # seq and capture time
         self._periods: deque[int] = deque(maxlen=_REMEMBERED)
@@ -48,16 +49,24 @@ class CameraQueue:
             if frame.t_ns <= t_ns:
                 self.late += 1
                 return
-            # seq starts again when a camera is reopened: then nothing is known of the gap
-            self.lost += max(0, frame.seq - seq - 1)
-            period_ns = (frame.t_ns - t_ns) // max(1, frame.seq - seq)
-            if 0 < period_ns <= _LONGEST_PERIOD_NS:
-                self._periods.append(period_ns)
-                self.period_ns = _median(self._periods)
+            self._learn(frame.seq - seq, frame.t_ns - t_ns)
         self._delays.append(arrival_ns - frame.t_ns)
         self.delay_ns = _median(self._delays)
         self._newest = frame.seq, frame.t_ns
         self.frames.append((frame, arrival_ns))
+
+    def _learn(self, steps: int, interval_ns: int) -> None:
+        """Period and lost frames from two successive frames: the difference of their `seq`, and their distance in time.
+
+        `seq` is what a camera node says. So a gap counts as no more frames than fit into the time: what is lost is
+        bounded by how long the camera runs. `seq` starts again when a camera is reopened: then the gap is unknown.
+        """
+        period_ns = interval_ns // max(1, steps)
+        if _SHORTEST_PERIOD_NS <= period_ns <= _LONGEST_PERIOD_NS:
+            self._periods.append(period_ns)
+            self.period_ns = _median(self._periods)
+        most = interval_ns // self.period_ns + 1
+        self.lost += max(0, min(steps - 1, most))
 
     def use(self) -> Frame:
         """Take the oldest frame."""

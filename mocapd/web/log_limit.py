@@ -5,10 +5,12 @@ import time
 
 PAUSE_S = 10.0  # between two records of one message [s]
 _MOST_MESSAGES = 100  # that are told apart
+# What uvicorn says of every WebSocket that is refused with an HTTP answer: a stranger's doing, and no trouble of ours.
+_ORDINARY = frozenset({"ASGI callable returned without completing handshake."})
 
 
 class LogLimit(logging.Filter):
-    """Passes a message once in PAUSE_S, with how many of it were left out since.
+    """Passes a message once in PAUSE_S, with how many of it were left out since; what is ordinary, never.
 
     Messages are told apart by the first line of their format: what follows names objects and addresses.
     """
@@ -21,6 +23,8 @@ class LogLimit(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
         """Whether to log it."""
         message = str(record.msg).partition("\n")[0]
+        if message in _ORDINARY:
+            return False
         now_s = time.monotonic()
         if now_s - self._passed_s.get(message, float("-inf")) < PAUSE_S:
             self._left_out[message] = self._left_out.get(message, 0) + 1

@@ -4,7 +4,7 @@ import os
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,7 @@ from tests.outputs.frames import free_port
 
 START_S = 300.0  # the first start ever compiles, and renders the film
 END_S = 30.0
+SIMULATED = ("--capture", "sim:living_room")
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,12 @@ class Attacked:
         """How much memory it has now [MiB]."""
         return float(psutil.Process(self.process.pid).memory_info().rss) / 2**20
 
+    def peak_mib(self) -> float:
+        """The most memory it ever had [MiB]."""
+        lines = Path(f"/proc/{self.process.pid}/status").read_text().splitlines()
+        (peak,) = (line.split()[1] for line in lines if line.startswith("VmHWM"))
+        return int(peak) / 1024
+
     def end(self) -> tuple[int, float]:
         """SIGTERM; its exit code, and how long that took [s]. Raises TimeoutExpired."""
         began_s = time.monotonic()
@@ -41,23 +48,26 @@ class Attacked:
 
 
 @contextmanager
-def attacked(*words: str) -> Iterator[Attacked]:
-    """A daemon that already serves; killed in the end. `words` are further ones of `mocapd run`."""
+def attacked(*words: str, cameras: Sequence[str] = SIMULATED) -> Iterator[Attacked]:
+    """A daemon that already serves; killed in the end. `words` are further ones of `mocapd run`; cameras: those that say
+    where its cameras are."""
     port = free_port()
     given = ("--set", f"zenoh.port={port}", "--set", "web.enabled=false", *words)
-    with daemon_process(*given) as (process, log):
+    with daemon_process(*given, cameras=cameras) as (process, log):
         _wait_until_it_serves(process, port, log)
         yield Attacked(process, port, log)
 
 
 @contextmanager
-def daemon_process(*words: str) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
+def daemon_process(
+    *words: str, cameras: Sequence[str] = SIMULATED
+) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
     """A daemon that begins, alone in its surroundings, and its log, in whose folder it keeps everything; killed in
     the end."""
     dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "RUNTIME_DIRECTORY", "JOURNAL")
     env = {k: v for k, v in os.environ.items() if not k.startswith((*dropped, "ZENOH_RUNTIME"))}
     command = [
-        *(*COMMAND, "run", "--capture", "sim:living_room", "--tracker", "canned"),
+        *(*COMMAND, "run", *cameras, "--tracker", "canned"),
         *("--set", "osc.enabled=false", *words),
     ]
     with tempfile.TemporaryDirectory() as folder:

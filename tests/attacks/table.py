@@ -5,6 +5,7 @@ from tests.attacks import (
     frozen_at_the_end,
     frozen_beside_newcomers,
     large_messages,
+    malicious_nodes,
     page_connections,
     page_requests,
     silent,
@@ -16,6 +17,7 @@ SCENARIOS: dict[str, Scenario] = (
     | frozen_beside_newcomers.SCENARIOS
     | silent.SCENARIOS
     | large_messages.SCENARIOS
+    | malicious_nodes.SCENARIOS
     | page_connections.SCENARIOS
     | page_requests.SCENARIOS
     | control_requests.SCENARIOS

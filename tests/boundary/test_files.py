@@ -1,5 +1,6 @@
 """Files that somebody else named are regular and of bounded size, or refused at once."""
 
+import io
 import os
 from pathlib import Path
 
@@ -25,6 +26,22 @@ def test_a_pipe_without_a_writer_is_not_waited_for(tmp_path: Path) -> None:
 def test_what_is_no_regular_file_is_refused(path: str) -> None:
     with pytest.raises(InputError):
         files.read_file(Path(path), 10)
+
+
+def test_a_regular_file_that_has_nothing_to_read_yet_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As /proc/kmsg and files of FUSE are: a read that does not wait returns None."""
+
+    class Waiting(io.FileIO):
+        def read(self, size: int | None = -1, /) -> bytes | None:  # type: ignore[override]
+            return None
+
+    path = tmp_path / "kmsg"
+    path.touch()
+    monkeypatch.setattr("os.fdopen", Waiting)
+    with pytest.raises(InputError, match="nothing to read"):
+        files.read_file(path, 10)
 
 
 def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:

@@ -1,9 +1,14 @@
 """Pictures are measured by their headers: what they claim is compared before it is believed."""
 
+import os
 import resource
 import struct
+import subprocess
+import sys
 import zlib
+from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -11,9 +16,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mocapd.boundary.pictures import decode_picture, read_header
+from mocapd.boundary.pictures import decode_camera_picture, decode_picture, read_header
 from mocapd.errors import MalformedError
 from mocapd.types import Bytes
+from tests.fuzz import large_pictures
 
 COLOUR = np.arange(6 * 9 * 3, dtype=np.uint8).reshape(6, 9, 3)
 GREY = COLOUR[..., 0].copy()
@@ -41,6 +47,22 @@ def png_of(width: int, height: int, *chunks: bytes) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + b"".join(chunks)
 
 
+SIZE_PX = (640, 480)
+HOSTILE: dict[str, Callable[[], bytes]] = {
+    "empty comments": lambda: large_pictures.many_segments(SIZE_PX, 2_000_000),
+    "comments between scans": lambda: large_pictures.many_late_segments(SIZE_PX, 1_900_000),
+    "restarts without a scan": lambda: large_pictures.many_segments(SIZE_PX, 2_000_000, b"\xff\xd0"),
+    "short scans": lambda: large_pictures.many_scans(
+        SIZE_PX, 600_000, large_pictures.short_scan()
+    ),
+    "scans of a large picture": lambda: large_pictures.many_scans(
+        (2000, 1500), 50, large_pictures.short_scan()
+    ),
+    "empty zTXt": lambda: large_pictures.many_chunks(SIZE_PX, 480_000),
+    "empty tIME": lambda: large_pictures.many_chunks(SIZE_PX, 640_000, b"tIME"),
+    "bytes after the picture's": lambda: large_pictures.inflating(SIZE_PX, 4000),
+    "16 bits of 40 million pixels": lambda: large_pictures.plain_png((8000, 5000), bits=16),
+}  # fmt: skip
 IDAT = chunk(b"IDAT", zlib.compress(b"\0\0"))
 END = chunk(b"IEND", b"")
 
@@ -123,3 +145,67 @@ def test_sixteen_bits_are_read_where_they_are_wanted() -> None:
     with pytest.raises(MalformedError, match="16 bits"):
         decode_picture(data, cv2.IMREAD_COLOR)
     assert (decode_picture(data, cv2.IMREAD_COLOR, most_bits=16) == 77).all()
+
+
+@pytest.mark.parametrize("hostile", HOSTILE.values(), ids=HOSTILE.keys())
+def test_more_work_than_a_picture_needs_is_refused_before_it_is_done(
+    hostile: Callable[[], bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Decoding them takes from 2 s to hours, walking them all did up to 8 s: `make fuzz` measures that."""
+
+    def decoded(*_: object) -> None:
+        pytest.fail("the decoder sees it")
+
+    monkeypatch.setattr(cv2, "imdecode", decoded)
+    with pytest.raises(MalformedError):
+        decode_picture(hostile(), cv2.IMREAD_COLOR, most_bits=16)
+
+
+def test_what_stands_beside_a_picture_in_a_png_is_not_handed_to_the_decoder(tmp_path: Path) -> None:
+    """libpng writes a line to stderr for each odd chunk: none comes, and the picture is the same."""
+    odd = (b"zTXt", b"tIME", b"cHRM", b"pHYs", b"iCCP", b"PLTE", b"tRNS", b"tRNS")
+    good = png(COLOUR)
+    at = 8 + 25
+    path = tmp_path / "odd.png"
+    path.write_bytes(good[:at] + b"".join(map(chunk, odd, [b"x"] * len(odd))) + good[at:])
+    program = (
+        "import sys, cv2; from pathlib import Path; from mocapd.boundary.pictures import decode_picture\n"
+        "sys.stdout.buffer.write(decode_picture(Path(sys.argv[1]).read_bytes(), cv2.IMREAD_COLOR).tobytes())"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", program, str(path)], capture_output=True, check=True, env=os.environ
+    )
+    assert (ran.stdout, ran.stderr) == (COLOUR.tobytes(), b"")
+
+
+def test_a_palette_and_transparency_stay() -> None:
+    palette = chunk(b"PLTE", bytes(range(12)))
+    pixels = chunk(b"IDAT", zlib.compress(b"\0\x1b"))  # 0 1 2 3, of two bits
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 1, 2, 3, 0, 0, 0))
+    data = b"\x89PNG\r\n\x1a\n" + header + palette + chunk(b"tRNS", b"\0\xff") + pixels + END
+    colours = np.arange(12, dtype=np.uint8).reshape(1, 4, 3)[..., ::-1]
+    assert np.array_equal(decode_picture(data, cv2.IMREAD_COLOR), colours)
+
+
+def test_ordinary_progressive_pictures_are_read() -> None:
+    width, height = 1000, 800
+    data = large_pictures.progressive((width, height))
+    assert data.count(b"\xff\xda") == 10
+    assert decode_picture(data, cv2.IMREAD_COLOR).shape == (height, width, 3)
+
+
+def test_scans_of_a_thumbnail_and_of_what_follows_the_picture_do_not_count() -> None:
+    good = large_pictures.jpeg(np.zeros((480, 640, 3), np.uint8))
+    thumbnail = b"\xff\xe1" + struct.pack(">H", 2 + 140) + b"\xff\xda" * 70
+    data = good[:2] + thumbnail + good[2:] + b"\xff\xda" * 70
+    assert decode_camera_picture(data, (640, 480)).shape == (480, 640, 3)
+
+
+def test_a_camera_delivers_jpeg_no_larger_than_its_picture() -> None:
+    noise = np.random.default_rng(0).integers(0, 256, (48, 64, 3), dtype=np.uint8)
+    best = bytes(cv2.imencode(".jpg", noise, [cv2.IMWRITE_JPEG_QUALITY, 100])[1])
+    assert decode_camera_picture(best, (64, 48)).shape == (48, 64, 3)
+    with pytest.raises(MalformedError, match="no JPEG"):
+        decode_camera_picture(png(noise), (64, 48))
+    with pytest.raises(MalformedError, match="bytes for 64x48"):
+        decode_camera_picture(best + bytes(4 * 64 * 48 + 65536), (64, 48))

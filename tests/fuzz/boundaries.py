@@ -11,11 +11,17 @@ import cv2
 from mocapd.boundary.files import is_file, is_folder, read_file, read_text, user_path
 from mocapd.boundary.messages import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
-from mocapd.boundary.pictures import decode_picture, is_plain_jpeg, read_header
+from mocapd.boundary.pictures import (
+    decode_camera_picture,
+    decode_picture,
+    is_plain_jpeg,
+    read_header,
+)
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.errors import MocapdError
 from mocapd.web.links.wizard_link import PageCommand
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample
+from tests.fuzz.large_pictures import large_picture
 from tests.fuzz.mutations import JSON_VALUES, TOML_LINES, TOML_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError, named, taken
 
@@ -28,6 +34,7 @@ _TOML = (
     b'verb = "board"\n[args]\ncolumns = 5\nnames = ["a", "b"]\n[args.deep]\nx = [1.5, {y = 2}]\n'
 )
 _MOST_BYTES = 1000
+_MOST_WORDS = 500  # that a library may write about one picture [bytes]
 _NUMBERS: tuple[object, ...] = (
     0, -1, 1, 10**18, 10**19, -(10**400), 10**5000, 0.0, -0.0, 1e308, -1e308, 5e-324, math.nan, math.inf, -math.inf, 3.5,
     True, False, None, "", "3", "nan", [], {}, b"3", 1 + 2j, "x" * 10_000,
@@ -101,6 +108,25 @@ def pictures(place: Place) -> Attempt:
         if picture.shape[:2] != _SIZE_PX[::-1] or picture.dtype != "uint8":
             raise WrongError(f"a picture of {picture.shape} {picture.dtype} is let in")
         return True
+
+    return attempt
+
+
+def large_pictures(place: Place) -> Attempt:
+    """Pictures with more work in them than their size needs, as a camera's and as a file: the run's table says what they
+    take, and no library fills the log."""
+    size_px = (640, 480)
+    decode_camera_picture(jpeg(sample(size_px)), size_px)
+
+    def attempt(random: Random, number: int) -> bool:
+        data = large_picture(random, size_px)
+        before = os.fstat(2).st_size  # a file, while a row runs
+        done = named(lambda: decode_camera_picture(data, size_px))
+        done |= named(lambda: decode_picture(data, cv2.IMREAD_COLOR, most_bits=16))
+        words = os.fstat(2).st_size - before
+        if words > _MOST_WORDS:
+            raise WrongError(f"{words} bytes are written to stderr")
+        return done
 
     return attempt
 

@@ -71,6 +71,7 @@ ROWS = (
     Row("sockets", 2000, twin_files.sockets),
     Row("password-file", 3000, wires.users),
     Row("boundary-pictures", 6000, boundaries.pictures),
+    Row("large-pictures", 300, boundaries.large_pictures, is_slow=True),
     Row("boundary-messages", 6000, boundaries.messages),
     Row("boundary-numbers", 3000, boundaries.numbers),
     Row("boundary-files", 1000, boundaries.files),

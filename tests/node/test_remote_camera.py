@@ -8,8 +8,10 @@ import pytest
 
 from mocapd.capture.capture_status import CaptureState
 from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.remote_address import parse_remote
 from mocapd.capture.remote.remote_link import RemoteLink
+from mocapd.capture.remote.remote_source import RemoteSource
 from mocapd.capture.reopening import RestartBudget
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.thread import CaptureThread
@@ -18,6 +20,8 @@ from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.node.imperfections import Imperfections
 from mocapd.pipeline.latest import Latest
 from mocapd.types import Frame
+from tests.attacks.node_kinds import KINDS
+from tests.attacks.rogue_node import RogueNode
 from tests.capture.films import numbered_sim_film
 from tests.node.node_pair import Pluggable, next_frame, opened, running_node
 from tests.outputs.frames import eventually, free_port
@@ -57,6 +61,33 @@ def test_their_times_are_of_our_clock_whatever_the_nodes_shows() -> None:
         true_ns = camera.exposures_ns[frame.seq - 1]
         assert abs(frame.t_ns - true_ns) < told_ns + 1_000_000
         assert frame.t_ns <= monotonic_ns()
+
+
+def test_a_node_whose_clock_runs_away_is_said_to_have_uncertain_times() -> None:
+    with running_node(
+        Pluggable("cam0"), imperfections=Imperfections(drift_ppm=300_000.0)
+    ) as running:
+        capture = CaptureThread(running.source(), Latest[Frame](), _died)
+        capture.start()
+        assert eventually(lambda: "its node" in capture.status().notice)
+        assert capture.stop()
+
+
+def test_of_a_node_that_sends_ten_times_the_rate_no_more_is_decoded_than_of_others() -> None:
+    port, frames = free_port(), 60
+    node = RogueNode(port, "attic", KINDS["300-hz"])
+    node.start()
+    try:
+        source = opened(RemoteSource("left", parse_remote(f"zenoh://127.0.0.1:{port}/attic/cam0")))
+        next_frame(source)
+        began_ns = monotonic_ns()
+        for _ in range(frames):
+            next_frame(source)
+        took_s = (monotonic_ns() - began_ns) / 1e9
+        source.close()
+    finally:
+        node.stop()
+    assert took_s > (frames - 5) / 45.0
 
 
 def test_a_picture_that_is_no_jpeg_yet_is_encoded() -> None:
@@ -107,7 +138,7 @@ def test_the_node_says_at_once_that_a_camera_went_and_is_back() -> None:
         with other_program(f"tcp/127.0.0.1:{running.port}") as session:
             assert eventually(lambda: any(session.liveliness().get(token, timeout=5.0)))
         link = RemoteLink(parse_remote(running.address()))
-        link.listen()
+        link.listen(ArrivalLimit(100.0))
         camera.plugged = False
         assert eventually(lambda: link.is_gone)
         camera.plugged = True

@@ -1,13 +1,16 @@
 """`mocapd cameras --at`: what a node has, with what to write into the configuration."""
 
 import json
+import resource
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import zenoh
 
+from mocapd.bus.zenoh_answers import MOST_ANSWERS, limited_answers
 from mocapd.capture.kinds.source_kinds import open_source
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import CameraState
@@ -124,6 +127,47 @@ def test_one_that_is_not_understood_does_not_hide_the_others(router: str, strang
             assert eventually(lambda: listed(place) == [f"{place}/attic/cam0"])
         with pytest.raises(UnavailableError, match="not understood"):
             list_remote(f"{place}/odd")
+
+
+def test_answers_are_measured_before_they_are_kept(router: str) -> None:
+    """200 of 7 MiB took 736 MB."""
+    place = f"zenoh://{router.removeprefix('tcp/')}"
+    key = camera_wire.state("big", "cam0")
+    large = bytes(7 << 20)
+
+    def answers(query: zenoh.Query) -> None:
+        with query:
+            for _ in range(60):
+                query.reply(key, large)
+
+    with (
+        other_program(router) as session,
+        session.declare_queryable(key, zenoh.handlers.Callback(answers, indirect=False)),
+        answering(router, "attic", state("attic")),
+    ):
+        assert eventually(lambda: listed(place) == [f"{place}/attic/cam0"])
+        before_kb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        with pytest.raises(UnavailableError, match="no camera node"):
+            list_remote(f"{place}/big")
+        assert listed(place) == [f"{place}/attic/cam0"]
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before_kb < 200_000
+
+
+def test_of_many_answers_a_thousand_are_kept(router: str) -> None:
+    key = camera_wire.state("many", "cam0")
+
+    def answers(query: zenoh.Query) -> None:
+        with query:
+            for _ in range(MOST_ANSWERS + 200):
+                query.reply(key, b"x")
+
+    with (
+        other_program(router) as session,
+        session.declare_queryable(key, zenoh.handlers.Callback(answers, indirect=False)),
+        other_program(router) as other,
+    ):
+        found = limited_answers(other, key, 10.0, 10, consolidation=zenoh.ConsolidationMode.NONE)
+        assert len(found) == MOST_ANSWERS
 
 
 def listed(place: str) -> list[str]:

@@ -42,7 +42,7 @@ def struct_table(struct: type[msgspec.Struct]) -> str:
     plain = get_type_hints(struct)
     for name, hint in get_type_hints(struct, include_extras=True).items():
         rows.append(
-            f"| `{name}` | {type_words(plain[name])} | {hint.__metadata__[0].description} |"
+            f"| `{name}` | {type_words(plain[name])} | {hint.__metadata__[-1].description} |"
         )
     return "\n".join(rows) + "\n"
 

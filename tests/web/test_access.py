@@ -1,5 +1,6 @@
 """Who is let in: the token, our own address, and no other site."""
 
+import logging
 from collections.abc import Mapping
 from urllib.parse import urlsplit
 
@@ -158,3 +159,13 @@ def test_other_sites_and_names_are_logged_once_each_a_stale_window_never(
     assert "Origin 'http://evil.example'" in site
     assert "Host 'rebound.example\\t" in name
     assert len(name) < 400
+
+
+@pytest.mark.parametrize("path", SOCKETS)
+def test_strangers_whose_websocket_is_refused_are_no_trouble_of_the_log(
+    server: WebServer, path: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with pytest.raises(InvalidStatus), connect(server, path, token="guess"):
+        pass
+    assert get(server, "/status", token=token_of(server)).status_code == 200
+    assert [one.getMessage() for one in caplog.records if one.levelno >= logging.WARNING] == []

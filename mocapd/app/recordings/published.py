@@ -8,6 +8,7 @@ from typing import Self
 
 import zenoh
 
+from mocapd.bus.zenoh_answers import MOST_ANSWERS_BYTES, limited_answers
 from mocapd.bus.zenoh_calls import zenoh_call
 from mocapd.client import Link, connect
 from mocapd.errors import ConfigError, InputError
@@ -58,9 +59,8 @@ class PublishedStream:
                     keys.calibration(self.instance),
                 ):
                     self._subscribe(session, key)
-                    for reply in session.get(key, timeout=ASK_S):
-                        if reply.ok is not None:
-                            self._arrived(reply.ok)
+                    for sample in limited_answers(session, key, ASK_S, MOST_ANSWERS_BYTES):
+                        self._arrived(sample)
                 self._subscribe(session, keys.skeleton(self.instance, keys.ANY))
         except BaseException:
             self._opened.close()

@@ -5,10 +5,8 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-import cv2
-
 from mocapd.boundary.mcap_records import McapFile, McapMessage
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.recording.recorded_picture import IMAGE, camera_of, decode_picture_message
@@ -97,7 +95,7 @@ def _frame(message: McapMessage, camera: Camera, name: str, t_ns: int) -> Frame 
     """None for a picture that is damaged or of another size than its calibration."""
     try:
         jpeg = decode_picture_message(message.data).data
-        pixels = decode_picture(jpeg, cv2.IMREAD_COLOR, camera.size_px)
+        pixels = decode_camera_picture(jpeg, camera.size_px)
     except MalformedError as error:
         _log.warning("a picture of camera %r is left out: it %s", camera.name, error.what)
         return None

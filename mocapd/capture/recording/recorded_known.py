@@ -14,7 +14,7 @@ import msgspec
 from mocapd.boundary.mcap_records import McapAttachment
 from mocapd.boundary.messages import decode_json
 from mocapd.boundary.numbers import finite_number
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
@@ -100,7 +100,7 @@ def _stature_m(data: bytes, where: str) -> float:
 def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) -> LabelledPicture:
     strokes = f"{name.removesuffix('.png')}{_STROKES}.png"
     try:
-        pixels = decode_picture(data, cv2.IMREAD_COLOR)
+        pixels = decode_picture(data, cv2.IMREAD_COLOR, most_pixels=MOST_DRAWN_PIXELS)
         size_px = pixels.shape[1], pixels.shape[0]
         labels = decode_picture(files.get(strokes, b""), cv2.IMREAD_GRAYSCALE, size_px)
         if labels.max() > _COLOURS:

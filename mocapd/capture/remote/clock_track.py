@@ -16,6 +16,8 @@ _SPAN_NS = (
 _KEPT_OF_SPAN = 5
 _JUMP_SPARE_NS = 1_000_000  # beyond what the round trip allows: the line's own error
 _JUMPS = 3  # in a row that no round trip explains: it was set, or the machine slept
+_MANY_RESTARTS, _RESTARTS_NS = 5, 60 * NS_PER_S  # within so long: no clock is set that often
+_MOST_DRIFT = 6e-4  # quartz is within 1e-4, a time service slews by 5e-4
 
 
 class ClockTrack:
@@ -27,6 +29,7 @@ class ClockTrack:
         self._span: list[ClockSample] = []  # all of the one that goes on
         self._strange: list[ClockSample] = []
         self._line: ClockLine | None = None
+        self._restarts_ns: deque[int] = deque(maxlen=_MANY_RESTARTS)
 
     def answered(self, asked_ns: int, answer: ClockAnswer, came_ns: int) -> None:
         """Learn from an answer that can be one: asked and come by our clock [ns]."""
@@ -39,9 +42,22 @@ class ClockTrack:
         """None before the first sample."""
         return self._line
 
-    def restart(self) -> None:
+    def trouble(self, now_ns: int) -> str:
+        """Why the times of its pictures cannot be relied on; empty when they can. now_ns: by our clock."""
+        with self._lock:
+            restarts, line = self._restarts_ns, self._line
+            if len(restarts) == _MANY_RESTARTS and now_ns - restarts[0] <= _RESTARTS_NS:
+                return "the clock of its node jumps over and over, so the times of its pictures are uncertain"
+        if line is not None and abs(line.drift) > _MOST_DRIFT:
+            return (
+                "the clock of its node drifts too much, so the times of its pictures are uncertain"
+            )
+        return ""
+
+    def restart(self, now_ns: int) -> None:
         """Another clock from now on."""
         with self._lock:
+            self._restarts_ns.append(now_ns)
             self._forget()
             self._strange.clear()
             self._line = None
@@ -53,6 +69,7 @@ class ClockTrack:
                 self._strange.append(sample)
                 if len(self._strange) < _JUMPS:
                     return
+                self._restarts_ns.append(sample.local_ns)
                 self._forget()
                 self._span.extend(self._strange)
             else:

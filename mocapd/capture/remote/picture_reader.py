@@ -4,9 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 from dataclasses import dataclass
 
-import cv2
-
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import PictureStamp
@@ -15,7 +13,7 @@ from mocapd.clock import NS_PER_S
 from mocapd.errors import MalformedError
 from mocapd.types import Frame
 
-_OLDEST_NS = 5 * NS_PER_S  # an exposure longer ago than this, or so far ahead, is of another clock
+_OLDEST_NS = NS_PER_S  # an exposure longer ago than this, or so far ahead, is of another clock
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +43,7 @@ class PictureReader:
         t_ns = clock.local_from_remote(stamp.exposure_ns)
         if abs(t_ns - arrived.came_ns) > _OLDEST_NS:
             raise MalformedError("was exposed at a time that cannot be")
-        pixels = frozen_pixels(decode_picture(arrived.data, cv2.IMREAD_COLOR, size_px=size_px))
+        pixels = frozen_pixels(decode_camera_picture(arrived.data, size_px))
         # no picture is exposed after it came, nor before the one before it: the rest of the clock's error
         t_ns = max(min(t_ns, arrived.came_ns), self._last_ns + 1)
         self._last_ns = t_ns

@@ -1,6 +1,5 @@
 """The Zenoh session of one remote camera: its newest picture, questions to its node, and the end of both."""
 
-import itertools
 import json
 import threading
 from contextlib import ExitStack
@@ -8,10 +7,12 @@ from contextlib import ExitStack
 import msgspec
 import zenoh
 
+from mocapd.bus.zenoh_answers import limited_answers
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.bus.zenoh_close import close_soon
 from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.camera_wire import M
 from mocapd.capture.remote.clock_track import ClockTrack
 from mocapd.capture.remote.picture_reader import Arrived
@@ -25,7 +26,6 @@ _LOST_S = 1.0  # after which an answer is not expected any more
 _PING_NS = NS_PER_S // 4  # how often the other clock is asked
 _UNSURE_PING_NS = NS_PER_S // 20  # the same while it is not known well: answers wait on their way
 _SURE_NS = 300_000
-_MOST_ANSWERS = 1000
 
 
 class RemoteLink:
@@ -66,14 +66,17 @@ class RemoteLink:
             ) from None
         self._opened.enter_context(self._session)
 
-    def listen(self) -> None:
-        """From now on keep the newest picture, and notice when the camera goes. Raises UnavailableError."""
+    def listen(self, limit: ArrivalLimit) -> None:
+        """From now on keep the newest picture, of at most so many a second, and notice when the camera goes. Raises
+        UnavailableError."""
         pictures = camera_wire.picture(self._address.node, self._address.camera)
         token = camera_wire.alive(self._address.node, self._address.camera)
         try:
             with zenoh_call():
                 # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-                arrived = zenoh.handlers.Callback(self._arrived, indirect=False)
+                arrived = zenoh.handlers.Callback(
+                    lambda sample: self._arrived(sample, limit), indirect=False
+                )
                 self._opened.enter_context(self._session.declare_subscriber(pictures, arrived))
                 told = zenoh.handlers.Callback(self._told, indirect=False)
                 liveliness = self._session.liveliness()
@@ -117,23 +120,23 @@ class RemoteLink:
         payload = None if order is None else camera_wire.encode(order)
         try:
             with zenoh_call():
-                replies = self._session.get(
+                samples = limited_answers(
+                    self._session,
                     key,
+                    timeout_s,
+                    camera_wire.MOST_MESSAGE_BYTES,
                     payload=payload,
-                    timeout=timeout_s,
                     target=zenoh.QueryTarget.ALL,
                     # else of two that answer to one name the first is not heard of
                     consolidation=zenoh.ConsolidationMode.NONE,
                 )
-                told = (one.ok.payload.to_bytes() for one in replies if one.ok is not None)
-                answers = list(itertools.islice(told, _MOST_ANSWERS))
         except zenoh.ZError:
             raise self._lost() from None
         understood: list[M] = []
         trouble: MalformedError | None = None
-        for data in answers:
+        for sample in samples:
             try:
-                understood.append(camera_wire.decode(data, kind))
+                understood.append(camera_wire.decode(sample.payload.to_bytes(), kind))
             except MalformedError as error:
                 trouble = error
         if understood or trouble is None:
@@ -149,7 +152,7 @@ class RemoteLink:
 
         def came(reply: zenoh.Reply) -> None:  # on Zenoh's thread
             came_ns = monotonic_ns()
-            if reply.ok is not None:
+            if reply.ok is not None and len(reply.ok.payload) <= camera_wire.MOST_MESSAGE_BYTES:
                 self._told_time(asked_ns, reply.ok.payload.to_bytes(), came_ns)
             if answered is not None:
                 answered.set()
@@ -180,10 +183,15 @@ class RemoteLink:
         if not was_closed:
             close_soon(self._opened, _CLOSE_S)
 
-    def _arrived(self, sample: zenoh.Sample) -> None:
+    def _arrived(self, sample: zenoh.Sample, limit: ArrivalLimit) -> None:
         came_ns = monotonic_ns()
         stamp = sample.attachment
-        if stamp is None or len(sample.payload) > camera_wire.MOST_PICTURE_BYTES:
+        if (
+            stamp is None
+            or len(stamp) > camera_wire.MOST_MESSAGE_BYTES
+            or len(sample.payload) > camera_wire.MOST_PICTURE_BYTES
+            or not limit.take(came_ns)  # by one thread: Zenoh delivers a key's samples in order
+        ):
             return
         arrived = Arrived(sample.payload.to_bytes(), stamp.to_bytes(), came_ns)
         with self._changed:
@@ -203,7 +211,7 @@ class RemoteLink:
             return  # no answer: a node whose clock does not come is told by who needs it
         if answer.run != self.run:
             self.run = answer.run
-            self.clock.restart()
+            self.clock.restart(came_ns)
         self.clock.answered(asked_ns, answer, came_ns)
 
     def _lost(self) -> UnavailableError:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from mocapd.capture.file import size_error
 from mocapd.capture.remote import camera_wire
+from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.camera_wire import CameraState, Done, Order
 from mocapd.capture.remote.clock_fit import ClockLine
 from mocapd.capture.remote.picture_reader import PictureReader
@@ -27,12 +28,17 @@ _LOOK_S = 0.05  # how long a picture is waited for before the rest is looked at
 _FIRST_PINGS, _FIRST_NS, _GOOD_NS = 40, 6 * NS_PER_S // 10, 200_000
 _FIRST_ANSWER_S = 0.15  # then the next is asked
 _ANSWER_S = 1.0  # from a node that is there
+# Of the rate that is expected of it: a node that sends more costs no more.
+_MOST_OF_RATE = 1.5
+_MANY_DROPPED = 300  # pictures beyond that, until the log says so
+_TIME_SERVICE = "look at the time service of its machine, or restart the node"
 _MAY_I_S = 0.5  # who may not set the camera gets no answer at all
 
 
 class RemoteSource:
     """See Source and, where the node lets this daemon set the camera, Lockable: `takes_orders` says so.
 
+    Pictures beyond 1.5 times `settings.fps_hz` are dropped undecoded. `notice`: see Notices.
     The exposure is told by the node's clock, which is related to ours by `clock`; `torn` counts pictures that came
     damaged or with an impossible time. A node that was started anew is opened anew. `camera_failed`: see LookedAfter.
     """
@@ -55,10 +61,12 @@ class RemoteSource:
         self._settings = settings if settings is not None else WebcamSettings()
         self._lock = threading.Lock()  # guards what follows against `close` from another thread
         self._link: RemoteLink | None = None
+        self._said_fast = False
         self._turn = 0  # of opening and closing
         self._state: CameraState | None = None
         self._takes_orders = False
         self._pictures = PictureReader(name)
+        self._limit = ArrivalLimit(_MOST_OF_RATE * self._settings.fps_hz)
 
     @property
     def clock(self) -> ClockLine | None:
@@ -84,7 +92,7 @@ class RemoteSource:
         try:
             state = self._looked_up(link)
             self._learn_clock(link)
-            link.listen()
+            link.listen(self._limit)
         except BaseException:
             link.close()
             raise
@@ -105,6 +113,7 @@ class RemoteSource:
             if link.is_gone or now_ns - heard_ns > _SILENT_NS:
                 raise self._lost(link, *self._told(link))
             self._ping(link)
+            self._look_at_rate()
             arrived = link.newest(_LOOK_S)
             if arrived is None:
                 continue
@@ -117,6 +126,13 @@ class RemoteSource:
                 raise self._lost(
                     link, "only damaged pictures arrive", "check the network and its node"
                 )
+
+    @property
+    def notice(self) -> str:
+        """See Notices."""
+        link = self._link
+        trouble = link.clock.trouble(monotonic_ns()) if link is not None else ""
+        return f"{trouble} -- {_TIME_SERVICE}" if trouble else ""
 
     def close(self) -> None:
         """Let go and wake a blocked `read`."""
@@ -230,6 +246,15 @@ class RemoteSource:
             link.ping_if_due()
         except UnavailableError as error:
             raise self._lost(link, error.what, error.fix) from None
+
+    def _look_at_rate(self) -> None:
+        if self._limit.dropped >= _MANY_DROPPED and not self._said_fast:
+            self._said_fast = True
+            _LOG.warning(
+                "%s: its node sends more than %g pictures a second, the others are dropped -- set fps_hz of its "
+                "[[camera]] here to the rate at the node",
+                *(self.name, self._limit.most_hz),
+            )
 
     def _told(self, link: RemoteLink) -> tuple[str, str]:
         """What the node says of a camera from which nothing comes, and the mend."""

@@ -5,9 +5,7 @@ import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-import cv2
-
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
@@ -93,7 +91,7 @@ class FilmOrigin:
 
     def _frame(self, camera: str, i: int, clock_offset_s: float) -> Frame:
         jpeg = self._film.frames[camera][i]
-        pixels = frozen_pixels(decode_picture(jpeg, cv2.IMREAD_COLOR))
+        pixels = frozen_pixels(decode_camera_picture(jpeg))
         return Frame(camera, i, nanoseconds(i / self.fps_hz + clock_offset_s), pixels, jpeg)
 
 

@@ -3,10 +3,9 @@
 import threading
 from collections.abc import Callable
 
-import cv2
 import numpy as np
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError
@@ -78,7 +77,7 @@ class SimCamera:
             raise CameraLost("was unplugged", self.name, "the scenario plugs it in again")
         jpeg = self._jpeg(n)
         try:
-            pixels = decode_picture(jpeg, cv2.IMREAD_COLOR)
+            pixels = decode_camera_picture(jpeg)
         except MalformedError as error:
             raise InputError(
                 f"a frame of the film {error.what}", self.name, "delete the cache"

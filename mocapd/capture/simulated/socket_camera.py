@@ -8,7 +8,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sockets import Fault, FoundSocket, Sockets
@@ -128,7 +128,7 @@ def _with(frame: Frame, pixels: cv2.typing.MatLike) -> Frame:
 
 def _cut(frame: Frame, encoded: bytes) -> Frame | None:
     try:
-        pixels = decode_picture(encoded[: len(encoded) // 2], cv2.IMREAD_COLOR)
+        pixels = decode_camera_picture(encoded[: len(encoded) // 2])
     except MalformedError:
         return None
     return replace(frame, pixels=frozen_pixels(pixels))

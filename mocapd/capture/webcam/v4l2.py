@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from cv2.typing import MatLike
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
@@ -287,7 +287,7 @@ def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
             return None
         return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
     try:
-        decoded = decode_picture(np.asarray(raw, dtype=np.uint8), cv2.IMREAD_COLOR, size_px)
+        decoded = decode_camera_picture(np.asarray(raw, dtype=np.uint8), size_px)
     except MalformedError:
         return None
     # one that says it was taken upright is turned by the decoder

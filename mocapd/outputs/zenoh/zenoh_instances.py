@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import zenoh
 
+from mocapd.bus.zenoh_answers import limited_answers
 from mocapd.bus.zenoh_calls import zenoh_call
+from mocapd.bus.zenoh_limits import MAX_MESSAGE_BYTES
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.outputs.messages import CAMERA_STATUS, HEALTH, CameraStatus, Health
@@ -71,10 +73,10 @@ class Instances:
             for sample in alive:
                 self._lives(sample)
             for key in (keys.health(keys.ANY), keys.camera_status(keys.ANY, keys.ANY)):
-                replies = session.get(key, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
-                for reply in replies:
-                    if reply.ok is not None:
-                        self._said(reply.ok)
+                for sample in limited_answers(
+                    session, key, timeout_s, MAX_MESSAGE_BYTES, target=zenoh.QueryTarget.ALL
+                ):
+                    self._said(sample)
 
     def states(self) -> tuple[InstanceState, ...]:
         """By name."""
@@ -89,6 +91,8 @@ class Instances:
                 self._states[state.name] = replace(state, alive=alive)
 
     def _said(self, sample: zenoh.Sample) -> None:
+        if len(sample.payload) > MAX_MESSAGE_BYTES:
+            return
         payload, encoding = sample.payload.to_bytes(), str(sample.encoding)
         is_health = str(sample.key_expr).endswith("/health")
         with self._lock:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.boundary.files import read_file
-from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
+from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, MOST_FILE_BYTES, decode_picture
 from mocapd.errors import InputError, MalformedError
 from mocapd.types import Bytes, Floats, LabelledPicture
 
@@ -116,6 +116,8 @@ def _trim(values: Floats) -> Floats:
 
 def _read(path: Path, flags: int) -> Bytes:
     try:
-        return decode_picture(read_file(path, MOST_FILE_BYTES), flags)
+        return decode_picture(
+            read_file(path, MOST_FILE_BYTES), flags, most_pixels=MOST_DRAWN_PIXELS
+        )
     except MalformedError as error:
         raise InputError(error.what, str(path), "save it again as PNG, with 8 bits") from None

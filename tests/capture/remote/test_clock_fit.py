@@ -128,3 +128,37 @@ def test_there_and_back_is_the_same_time() -> None:
     for gone_ns in (0, 10**9, 10**14):
         at_ns = START_NS + gone_ns
         assert abs(line.local_from_remote(line.remote_from_local(at_ns)) - at_ns) <= 1
+
+
+def trouble_of(samples: list[ClockSample]) -> str:
+    track = ClockTrack()
+    track.restart(samples[0].local_ns)  # as at the first answer
+    for sample in samples:
+        track.add(sample)
+    return track.trouble(samples[-1].local_ns)
+
+
+@pytest.mark.parametrize("drift_ppm", [-150_000, -1500, 1500, 20_000, 300_000])
+def test_a_clock_that_runs_away_is_no_clock(drift_ppm: float) -> None:
+    samples = asked(Clock(drift_ppm=drift_ppm), seconds=20, jitter_ms=2, seed=1)
+    assert "uncertain" in trouble_of(samples)
+
+
+@pytest.mark.parametrize("every_s", [0.25, 1.0])
+def test_one_that_is_set_every_second_is_no_clock(every_s: float) -> None:
+    samples = [
+        sample
+        for k in range(12)
+        for sample in asked(
+            Clock(offset_s=10.0 * (k % 5)), 4 * every_s, 2.0, k, 4 * k * every_s, every_s
+        )
+    ]
+    assert "over and over" in trouble_of(samples)
+
+
+def test_a_clock_of_quartz_that_a_time_service_corrects_or_that_slept_once_is_relied_on() -> None:
+    for clock in (Clock(drift_ppm=100), Clock(drift_ppm=-500), Clock(drift_ppm=0)):
+        assert trouble_of(asked(clock, seconds=60, jitter_ms=20, seed=3)) == ""
+    before, after = Clock(offset_s=3.0), Clock(offset_s=-7.0)
+    samples = asked(before, 30, 5, seed=1) + asked(after, 30, 5, seed=2, begin_s=40)
+    assert trouble_of(samples) == ""
