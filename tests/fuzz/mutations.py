@@ -1,9 +1,12 @@
-"""Damage to bytes, and nasty values in the place of those of a text."""
+"""Mutations of inputs: damaged bytes, nasty values in a text, one token repeated many times, messages out of order."""
 
 import re
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from random import Random
+from typing import TypeVar
+
+T = TypeVar("T")
 
 _BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF, 0x0A, 0x22, 0x2C, 0x5B, 0x7B)
 _NUMBERS = (0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0x8000, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFF000000)
@@ -22,6 +25,7 @@ _CHUNKS = (
     b"9" * 400,
     b"A" * 5000,
 )
+_MOST_REPEATED_BYTES = 400_000  # S5, S8: 36 kB of dotted keys took 15 s, 25 kB of messages 300 s
 _DIGITS = "9" * 5000  # Python reads 4,300
 _LONG = "x" * 100_000
 _DEEP = 3000
@@ -58,6 +62,7 @@ TOML_LINES = (
 _SCALAR = re.compile(
     rb'"(?:[^"\\]|\\.)*"|\d{4}-\d\d-\d\dT[\d:.]+Z?|[-+]?\b\d[\d.eE+\-]*|\b(?:true|false|null)\b'
 )
+_TOKEN = re.compile(rb"\w+|\s+|[^\w\s]")
 _WHOLE = {0x5B: 0x5D, 0x7B: 0x7D}  # brackets
 
 
@@ -87,6 +92,55 @@ def mistyped(
         else:
             text = damaged(random, text)
     return text
+
+
+def repeated(
+    random: Random,
+    data: bytes,
+    tokens: Sequence[bytes] = (),
+    most_bytes: int = _MOST_REPEATED_BYTES,
+) -> bytes:
+    """The input with one token repeated in place, so often that it grows by up to `most_bytes`.
+
+    The token is one to four neighbouring tokens of a text (`a.`, `{"a":`, `[],`), 1 to 64 bytes of
+    anything, or, half the time, one of `tokens`: what a format repeats, such as an empty segment of a JPEG.
+    The number of repetitions is log-uniform, since costs that grow quadratically show at the upper end only.
+    """
+    begin, end = _token_span(random, data)
+    token = random.choice(tokens) if tokens and random.random() < 0.5 else data[begin:end]
+    if not token:
+        return data
+    most = max(1, most_bytes // len(token))
+    count = max(1, round(most ** random.random()))
+    return data[:begin] + token * count + data[begin:]
+
+
+def shuffled(
+    random: Random, messages: Sequence[T], change: Callable[[Random, T], T], most: int = 40
+) -> list[T]:
+    """A sequence of 1 to `most` messages: `messages` in any order, repeated, left out, some of them changed."""
+    out: list[T] = []
+    length = 1 + random.randrange(most)
+    while len(out) < length:
+        one = random.choice(messages)
+        if random.random() < 0.3:
+            one = change(random, one)
+        out += [one] * (1 if random.random() < 0.7 else random.randint(2, most))
+    return out[:length]
+
+
+def _token_span(random: Random, data: bytes) -> tuple[int, int]:
+    """Begin and end of what is repeated."""
+    begin = random.randint(0, len(data))
+    if random.random() < 0.3:
+        return begin, begin + random.randint(1, 64)
+    end = begin
+    for _ in range(random.randint(1, 4)):
+        match = _TOKEN.match(data, end)
+        if match is None:
+            break
+        end = match.end()
+    return begin, end
 
 
 def _with_value(random: Random, text: bytes, value: str) -> bytes:
