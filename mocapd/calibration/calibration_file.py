@@ -14,7 +14,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import msgspec
 
-from mocapd.boundary.files import MissingError, is_file, is_folder, read_file, read_text
+from mocapd.boundary.files import MissingError, is_absent, is_file, is_folder, read_file, read_text
 from mocapd.boundary.folders import private_folder
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import brief, check_numbers
@@ -44,7 +44,7 @@ from mocapd.whole_file import tidy, whole_file
 FILE_NAME = "calibration.toml"
 COLOURS = "colours"
 
-_MOST_BYTES = 16 << 20
+_MOST_BYTES = 256 << 10  # a camera takes 1 kB
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
@@ -131,7 +131,7 @@ def write_calibration(
                 colour = _with_files(folder, camera.id, pictures[camera.id], colour)
             cameras.append(msgspec.structs.replace(camera, colour=colour))
         text = _text(msgspec.structs.replace(saved, camera=tuple(cameras)))
-        if path.exists():
+        if not is_absent(path):
             known = {**_keep_before(path), **known}
         _write(path, text, known)
         _tidy(path)

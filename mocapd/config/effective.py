@@ -12,7 +12,7 @@ from typing import Any
 
 import platformdirs
 
-from mocapd.boundary.files import is_file, user_path
+from mocapd.boundary.files import is_absent, user_path
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
 from mocapd.config.sections import GONE, HIDDEN, CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
@@ -52,7 +52,10 @@ def known_keys() -> dict[str, Key]:
 
 
 def config_candidates() -> tuple[Path, ...]:
-    """Where a config file is looked for, in this order; the first that exists is read."""
+    """Where a config file is looked for, in this order; the first that is not absent is read.
+
+    One that cannot be looked at is an error: as if there were none would drop passwords and TLS.
+    """
     return (
         platformdirs.user_config_path("mocapd") / "config.toml",
         Path("/etc/mocapd/config.toml"),
@@ -76,7 +79,7 @@ def load_config(
         file = user_path(env["MOCAPD_CONFIG"])
     if file is None:
         given = config_candidates() if candidates is None else candidates
-        file = next((path for path in given if is_file(path)), None)
+        file = next((path for path in given if not is_absent(path)), None)
     known = known_keys()
     found: Found = _from_file(read_toml(file), known) if file else {}
     found |= _from_env(env, known)
