@@ -37,6 +37,7 @@ from mocapd.errors import (
     MocapdError,
     NewerFileError,
 )
+from mocapd.output_file import FileKind
 from mocapd.set_aside import set_aside
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.whole_file import tidy, whole_file
@@ -53,6 +54,9 @@ _HEADER = """\
 # The one before is kept beside it under the same name with .previous: rename it to go back.
 
 """
+CALIBRATION_KIND = FileKind(
+    "a calibration", lambda head: re.search(rb"(?m)^schema = \d+$", head) is not None
+)
 _log = logging.getLogger(__name__)
 _PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
 

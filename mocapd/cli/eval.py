@@ -11,6 +11,7 @@ import typer
 
 from mocapd.cli.options import (
     ConfigOption,
+    ForceOption,
     SetOption,
     VariantOption,
     effective_config,
@@ -104,6 +105,7 @@ def evaluate_captures(
             help="Write evaluation.md here, with plots when comparing; failures.md for --failures.",
         ),
     ] = None,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -145,7 +147,7 @@ def evaluate_captures(
                 "that recording is scored alone", "--interruptions", "leave the others out"
             )
         with ProgressBars() as progress:
-            _interruptions(effective, as_json, out, progress)
+            _interruptions(effective, as_json, out, force, progress)
         return
     if not folders and simulated is None and not failures:
         raise ConfigError(
@@ -187,14 +189,16 @@ def evaluate_captures(
         words[2:2] = ["--failures"] if failures else []
         command, written = shlex.join(words), []
         if len(findings.results) > len(hard):
-            written += write_page(out, findings, command)
+            written += write_page(out, findings, command, force)
         if scenes:
-            written += failures_page.write_page(out, scenes, name, joints.value, command)
+            written += failures_page.write_page(out, scenes, name, joints.value, command, force)
         for path in written:
             typer.echo(f"{path}: written", err=True)
 
 
-def _interruptions(config: "Config", as_json: bool, out: Path | None, progress: "Progress") -> None:
+def _interruptions(
+    config: "Config", as_json: bool, out: Path | None, force: bool, progress: "Progress"
+) -> None:
     from mocapd.calibration.from_origin import from_capture
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.interruptions import interruptions
@@ -214,7 +218,7 @@ def _interruptions(config: "Config", as_json: bool, out: Path | None, progress: 
         words = ["mocapd", "eval", "--interruptions", "--tracker", own.name]
         words += ["--out", os.path.relpath(out)]
         spans = page.spans_of(session.scenario)
-        for path in page.write_page(out, found, spans, shlex.join(words)):
+        for path in page.write_page(out, found, spans, shlex.join(words), force):
             typer.echo(f"{path}: written", err=True)
 
 

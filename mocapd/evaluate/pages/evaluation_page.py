@@ -126,7 +126,9 @@ def page(findings: EvaluationResults, command: str) -> str:
     return "".join(parts)
 
 
-def write_page(directory: Path, findings: EvaluationResults, command: str) -> list[Path]:
+def write_page(
+    directory: Path, findings: EvaluationResults, command: str, force: bool = False
+) -> list[Path]:
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.compare import shoulder_angles
@@ -134,12 +136,12 @@ def write_page(directory: Path, findings: EvaluationResults, command: str) -> li
 
     path = directory / PAGE
     written = [path, directory / RELIABILITY_PLOT]
-    write_out(path, page(findings, command).encode())
-    save(reliability_plot(reliability(findings.results, findings.joints)), written[-1])
+    write_out(path, page(findings, command), force)
+    save(reliability_plot(reliability(findings.results, findings.joints)), written[-1], force)
     if BASELINE in findings.comparison:
         written.append(directory / SHOULDER_PLOT)
-        save(shoulder_plot(shoulder_angles(findings.comparison)), written[-1])
+        save(shoulder_plot(shoulder_angles(findings.comparison)), written[-1], force)
     if findings.rocs:
         written.append(directory / ROC_PLOT)
-        save(roc_plot(findings.rocs), written[-1])
+        save(roc_plot(findings.rocs), written[-1], force)
     return written

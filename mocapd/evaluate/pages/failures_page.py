@@ -136,7 +136,12 @@ def as_json(found: Sequence[FailureOutcome]) -> list[dict[str, Any]]:
 
 
 def write_page(
-    directory: Path, found: Sequence[FailureOutcome], tracker: str, joints: str, command: str
+    directory: Path,
+    found: Sequence[FailureOutcome],
+    tracker: str,
+    joints: str,
+    command: str,
+    force: bool = False,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
     path = directory / PAGE
@@ -152,13 +157,13 @@ def write_page(
         limit_cm=100.0 * CLEAR_LIMIT_M,
         wanted_s=WANTED_S,
     )
-    write_out(path, text.encode())
+    write_out(path, text, force)
     panels: dict[str, list[tuple[str, Floats, Floats]]] = {}
     clear_s = {}
     for one in found:
         panels.setdefault(one.scene, []).append((one.rig, one.times_s, 100.0 * one.errors_m))
         clear_s[one.scene] = one.clear_s
-    save(recovery_plot(panels, clear_s, WANTED_S, 100.0 * CLEAR_LIMIT_M), directory / PLOT)
+    save(recovery_plot(panels, clear_s, WANTED_S, 100.0 * CLEAR_LIMIT_M), directory / PLOT, force)
     return [path, directory / PLOT]
 
 
