@@ -119,9 +119,14 @@ def test_what_is_no_file_is_never_replaced(tmp_path: Path, kind: str, force: boo
 
 def test_what_comes_while_the_file_is_written_stays(tmp_path: Path) -> None:
     path = tmp_path / "out.pdf"
-    with pytest.raises(CannotCreateError), OutputFile(path, PDF).writing() as partial:
-        partial.write_bytes(b"%PDF-")
-        path.write_text("somebody else's")
+
+    def write_slowly() -> None:
+        with OutputFile(path, PDF).writing() as partial:
+            partial.write_bytes(b"%PDF-")
+            path.write_text("somebody else's")
+
+    with pytest.raises(CannotCreateError, match="is there already"):
+        write_slowly()
     assert path.read_text() == "somebody else's"
 
 
