@@ -37,9 +37,10 @@ class VrmNode(msgspec.Struct, frozen=True):
     """A node of glTF: translation, rotation (xyzw) and scale, or all three as a matrix by columns."""
 
     children: tuple[int, ...] = ()
-    translation: Vector = (0.0, 0.0, 0.0)
-    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    scale: Vector = (1.0, 1.0, 1.0)
+    # of any size: what does not do is told with the node's number
+    translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     matrix: _Matrix | None = None
 
     def faced_about(self) -> "VrmNode":
