@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, is_absent, is_folder, read_beginning
-from mocapd.errors import CannotCreateError, InputError
+from mocapd.errors import CannotCreateError, InputError, mend_of
 from mocapd.whole_file import whole_file
 
 _HEAD_BYTES = 4096
@@ -104,7 +104,7 @@ class OutputFile:
         return CannotCreateError(
             f"cannot be written ({error.strerror})",
             str(self.path),
-            "make room, or choose another place with --out",
+            mend_of(error, "choose another place with --out"),
         )
 
 

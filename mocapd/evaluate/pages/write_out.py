@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, mend_of
 from mocapd.output_file import PNG, OutputFile, kind_by_first_line
 
 
@@ -13,7 +13,9 @@ def write_out(path: Path, data: str | bytes, force: bool = False) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another folder with --out"
+            f"cannot be written ({error.strerror})",
+            str(path),
+            mend_of(error, "choose another folder with --out"),
         ) from None
     with OutputFile(path, kind, force).writing() as partial:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)

@@ -24,7 +24,7 @@ from mocapd.capture.recording.recorded_picture import (
     image_topic,
 )
 from mocapd.clock import NS_PER_S
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, mend_of
 from mocapd.output_file import OutputFile
 from mocapd.outputs import schemas, wire
 from mocapd.outputs.mcap import foxglove_messages, foxglove_scene
@@ -66,7 +66,9 @@ class RecordingWriter:
             )
         except OSError as error:
             raise CannotCreateError(
-                f"cannot be written ({error.strerror})", str(path), "choose another name or place"
+                f"cannot be written ({error.strerror})",
+                str(path),
+                mend_of(error, "choose another name or place"),
             ) from None
         self._file = os.fdopen(self._descriptor, "wb")
         self._mcap = Writer(
