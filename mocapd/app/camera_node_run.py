@@ -34,7 +34,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
         _log.warning("unsafe: %s", line)
 
     from mocapd.app.progress import ProgressBars
-    from mocapd.app.running import INTERNAL_ERROR, Signals, end_despite_work
+    from mocapd.app.running import END_S, INTERNAL_ERROR, Signals, end_despite_work
     from mocapd.app.status_line import StatusLine
     from mocapd.app.supervised.notifier import Notifier
     from mocapd.capture.kinds.source_kinds import open_origin
@@ -43,7 +43,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.outputs.registry import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs, common_origin
 
-    signals, notifier = Signals(), Notifier.of_environment()
+    signals, notifier = Signals(within_s=END_S), Notifier.of_environment()
     origin = common_origin(config.camera)
     with ProgressBars() as progress:
         opened = open_origin(origin, config.cache_dir, progress) if origin else None

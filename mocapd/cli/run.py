@@ -76,7 +76,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
 
     from mocapd.app.daemon_page import DaemonPage
     from mocapd.app.first_session import prepared_session
-    from mocapd.app.running import Signals, end_despite_work, run_daemon
+    from mocapd.app.running import END_S, Signals, end_despite_work, run_daemon
     from mocapd.app.session_change import SessionChange
     from mocapd.app.supervised.notifier import Notifier
     from mocapd.app.supervised.supervision import Supervision
@@ -88,7 +88,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.service.service import Service
 
     faulthandler.enable()  # a service manager that waits in vain for a sign of life sends SIGABRT
-    signals = Signals(reloads=True)
+    signals = Signals(reloads=True, within_s=END_S)
     notifier = Notifier.of_environment()
     outputs = OpenOutputs(config)
     page = None
