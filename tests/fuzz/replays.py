@@ -16,7 +16,7 @@ from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.messages import REST_SKELETON, StateMessage
 from mocapd.outputs.osc.osc_sink import OscSink
 from mocapd.outputs.osc.osc_sink import Params as OscParams
-from mocapd.outputs.vmc.vmc_sink import Params as VmcParams
+from mocapd.outputs.vmc.vmc_params import Params as VmcParams
 from mocapd.outputs.vmc.vmc_sink import VmcSink
 from mocapd.outputs.vrchat.vrchat_sink import Params as VrchatParams
 from mocapd.outputs.vrchat.vrchat_sink import VRChatSink

@@ -240,7 +240,8 @@ def document(nodes: bytes, one: Model | None = None) -> bytes:
     """A file with these nodes, of an avatar or of nothing; the avatar's bones are the deepest of them."""
     extensions: dict[str, Any] = {}
     if one is not None:
-        extensions = one.document()["extensions"]
+        whole: Any = one.document()
+        extensions = whole["extensions"]
         for number, bone in enumerate(extensions["VRM"]["humanoid"]["humanBones"]):
             bone["node"] = 19_999 - number
     text = b'{"nodes":[' + nodes + b'],"extensions":' + json.dumps(extensions).encode() + b"}"
