@@ -1,6 +1,14 @@
 """Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
 
+import errno
 from dataclasses import dataclass
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+
+
+def mend_of(error: OSError, otherwise: str) -> str:
+    """The mend of a file that cannot be written: room, where that is what lacks."""
+    return "make room on that disk" if error.errno in _NO_ROOM else otherwise
 
 
 def one_line(text: str) -> str:

@@ -87,7 +87,7 @@ def page(findings: EvaluationResults, command: str) -> str:
 def write_page(directory: Path, findings: EvaluationResults, command: str) -> list[Path]:
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     path = directory / score_page.PAGE
-    write_out(path, page(findings, command).encode())
+    write_out(path, page(findings, command))
     written = [path, score_page.write_plot(directory, findings.results, findings.joints)]
     if BASELINE in findings.comparison:
         written.append(directory / SHOULDER_PLOT)

@@ -137,7 +137,11 @@ def as_json(found: Sequence[FailureOutcome]) -> list[dict[str, Any]]:
 
 
 def write_page(
-    directory: Path, found: Sequence[FailureOutcome], tracker: str, joints: str, command: str
+    directory: Path,
+    found: Sequence[FailureOutcome],
+    tracker: str,
+    joints: str,
+    command: str,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
     path = directory / PAGE
@@ -153,7 +157,7 @@ def write_page(
         limit_cm=100.0 * CLEAR_LIMIT_M,
         wanted_s=WANTED_S,
     )
-    write_out(path, text.encode())
+    write_out(path, text)
     panels: dict[str, list[tuple[str, Floats, Floats]]] = {}
     clear_s = {}
     for one in found:

@@ -110,14 +110,17 @@ def as_json(of: Interruptions) -> dict[str, Any]:
 
 
 def write_page(
-    directory: Path, of: Interruptions, spans: Mapping[str, Spans], command: str
+    directory: Path,
+    of: Interruptions,
+    spans: Mapping[str, Spans],
+    command: str,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
     path = directory / PAGE
     text = _PAGE.format(
         command=command, plot=PLOT, figures=figures_table(of), switches=switches_table(of), errors=errors_table(of)
     )  # fmt: skip
-    write_out(path, text.encode())
+    write_out(path, text)
     save(speakers_plot(of, LIMIT_CM, spans), directory / PLOT)
     return [path, directory / PLOT]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import mocapd
 from mocapd.boundary.folders import require_own_folder
-from mocapd.errors import CannotCreateError, PermissionDeniedError
+from mocapd.errors import CannotCreateError, PermissionDeniedError, mend_of
 
 
 def prepare_libraries(cache_dir: Path) -> None:
@@ -46,5 +46,5 @@ def _own_folder(path: Path) -> None:
         raise CannotCreateError(
             f"the cache cannot be written ({error.strerror})",
             str(path),
-            "make the folder writable, or set cache_dir",
+            mend_of(error, "make the folder writable, or set cache_dir"),
         ) from None

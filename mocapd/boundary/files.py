@@ -42,6 +42,8 @@ def read_beginning(path: Path, most_bytes: int) -> bytes:
                 raise InputError("has nothing to read", str(path), _FIX)
             return data
     except FileNotFoundError:
+        if not is_absent(path):
+            raise InputError("is a link that leads to nothing", str(path), _FIX) from None
         raise MissingError("no such file", str(path), "check the path") from None
     except ValueError:  # a NUL in the path
         raise InputError("is no path", repr(str(path)), _FIX) from None
@@ -72,8 +74,37 @@ def user_path(text: str | Path) -> Path:
         raise ConfigError(f"{shown}: there is no such user", fix="write the whole path") from None
 
 
+def is_absent(path: Path) -> bool:
+    """True only when the system says that nothing is there, under no name of the path.
+
+    False for anything else, also for what cannot be looked at: a folder that may not be entered, a
+    link whose target is missing, a loop of links. Reading such a path then says what is wrong. A
+    file whose absence means a default must be asked for by this function, not by `is_file`.
+    """
+    for part in (path, *path.parents):
+        try:
+            state = part.lstat()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except (OSError, ValueError):
+            return False
+        return part != path and not (stat.S_ISLNK(state.st_mode) and _leads_nowhere(part))
+    return True
+
+
+def _leads_nowhere(link: Path) -> bool:
+    try:
+        link.stat()
+    except OSError:
+        return True
+    return False
+
+
 def is_file(path: Path) -> bool:
-    """Whether there is a regular file; no for what can be no path, where pathlib raises."""
+    """Whether there is a regular file; no for what can be no path, where pathlib raises.
+
+    Also no for what cannot be looked at: see `is_absent`.
+    """
     try:
         return path.is_file()
     except OSError:  # such as a name longer than the file system takes

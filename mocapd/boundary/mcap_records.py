@@ -18,16 +18,24 @@ import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, Message, Schema
+from mcap.records import Attachment, Channel, Chunk, Schema
 from mcap.writer import MCAP0_MAGIC
 
 from mocapd.boundary.files import is_file
 from mocapd.errors import InputError, MalformedError
 
-MOST_RECORD_BYTES = 256 << 20  # ours are some MB at most
+MOST_RECORD_BYTES = 32 << 20  # ours are some MB at most
 MOST_CHANNELS = 4096
 
+# What the chunks may hold together, by the bytes of the file so far: pictures that repeat shrink to a 250th, frames without
+# a person to 11 bytes each.
+_MOST_SWELLING, _ALWAYS_BYTES = 500, MOST_RECORD_BYTES
+_BYTES_A_MESSAGE, _ALWAYS_MESSAGES = 8, 20_000
+
 _HEAD = struct.Struct("<BQ")  # opcode, length of what follows
+_MESSAGE = struct.Struct(
+    "<HIQQ"
+)  # channel, sequence, time of log and of publication; then the data
 _LATEST_NS = 2**63 - 1
 # What the library's parsers of single records raise, which trust their bytes.
 _BAD_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError, MemoryError)
@@ -73,6 +81,7 @@ class McapFile:
         self.damaged = 0
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, Channel] = {}
+        self._unpacked_bytes = self._unpacked_records = 0
 
     def items(self, wanted: Wanted) -> Iterator[Item]:
         """Attachments, and messages of the channels that are `wanted`, in the order of the file.
@@ -80,6 +89,7 @@ class McapFile:
         Raises InputError for what is no MCAP file at all.
         """
         self.ending, self.damaged = "", 0
+        self._unpacked_bytes = self._unpacked_records = 0
         with _opened(self.path) as file:
             size = self.path.stat().st_size
             if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
@@ -88,7 +98,7 @@ class McapFile:
                 )
             for opcode, body in self._records(file, size):
                 try:
-                    yield from self._read(opcode, body, wanted)
+                    yield from self._read(opcode, body, wanted, file.tell())
                 except MalformedError:
                     self.damaged += 1
 
@@ -113,18 +123,26 @@ class McapFile:
             else:
                 file.seek(length, 1)
 
-    def _read(self, opcode: int, body: bytes, wanted: Wanted) -> Iterator[Item]:
-        """Raises MalformedError for a record that does not hold what it says."""
+    def _read(self, opcode: int, body: bytes, wanted: Wanted, so_far: int) -> Iterator[Item]:
+        """so_far: bytes of the file. Raises MalformedError for a record that does not hold what it says."""
         if opcode == Opcode.ATTACHMENT:
             found = _parsed(Attachment.read, body)
             yield McapAttachment(found.name, found.media_type, found.data)
         elif opcode == Opcode.CHUNK:
-            for inner, content in _split(_unpacked(_parsed(Chunk.read, body))):
+            chunk = _parsed(Chunk.read, body)
+            together = self._unpacked_bytes + chunk.uncompressed_size
+            if together > _ALWAYS_BYTES + _MOST_SWELLING * so_far:
+                raise MalformedError("a chunk says that it holds far more than its size allows")
+            self._unpacked_bytes = together
+            for inner, content in _split(memoryview(_unpacked(chunk))):
+                self._unpacked_records += 1
+                if self._unpacked_records > _ALWAYS_MESSAGES + so_far // _BYTES_A_MESSAGE:
+                    raise MalformedError("a chunk has far more messages than its size allows")
                 yield from self._read_inner(inner, content, wanted)
         else:
-            yield from self._read_inner(opcode, body, wanted)
+            yield from self._read_inner(opcode, memoryview(body), wanted)
 
-    def _read_inner(self, opcode: int, body: bytes, wanted: Wanted) -> Iterator[McapMessage]:
+    def _read_inner(self, opcode: int, body: memoryview, wanted: Wanted) -> Iterator[McapMessage]:
         if opcode == Opcode.SCHEMA:
             schema = _parsed(Schema.read, body)
             _bounded(self._schemas)[schema.id] = schema.name
@@ -132,22 +150,21 @@ class McapFile:
             channel = _parsed(Channel.read, body)
             _bounded(self._channels)[channel.id] = channel
         elif opcode == Opcode.MESSAGE:
-            message = _parsed(lambda stream: Message.read(stream, len(body)), body)
-            channel = self._channels.get(message.channel_id)
+            if len(body) < _MESSAGE.size:
+                raise MalformedError("a record is damaged")
+            number, sequence, log_ns, _ = _MESSAGE.unpack_from(body)
+            channel = self._channels.get(number)
             if channel is None:
                 raise MalformedError("holds a message of no channel")
-            if message.log_time > _LATEST_NS:
+            if log_ns > _LATEST_NS:
                 raise MalformedError("holds a message of no possible time")
             name = self._schemas.get(channel.schema_id, "")
             if wanted(channel.topic, name):
-                yield McapMessage(
-                    channel.topic,
-                    name,
-                    channel.message_encoding,
-                    message.log_time,
-                    message.sequence,
-                    message.data,
-                )
+                data = bytes(body[_MESSAGE.size :])
+                if not data:
+                    raise MalformedError("holds a message of nothing")
+                encoding = channel.message_encoding
+                yield McapMessage(channel.topic, name, encoding, log_ns, sequence, data)
 
 
 _READ = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT})
@@ -164,7 +181,7 @@ def _opened(path: Path) -> BinaryIO:
         ) from None
 
 
-def _parsed(read: Callable[[ReadDataStream], R], body: bytes) -> R:
+def _parsed(read: Callable[[ReadDataStream], R], body: bytes | memoryview) -> R:
     try:
         return read(ReadDataStream(BytesIO(body)))
     except _BAD_RECORD as error:
@@ -178,7 +195,7 @@ def _bounded(table: dict[int, R]) -> dict[int, R]:
 
 
 def _unpacked(chunk: Chunk) -> bytes:
-    """The records of a chunk, at most MOST_RECORD_BYTES, and checked by their sum."""
+    """The records of a chunk, of bounded size, and checked by their sum."""
     size = chunk.uncompressed_size
     if size > MOST_RECORD_BYTES:
         raise MalformedError("a chunk says that it is too large")
@@ -201,7 +218,7 @@ def _unpacked(chunk: Chunk) -> bytes:
     return bytes(data)
 
 
-def _split(data: bytes) -> Iterator[tuple[int, bytes]]:
+def _split(data: memoryview) -> Iterator[tuple[int, memoryview]]:
     """Opcode and content of the records in a chunk."""
     at = 0
     while at < len(data):

@@ -6,6 +6,7 @@ read breaks whoever walks it. Here all of them end.
 """
 
 import json
+import re
 import tomllib
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
@@ -18,6 +19,12 @@ T = TypeVar("T")
 
 MOST_NESTED = 32  # levels of objects and lists; nothing of ours has more than 8
 _LONGEST_REASON = 300  # characters of a parser's own words
+
+# A dotted TOML key of more than MOST_NESTED parts. tomllib takes quadratic time and memory over the
+# parts. It also finds text that only looks like one, which no file of ours holds. Linear: no part
+# gives anything back, and a key begins only behind a blank, a comma or an opening bracket.
+_KEY_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![^\s\[{{,])(?:{_KEY_PART}[ \t]*+\.[ \t]*+){{{MOST_NESTED}}}")
 
 
 def decode_json(data: bytes | str, kind: type[T]) -> T:
@@ -37,6 +44,10 @@ def parse_json(text: str) -> Any:
 
 def parse_toml(text: str) -> dict[str, Any]:
     """A TOML file's text; the reason of a failure names line and column. Raises MalformedError."""
+    found = _LONG_KEY.search(text)
+    if found is not None:
+        line = text.count("\n", 0, found.start()) + 1
+        raise MalformedError(f"a key of more than {MOST_NESTED} parts (at line {line})")
     return _read(lambda: tomllib.loads(text))
 
 

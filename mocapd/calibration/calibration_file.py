@@ -14,7 +14,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 import msgspec
 
-from mocapd.boundary.files import MissingError, is_file, is_folder, read_file, read_text
+from mocapd.boundary.files import MissingError, is_absent, is_file, is_folder, read_file, read_text
 from mocapd.boundary.folders import private_folder
 from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import brief, check_numbers
@@ -37,6 +37,7 @@ from mocapd.errors import (
     MocapdError,
     NewerFileError,
 )
+from mocapd.output_file import FileKind
 from mocapd.set_aside import set_aside
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.whole_file import tidy, whole_file
@@ -44,7 +45,7 @@ from mocapd.whole_file import tidy, whole_file
 FILE_NAME = "calibration.toml"
 COLOURS = "colours"
 
-_MOST_BYTES = 16 << 20
+_MOST_BYTES = 256 << 10  # a camera takes 1 kB
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
@@ -53,6 +54,9 @@ _HEADER = """\
 # The one before is kept beside it under the same name with .previous: rename it to go back.
 
 """
+CALIBRATION_KIND = FileKind(
+    "a calibration", lambda head: re.search(rb"(?m)^schema = \d+$", head) is not None
+)
 _log = logging.getLogger(__name__)
 _PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
 
@@ -138,7 +142,7 @@ def write_calibration(
         if own_folder:
             private_folder(folder)
         text = _text(_with_pictures(folder, saved, pictures))
-        if path.exists():
+        if not is_absent(path):
             known = {**_keep_before(path), **known}
         _write(path, text, known)
         _tidy(path)

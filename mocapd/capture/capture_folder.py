@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from mocapd.boundary.files import is_folder
+from mocapd.boundary.files import is_absent, is_folder
 from mocapd.boundary.numbers import brief, finite_number
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
 from mocapd.capture.pace import Pace
@@ -132,7 +132,7 @@ def _lost(value: object, frames: int, where: str) -> tuple[tuple[int, int], ...]
 
 
 def _stature_m(path: Path) -> float | None:
-    if not path.exists():
+    if is_absent(path):
         return None
     fix = 'write the person\'s height in metres, as {"stature_m": 1.72}'
     subject = read_json(path)
@@ -146,10 +146,10 @@ def _stature_m(path: Path) -> float | None:
 
 def _stroked(image: Path) -> Path | None:
     """The image that has strokes beside it; None without an image. Raises InputError for one alone."""
-    if not image.exists():
+    if is_absent(image):
         return None
     strokes = strokes_beside(image)
-    if not strokes.exists():
+    if is_absent(strokes):
         raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
     return image
 

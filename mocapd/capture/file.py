@@ -14,6 +14,7 @@ from mocapd.boundary.pictures import MOST_PIXELS
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.video_container import require_video
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
 from mocapd.types import Frame
@@ -65,8 +66,10 @@ def probe_video(path: Path) -> VideoInfo:
 def _open(path: Path) -> cv2.VideoCapture:
     if not is_file(path):
         raise InputError("no such video file", str(path), "check the path")
+    require_video(path)
     # One decoding thread: the library's pool costs more than it gives at these sizes.
-    capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
+    # Absolute: a name such as concat:x would be a protocol to FFmpeg.
+    capture = cv2.VideoCapture(str(path.absolute()), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
     if not capture.isOpened():
         capture.release()
         raise InputError(

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from mocapd.cli.options import ForceOption
+
 
 def add_to(app: typer.Typer) -> None:
     """Make it a command."""
@@ -34,6 +36,7 @@ def board(
             help="A second page, mirrored, for the back: cameras on both sides of the board see it at once.",
         ),
     ] = False,
+    force: ForceOption = False,
 ) -> None:
     """Make a ChArUco calibration board to print.
 
@@ -51,7 +54,7 @@ def board(
         paper, columns, rows, dictionary,
         inverted=inverted, two_sided=two_sided, square_m=square, marker_m=marker,
     )  # fmt: skip
-    write_pdf(out, board_pdf(made, paper))
+    write_pdf(out, board_pdf(made, paper), force)
     print(flags_of(made))
     told = f"{out}: print it at 100 % and glue it flat onto something stiff"
     if two_sided:

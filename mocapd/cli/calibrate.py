@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
+from mocapd.cli.options import CameraOption, ConfigOption, ForceOption, SetOption, effective_config
 
 
 def add_to(app: typer.Typer) -> None:
@@ -90,6 +90,7 @@ def calibrate(
         bool,
         typer.Option("--json", help="From a folder: print one JSON object of how well it fits."),
     ] = False,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -111,17 +112,17 @@ def calibrate(
 
         options = FolderOptions(
             from_folder, out, size, square, board, marker, dictionary, inverted, legacy, two_sided,
-            floor_frame, strokes, as_json,
+            floor_frame, strokes, as_json, force,
         )  # fmt: skip
         calibrate_folder(options, effective)
         return
     from mocapd.app.setup.setup_run import PageOptions, calibrate_page
 
-    if out is not None or strokes is not None or floor_frame is not None or as_json:
+    if out is not None or strokes is not None or floor_frame is not None or as_json or force:
         from mocapd.errors import ConfigError
 
         raise ConfigError(
-            "--out, --strokes, --floor-frame and --json are for --from-folder",
+            "--out, --strokes, --floor-frame, --force and --json are for --from-folder",
             "command line",
             "leave them out, or add --from-folder DIR",
         )

@@ -11,6 +11,7 @@ import typer
 
 from mocapd.cli.options import (
     ConfigOption,
+    ForceOption,
     SetOption,
     VariantOption,
     effective_config,
@@ -45,6 +46,7 @@ def evaluate_captures(
     out: Annotated[
         Path | None, typer.Option("--out", help="Write evaluation.md here, with a plot.")
     ] = None,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
     variant: VariantOption = None,
@@ -102,7 +104,7 @@ def evaluate_captures(
         words = ["mocapd", "eval", *map(os.path.relpath, captures), "--tracker", name]
         words += ["--joints", joints.value] if joints is not Joints.UPPER else []
         command = shlex.join([*words, "--out", os.path.relpath(out)])
-        for path in score_page.write_page(out, results, name, joints.value, command):
+        for path in score_page.write_page(out, results, name, joints.value, command, force):
             typer.echo(f"{path}: written", err=True)
 
 

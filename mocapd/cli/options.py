@@ -32,6 +32,10 @@ CaptureOption = Annotated[
     str | None,
     typer.Option(help="All cameras of a capture folder, or of sim:SCENARIO.", metavar="FOLDER"),
 ]
+ForceOption = Annotated[
+    bool,
+    typer.Option("--force", help="Replace what is there, also a file of another kind."),
+]
 
 VrmOption = Annotated[
     Path | None,

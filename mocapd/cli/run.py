@@ -76,7 +76,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
 
     from mocapd.app.daemon.daemon_page import DaemonPage
     from mocapd.app.daemon.initial_session import prepared_session
-    from mocapd.app.daemon.main_loop import Signals, end_despite_work, run_daemon
+    from mocapd.app.daemon.main_loop import END_S, Signals, end_despite_work, run_daemon
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.daemon.session_change import SessionChange
     from mocapd.app.daemon.supervision import Supervision
@@ -88,7 +88,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.service.service import Service
 
     faulthandler.enable()  # a service manager that waits in vain for a sign of life sends SIGABRT
-    signals = Signals(reloads=True)
+    signals = Signals(reloads=True, within_s=END_S)
     notifier = Notifier.of_environment()
     outputs = OpenOutputs(config)
     page = None

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from mocapd.cli.options import ForceOption
+
 
 def add_to(app: typer.Typer) -> None:
     """Make it a command."""
@@ -22,6 +24,7 @@ def shirt(
             " of cloth."
         ),
     ] = "sewing",
+    force: ForceOption = False,
 ) -> None:
     """Make the standard shirt's pattern at true size, with a swatch card.
 
@@ -30,5 +33,5 @@ def shirt(
     from mocapd.printing.paper_sizes import write_pdf
     from mocapd.printing.shirt_pdf import shirt_pdf
 
-    write_pdf(out, shirt_pdf(size, paper, layout))
+    write_pdf(out, shirt_pdf(size, paper, layout), force)
     typer.echo(f"{out}: print it at 100 %; how to sew it is on its first page", err=True)

@@ -8,6 +8,7 @@ import typer
 
 from mocapd.cli.options import (
     ConfigOption,
+    ForceOption,
     SetOption,
     VariantOption,
     effective_config,
@@ -55,6 +56,7 @@ def track(
             "whole recording, for one that shows somebody from its first frame on.",
         ),
     ] = RoomSeen.EMPTY,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -75,11 +77,13 @@ def track(
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
-    from mocapd.session.offline import check_writable, learn_room, track_all, write_track
+    from mocapd.session.offline import learn_room, track_all, track_file, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
 
-    check_writable(out)
+    read = (capture,) if calibration is None else (capture, calibration)
+    target = track_file(out, force, inputs=read)
+    target.check()
     own = effective.tracker
     with ProgressBars() as progress:
         origin = open_origin(str(capture), effective.cache_dir, progress)
@@ -100,5 +104,5 @@ def track(
             origin.frame_sets(),
             lambda done: progress(f"tracking {capture.name}", done, origin.count),
         )
-    write_track(out, result)
+    write_track(target, result)
     typer.echo(f"{out}: {len(result.times_s)} of {origin.count} frames with a person", err=True)

@@ -21,6 +21,7 @@ from mocapd.boundary.numbers import brief, check_numbers
 from mocapd.boundary.urls import without_password
 from mocapd.errors import ConfigError, MalformedError
 
+_MOST_SECTIONS = 100  # of one list; a calibration has at most 100 cameras
 _LONGEST_SHOWN = 200  # characters of a value in an error
 
 
@@ -134,6 +135,10 @@ def _converted_list(
     if not isinstance(value, list) or not all(isinstance(entry, dict) for entry in value):
         raise ConfigError(
             f"{path} is not a list of sections", where(path), f"write it as [[{path}]]"
+        )
+    if len(value) > _MOST_SECTIONS:
+        raise ConfigError(
+            f"{path} has {len(value)} sections", where(path), f"give at most {_MOST_SECTIONS}"
         )
     known = {key.path: key for key in keys_of(item)}
     required = [f.name for f in fields(item) if f.default is f.default_factory is MISSING]

@@ -12,7 +12,7 @@ from typing import Any
 
 import platformdirs
 
-from mocapd.boundary.files import is_file, user_path
+from mocapd.boundary.files import is_absent, user_path
 from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
 from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection, Config
@@ -53,7 +53,10 @@ def known_keys() -> dict[str, Key]:
 
 
 def config_candidates() -> tuple[Path, ...]:
-    """Where a config file is looked for, in this order; the first that exists is read."""
+    """Where a config file is looked for, in this order; the first that is not absent is read.
+
+    One that cannot be looked at is an error: as if there were none would drop passwords and TLS.
+    """
     return (
         platformdirs.user_config_path("mocapd") / "config.toml",
         Path("/etc/mocapd/config.toml"),
@@ -77,7 +80,7 @@ def load_config(
         file = user_path(env["MOCAPD_CONFIG"])
     if file is None:
         given = config_candidates() if candidates is None else candidates
-        file = next((path for path in given if is_file(path)), None)
+        file = next((path for path in given if not is_absent(path)), None)
     known = known_keys()
     found: Found = _from_file(read_toml(file), known) if file else {}
     found |= _from_env(env, known)

@@ -8,10 +8,10 @@ from typing import Any
 
 from mocapd.boundary.files import MissingError, read_text
 from mocapd.boundary.messages import parse_toml
+from mocapd.config.key_lines import KeyLines
 from mocapd.errors import ConfigError, InputError, MalformedError
 
-_MOST_BYTES = 1 << 20
-_LONGEST_KEY = 200  # characters of a line in which a key and its `=` are looked for
+_MOST_BYTES = 1 << 16  # a file that sets every key takes some kB
 ENV_PREFIX = "MOCAPD_"
 # Read elsewhere, not keys: which file to read, and what .ci/run tells the tests.
 NOT_KEYS = ("MOCAPD_CONFIG", "MOCAPD_REQUIRE_SHARED")
@@ -23,11 +23,11 @@ class TomlFile:
 
     path: Path
     data: Mapping[str, Any]
-    text: str
+    lines: KeyLines
 
     def where(self, key: str) -> str:
         """`file:line` of a key's path such as "zenoh.port" or "camera[1].fps"; the file if unsure."""
-        line = _line_of(self.text, key)
+        line = self.lines.line_of(key)
         return f"{self.path}:{line}" if line else str(self.path)
 
 
@@ -40,7 +40,7 @@ def read_toml(path: Path) -> TomlFile:
     except InputError as error:
         raise InputError(f"the config file {error.what}", str(path), error.fix) from None
     try:
-        return TomlFile(path, parse_toml(text), text)
+        return TomlFile(path, parse_toml(text), KeyLines(text))
     except MalformedError as error:
         found = re.search(r"at line (\d+)", error.what)
         where = f"{path}:{found[1]}" if found else str(path)
@@ -60,31 +60,3 @@ def parsed(text: str, wants_text: bool) -> Any:
         return parse_toml(f"value = {text}")["value"]
     except MalformedError:
         return text
-
-
-def _line_of(text: str, key: str) -> int | None:
-    """The line where a key is set, or its section begins; None when the scan finds neither."""
-    section, counts = "", dict[str, int]()
-    best = None
-    for number, whole in enumerate(text.splitlines(), start=1):
-        line = whole.strip()[:_LONGEST_KEY]  # the patterns take quadratic time over blanks
-        header = re.match(r"\s*(\[\[?)\s*([\w.\-\"' ]+?)\s*\]", line)
-        assigned = re.match(r"\s*([\w.\-\"' ]+?)\s*=", line)
-        if header:
-            section = re.sub(r"[\s\"']", "", header[2])
-            if header[1] == "[[":
-                counts[section] = counts.get(section, -1) + 1
-            head, _, rest = section.partition(".")
-            if head in counts:  # also a table inside an entry of the list
-                section = f"{head}[{counts[head]}]" + (f".{rest}" if rest else "")
-            path = section
-        elif assigned:
-            name = re.sub(r"[\s\"']", "", assigned[1])
-            path = f"{section}.{name}" if section else name
-        else:
-            continue
-        if path == key or path.startswith((f"{key}.", f"{key}[")):
-            return number
-        if key.startswith((f"{path}.", f"{path}[")):
-            best = number
-    return best

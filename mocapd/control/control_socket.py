@@ -17,7 +17,13 @@ from mocapd.boundary.messages import decode_json
 from mocapd.control.line import read_line
 from mocapd.control.messages import Answer, Refused, Request, Verb
 from mocapd.control.socket_place import may_command, peer_of, short_address
-from mocapd.errors import CannotCreateError, MalformedError, MocapdError, PermissionDeniedError
+from mocapd.errors import (
+    CannotCreateError,
+    MalformedError,
+    MocapdError,
+    PermissionDeniedError,
+    mend_of,
+)
 
 LONGEST_REQUEST = 4 << 10  # [bytes]
 ASK_S = 2.0  # that a request may take to come, and its answer to be taken [s]
@@ -50,7 +56,7 @@ class ControlSocket:
             raise CannotCreateError(
                 f"no control socket can be made: {error.strerror}",
                 str(self._path.parent),
-                "set XDG_RUNTIME_DIR to your own folder",
+                mend_of(error, "set XDG_RUNTIME_DIR to your own folder"),
             ) from None
         threading.Thread(
             target=self._server.serve_forever, args=(_LOOK_EVERY_S,), name="control", daemon=True

@@ -30,9 +30,9 @@ def reliability_plot(of: Reliability) -> Figure:
     return figure
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: Path, force: bool = False) -> None:
     """Write a PNG; the same data give the same bytes. Raises CannotCreateError."""
     metadata: dict[str, Any] = {"Software": None}
     picture = io.BytesIO()
     figure.savefig(picture, format="png", dpi=_DPI, metadata=metadata)
-    write_out(path, picture.getvalue())
+    write_out(path, picture.getvalue(), force)

@@ -57,18 +57,25 @@ def page(results: Sequence[CaptureResult], tracker: str, joints: str, command: s
 
 
 def write_page(
-    directory: Path, results: Sequence[CaptureResult], tracker: str, joints: str, command: str
+    directory: Path,
+    results: Sequence[CaptureResult],
+    tracker: str,
+    joints: str,
+    command: str,
+    force: bool = False,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
-    write_out(directory / PAGE, page(results, tracker, joints, command).encode())
-    return [directory / PAGE, write_plot(directory, results, joints)]
+    write_out(directory / PAGE, page(results, tracker, joints, command), force)
+    return [directory / PAGE, write_plot(directory, results, joints, force)]
 
 
-def write_plot(directory: Path, results: Sequence[CaptureResult], joints: str) -> Path:
+def write_plot(
+    directory: Path, results: Sequence[CaptureResult], joints: str, force: bool = False
+) -> Path:
     """The plot of errors over confidence, beside the page. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.plots import reliability_plot, save
 
     path = directory / RELIABILITY_PLOT
-    save(reliability_plot(reliability(results, joints)), path)
+    save(reliability_plot(reliability(results, joints)), path, force)
     return path

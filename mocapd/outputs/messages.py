@@ -7,7 +7,7 @@ from msgspec import Meta
 
 from mocapd.errors import InputError
 from mocapd.outputs.counts import Count, CountingMessage
-from mocapd.outputs.wire import Vector, decode_message
+from mocapd.outputs.wire import MOST_JOINTS, BoneName, Number, Person, Vector, decode_message
 
 HEALTH = "mocapd.Health.v1"
 CAMERA_STATUS = "mocapd.CameraStatus.v1"
@@ -88,10 +88,21 @@ class CalibratedCamera(msgspec.Struct, frozen=True):
 
     name: Annotated[str, Meta(description="name of the camera in the rig")]
     size_px: Annotated[tuple[int, int], Meta(description="width, height of the calibration [px]")]
-    K: Annotated[tuple[float, ...], Meta(description="camera matrix, 9 numbers by rows [px]")]
-    dist: Annotated[tuple[float, ...], Meta(description="k1 k2 p1 p2 k3")]
-    R: Annotated[tuple[float, ...], Meta(description="camera from world, 9 numbers by rows")]
-    t_m: Annotated[tuple[float, ...], Meta(description="camera from world, 3 numbers [m]")]
+    K: Annotated[
+        tuple[Number, ...],
+        Meta(min_length=9, max_length=9, description="camera matrix, 9 numbers by rows [px]"),
+    ]
+    dist: Annotated[
+        tuple[Number, ...], Meta(min_length=5, max_length=5, description="k1 k2 p1 p2 k3")
+    ]
+    R: Annotated[
+        tuple[Number, ...],
+        Meta(min_length=9, max_length=9, description="camera from world, 9 numbers by rows"),
+    ]
+    t_m: Annotated[
+        tuple[Number, ...],
+        Meta(min_length=3, max_length=3, description="camera from world, 3 numbers [m]"),
+    ]
 
 
 class CalibrationInfo(msgspec.Struct, frozen=True):
@@ -111,10 +122,14 @@ class RestSkeleton(msgspec.Struct, frozen=True):
     """
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
-    person: Annotated[int, Meta(description="number of the person, as in the key")]
-    stature_m: Annotated[float, Meta(description="the person's height without shoes [m]")]
+    person: Annotated[Person, Meta(description="number of the person, as in the key")]
+    stature_m: Annotated[Number, Meta(description="the person's height without shoes [m]")]
     names: Annotated[
-        tuple[str, ...], Meta(description="VRM 1.0 bone names, every parent before its children")
+        tuple[BoneName, ...],
+        Meta(
+            max_length=MOST_JOINTS,
+            description="VRM 1.0 bone names, every parent before its children",
+        ),
     ]
     parents: Annotated[
         tuple[int, ...], Meta(description="of each bone: place of its parent in `names`; root: -1")
@@ -135,7 +150,7 @@ class Facing(msgspec.Struct, frozen=True):
     """
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
-    person: Annotated[int, Meta(description="number of the person, as in the key")]
+    person: Annotated[Person, Meta(description="number of the person, as in the key")]
     yaw_deg: Annotated[
         float,
         Meta(

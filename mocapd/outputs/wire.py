@@ -28,8 +28,17 @@ class Message(Protocol):
 
 
 M = TypeVar("M", bound=Message)
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+
+# What any reader takes, so that no number is infinite or no number in a float32, nor a sum of two times beyond 64 bits.
+# NaN is in no range. Beyond it a whole frame is refused as damaged.
+Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Person = Annotated[int, Meta(ge=0, le=2**31 - 1)]
+Nanoseconds = Annotated[int, Meta(ge=-(2**62), le=2**62)]
+FrameNumber = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+BoneName = Annotated[str, Meta(max_length=100)]
+MOST_JOINTS = 256
+Vector = tuple[Number, Number, Number]
+Quaternion = tuple[Number, Number, Number, Number]
 
 
 class Joint(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
@@ -42,9 +51,9 @@ class Joint(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
     l: Annotated[  # noqa: E741 (the wire's short key)
         Quaternion, Meta(description="rotation relative to the parent bone, x y z w, w >= 0")
     ]
-    c: Annotated[float, Meta(description="confidence 0..1, near 0 where there is no evidence")]
+    c: Annotated[Number, Meta(description="confidence 0..1, near 0 where there is no evidence")]
     u: Annotated[
-        float | None,
+        Number | None,
         Meta(
             description="one standard deviation of the position, root mean square over x, y and z [m]; absent or null where"
             " it is unknown"
@@ -57,14 +66,17 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
 
     schema: Annotated[str, Meta(description=f"always `{SCHEMA}`")]
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
-    person: Annotated[int, Meta(description="number of the person, as in the key")]
-    seq: Annotated[int, Meta(description="counts the frames made; a gap is a frame not received")]
-    capture_monotonic_ns: Annotated[
-        int, Meta(description="middle of the exposure, CLOCK_MONOTONIC of the sender [ns]")
+    person: Annotated[Person, Meta(description="number of the person, as in the key")]
+    seq: Annotated[
+        FrameNumber, Meta(description="counts the frames made; a gap is a frame not received")
     ]
-    capture_unix_ns: Annotated[int, Meta(description="the same instant, Unix time [ns]")]
+    capture_monotonic_ns: Annotated[
+        Nanoseconds, Meta(description="middle of the exposure, CLOCK_MONOTONIC of the sender [ns]")
+    ]
+    capture_unix_ns: Annotated[Nanoseconds, Meta(description="the same instant, Unix time [ns]")]
     publish_monotonic_ns: Annotated[
-        int, Meta(description="when the frame was handed to the outputs, CLOCK_MONOTONIC [ns]")
+        Nanoseconds,
+        Meta(description="when the frame was handed to the outputs, CLOCK_MONOTONIC [ns]"),
     ]
     tracker: Annotated[
         str,
@@ -75,16 +87,20 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     tracking: Annotated[str, Meta(description="`live`, `coasting` (predicted) or `lost`")]
     cameras: Annotated[tuple[str, ...], Meta(description="cameras whose evidence was used")]
     joints: Annotated[
-        dict[str, Joint], Meta(description="by VRM 1.0 bone name; empty when tracking is `lost`")
+        dict[BoneName, Joint],
+        Meta(
+            max_length=MOST_JOINTS,
+            description="by VRM 1.0 bone name; empty when tracking is `lost`",
+        ),
     ]
     smoothing_lag_ns: Annotated[
-        int,
+        Nanoseconds,
         Meta(
             description="how much smoothing delays a person who moves, about: the pose is as old as that more [ns]"
         ),
     ] = 0
     predicted_ns: Annotated[
-        int,
+        Nanoseconds,
         Meta(
             description="of a predicted pose: how far ahead of what was seen; the capture times are those it is for [ns]"
         ),

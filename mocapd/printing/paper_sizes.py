@@ -7,8 +7,8 @@ from pathlib import Path
 
 from reportlab.pdfgen.canvas import Canvas
 
-from mocapd.errors import CannotCreateError, ConfigError
-from mocapd.whole_file import whole_file
+from mocapd.errors import ConfigError
+from mocapd.output_file import PDF, OutputFile
 
 # width, height in portrait [mm]; ISO 216 and ANSI/ASME Y14.1
 PAPERS_MM = {
@@ -134,14 +134,7 @@ def draw_ruler(canvas: Canvas, at_mm: Size, *, upright: bool = False) -> None:
     canvas.restoreState()
 
 
-def write_pdf(path: Path, content: bytes) -> None:
-    """Write the file whole or not at all. Raises CannotCreateError."""
-    try:
-        with whole_file(path) as partial:
-            partial.write_bytes(content)
-    except OSError as error:
-        raise CannotCreateError(
-            f"the PDF cannot be written ({error.strerror})",
-            str(path),
-            "give --out a file in a folder that exists and can be written",
-        ) from None
+def write_pdf(path: Path, content: bytes, force: bool = False) -> None:
+    """Write the file whole or not at all; force: in place of a file of any kind. Raises CannotCreateError."""
+    with OutputFile(path, PDF, force).writing() as partial:
+        partial.write_bytes(content)

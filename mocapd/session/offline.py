@@ -1,8 +1,6 @@
 """Track a recorded capture: every frame in order, as fast as the tracker goes; and the track's file."""
 
-import os
-import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -12,12 +10,16 @@ from numpy.typing import NDArray
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
-from mocapd.errors import CannotCreateError, ConfigError
+from mocapd.errors import ConfigError
+from mocapd.output_file import FileKind, OutputFile
 from mocapd.trackers.base import RoomLearner, Tracker
 from mocapd.types import Floats, FrameSet
-from mocapd.whole_file import whole_file
 
 SCHEMA = "mocapd.Track.v1"
+# The archive's first member; in a capture's truth.npz that is another one.
+_TRACK = FileKind(
+    "a track", lambda head: head.startswith(b"PK\x03\x04") and head[30:40] == b"schema.npy"
+)
 _ROOM_LOOKS = 60  # pictures of each camera from which a room is learned: they are kept meanwhile
 
 
@@ -82,39 +84,27 @@ def track_all(
     )
 
 
-def check_writable(path: Path) -> None:
-    """Before a long run, that its result can be kept. Raises CannotCreateError."""
-    try:
-        descriptor, name = tempfile.mkstemp(dir=path.absolute().parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another place with --out"
-        ) from None
-    os.close(descriptor)
-    Path(name).unlink()
+def track_file(path: Path, force: bool = False, inputs: Sequence[Path] = ()) -> OutputFile:
+    """Where a track is written. For the rest see OutputFile."""
+    return OutputFile(path, _TRACK, force, inputs)
 
 
-def write_track(path: Path, track: RecordedTrack) -> None:
+def write_track(out: OutputFile | Path, track: RecordedTrack) -> None:
     """Write the npz that score_track.py reads, whole or not at all. Raises CannotCreateError.
 
     The same track gives the same bytes.
     """
-    check_writable(path)
-    try:
-        # through an open file, for numpy appends .npz to a name that does not end so
-        with whole_file(path) as partial, partial.open("wb") as file:
-            np.savez_compressed(
-                file,
-                schema=np.array(SCHEMA),
-                times=track.times_s,
-                joint_names=np.array(track.joint_names),
-                joints=track.joints_m,
-                global_quats=track.global_xyzw,
-                confidence=track.confidence,
-                tracker=track.tracker,
-                uncertainty=track.uncertainty_m,
-            )
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "make room or choose another place"
-        ) from None
+    out = track_file(out) if isinstance(out, Path) else out
+    # through an open file, for numpy appends .npz to a name that does not end so
+    with out.writing() as partial, partial.open("wb") as file:
+        np.savez_compressed(
+            file,
+            schema=np.array(SCHEMA),
+            times=track.times_s,
+            joint_names=np.array(track.joint_names),
+            joints=track.joints_m,
+            global_quats=track.global_xyzw,
+            confidence=track.confidence,
+            tracker=track.tracker,
+            uncertainty=track.uncertainty_m,
+        )

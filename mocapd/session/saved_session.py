@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from mocapd.boundary.files import is_file, is_folder
+from mocapd.boundary.files import is_absent, is_folder
 from mocapd.boundary.urls import without_password
 from mocapd.calibration.calibration_file import FILE_NAME, calibration_path, read_calibration
 from mocapd.calibration.from_saved import from_saved
@@ -39,7 +39,7 @@ def configured_calibration(config: Config) -> LoadedCalibration | None:
     if config.rig is not None:
         return load_saved(config.rig) if is_calibration(config.rig) else None
     place = config.state_dir / FILE_NAME
-    if not is_file(place) or any(origin_of(camera.source) for camera in config.camera):
+    if any(origin_of(camera.source) for camera in config.camera) or is_absent(place):
         return None
     saved = load_saved(place)
     if config.camera and not fits(config.camera, saved.tables):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mocapd.boundary.files import is_absent, is_file
 from mocapd.calibration.record import Calibration
 from mocapd.each import Aside, Each, at_once, in_turn
 from mocapd.errors import ConfigError
@@ -113,7 +114,7 @@ def _canned(_calibration: Calibration, params: Any, _resources: Resources) -> Tr
 def _database(resources: Resources) -> "PoseDatabase":
     from mocapd.shirt.pose_database.database_file import load_or_build
 
-    stale = (resources.cache_dir / CACHE_NAME).exists()
+    stale = not is_absent(resources.cache_dir / CACHE_NAME)
     loaded = load_or_build(
         resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
     )
@@ -270,4 +271,4 @@ def make_caches(name: str, resources: Resources) -> None:
 def has_caches(name: str, cache_dir: Path) -> bool:
     """Whether there are files of all that this tracker keeps in the cache folder; whether they fit, only
     `make_caches` can tell."""
-    return all((cache_dir / one).is_file() for one in entry(name).caches)
+    return all(is_file(cache_dir / one) for one in entry(name).caches)

@@ -5,7 +5,7 @@ import secrets
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, read_text
-from mocapd.errors import CannotCreateError, InputError
+from mocapd.errors import CannotCreateError, InputError, mend_of
 from mocapd.whole_file import whole_file
 
 _KEY = re.compile(r"[A-Za-z0-9_-]{32}")
@@ -37,6 +37,8 @@ def _made(path: Path) -> str:
             partial.write_text(f"{key}\n", encoding="ascii")
     except OSError as error:
         raise CannotCreateError(
-            f"cannot be written: {error.strerror}", str(path), "let this user write there"
+            f"cannot be written: {error.strerror}",
+            str(path),
+            mend_of(error, "let this user write there"),
         ) from error
     return key

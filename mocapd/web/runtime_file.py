@@ -21,7 +21,7 @@ from msgspec import Meta
 
 from mocapd.boundary.files import read_file
 from mocapd.boundary.messages import decode_json
-from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError
+from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
 from mocapd.outputs.http_answer import read_body
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
@@ -99,7 +99,7 @@ def announce(place: Place, port: int, token: str) -> None:
         raise CannotCreateError(
             f"cannot be written: {error.strerror}",
             str(place.folder),
-            "set XDG_RUNTIME_DIR to your own folder",
+            mend_of(error, "set XDG_RUNTIME_DIR to your own folder"),
         ) from error
 
 

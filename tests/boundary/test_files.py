@@ -65,6 +65,38 @@ def test_a_missing_file_has_its_own_name(tmp_path: Path) -> None:
         files.read_file(tmp_path / "none", 10)
 
 
+def test_a_link_that_leads_to_nothing_is_not_missing(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "share" / "file")
+    with pytest.raises(InputError, match="leads to nothing") as caught:
+        files.read_file(tmp_path / "link", 10)
+    assert not isinstance(caught.value, files.MissingError)
+
+
+def test_absent_is_only_what_the_system_says_is_not_there(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (tmp_path / "link").symlink_to(tmp_path / "nothing")
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    assert files.is_absent(tmp_path / "none")
+    assert files.is_absent(tmp_path / "none" / "below")
+    assert files.is_absent(tmp_path / "file" / "below")
+    for there in ("file", "link", "link/below", "loop", "loop/below", "x" * 5000, "a\0b"):
+        assert not files.is_absent(tmp_path / there)
+
+
+def test_what_lies_in_a_folder_that_may_not_be_entered_is_not_absent(tmp_path: Path) -> None:
+    folder = tmp_path / "closed"
+    folder.mkdir(mode=0o000)
+    child = os.fork()
+    if child == 0:
+        if os.geteuid() == 0:  # whom nothing is closed to
+            tmp_path.parent.parent.chmod(0o711)
+            tmp_path.parent.chmod(0o711)
+            tmp_path.chmod(0o711)
+            os.setuid(65534)
+        os._exit(files.is_absent(folder / "config.toml"))
+    assert os.waitpid(child, 0)[1] == 0
+
+
 def test_text_that_is_no_utf8_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"\xff")
     with pytest.raises(InputError, match="UTF-8"):

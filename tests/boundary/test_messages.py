@@ -59,6 +59,28 @@ def test_a_bad_toml_file_is_malformed(text: str) -> None:
         messages.parse_toml(text)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a." * 12_000 + "a = 1",
+        "x = 1\n[" + "a." * 12_000 + "a]",
+        "x = [[{" + "a ." * 12_000 + "a = 1}]]",
+        "x = 1\n" + '\'=\'."\\".,".' * 12_000 + "a = 1",
+        # a multi-line text ends in the middle of a line
+        'x = ["""\n#""", {' + "a." * 12_000 + "a = 1}]",
+    ],
+)
+def test_a_dotted_key_of_many_parts_is_refused_before_it_is_parsed(text: str) -> None:
+    with pytest.raises(MalformedError, match="a key of more than 32 parts"):
+        messages.parse_toml(text)
+
+
+def test_a_dotted_key_of_few_parts_is_read() -> None:
+    assert messages.parse_toml("'a=1'.b.\"c.d\" = [1.5, 2.5]") == {
+        "a=1": {"b": {"c.d": [1.5, 2.5]}}
+    }
+
+
 def test_the_place_of_a_mistake_in_toml_is_told() -> None:
     with pytest.raises(MalformedError, match="line 2"):
         messages.parse_toml("a = 1\nb = ?\n")

@@ -1,6 +1,7 @@
 """What a user meets in the configuration: precedence, origins, and messages that say the mend."""
 
 import math
+import os
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -80,6 +81,46 @@ def test_the_users_file_comes_before_the_machines(tmp_path: Path) -> None:
     assert load_config(env={}, candidates=(user, machine)).config.instance == "machine"
     user.write_text("instance = 'user'")
     assert load_config(env={}, candidates=(user, machine)).config.instance == "user"
+
+
+def make_unreadable(path: Path, kind: str) -> None:
+    """Something at `path` that is there and is no readable file."""
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "folder":
+            path.mkdir()
+        case "link to nothing":
+            path.symlink_to(path.parent / "share" / "config.toml")
+        case "link to itself":
+            path.symlink_to(path)
+        case "link to a device":
+            path.symlink_to("/dev/zero")
+        case "folder that leads to nothing":
+            path.parent.rmdir()
+            path.parent.symlink_to(path.parent.parent / "share")
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "pipe",
+        "folder",
+        "link to nothing",
+        "link to itself",
+        "link to a device",
+        "folder that leads to nothing",
+    ],
+)
+def test_a_config_file_that_cannot_be_read_is_never_taken_for_none(
+    tmp_path: Path, kind: str
+) -> None:
+    path = tmp_path / "etc" / "config.toml"
+    path.parent.mkdir()
+    make_unreadable(path, kind)
+    with pytest.raises(InputError, match="the config file") as caught:
+        load_config(env={}, candidates=(tmp_path / "none.toml", path))
+    assert caught.value.where == str(path)
 
 
 def test_the_file_may_be_named_by_the_environment(file: Path) -> None:

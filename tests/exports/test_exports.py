@@ -10,11 +10,13 @@ import numpy as np
 import pygltflib
 import pytest
 
+from mocapd.exports.formats import FORMATS
 from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
+from tests.cli.mocapd_process import Outcome, mocapd_here
 from tests.exports.exported import SECONDS, check_places, exported
-from tests.outputs.recorded import HZ
+from tests.outputs.recorded import HZ, frames, record
 
 FRAMES = round(SECONDS * HZ)
 
@@ -144,3 +146,27 @@ def _with_gap(motion: SampledMotion) -> SampledMotion:
     gap = motion.gap.copy()
     gap[40] = 1
     return replace(motion, gap=gap)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_an_export_never_replaces_its_recording(
+    clean_env: dict[str, str], tmp_path: Path, name: str
+) -> None:
+    recording = record(tmp_path / "a.mcap", frames(0.2))
+    before, beside = recording.read_bytes(), tmp_path / f"a.{name}"
+
+    def export(*words: str | Path) -> Outcome:
+        return mocapd_here(clean_env, "export", recording, "--to", name, *words)
+
+    for words in (("--out", recording), ("--out", recording, "--force")):
+        refused = export(*words)
+        assert refused.code == 73
+        assert "is what the command reads" in refused.err
+    assert recording.read_bytes() == before
+    for _ in range(2):  # its own earlier file is replaced
+        assert export().code == 0
+    beside.write_text("my notes")
+    assert "is there already, and is not a" in export().err
+    assert beside.read_text() == "my notes"
+    assert export("--force").code == 0
+    assert beside.read_bytes() != b"my notes"

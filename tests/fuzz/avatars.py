@@ -2,6 +2,7 @@
 
 import json
 import struct
+from collections.abc import Callable
 from random import Random
 
 import numpy as np
@@ -14,6 +15,16 @@ from tests.outputs.vmc.vrm_models import Model, Node, glb, model
 
 _HEADER = 20  # bytes before the JSON
 _MOST = 1e12  # of a number of a pose; beyond, a float32 would soon be infinite
+
+
+def with_json(whole: bytes, change: Callable[[bytes], bytes]) -> bytes:
+    """An avatar's file with its JSON changed, and nothing behind it."""
+    (length,) = struct.unpack_from("<I", whole, 12)
+    return _with_text(whole, change(whole[_HEADER : _HEADER + length]))
+
+
+def _with_text(whole: bytes, text: bytes) -> bytes:
+    return whole[:12] + struct.pack("<I", len(text)) + whole[16:_HEADER] + text
 
 
 def vrms(place: Place) -> Attempt:
@@ -30,7 +41,7 @@ def vrms(place: Place) -> Attempt:
         whole, text = random.choice(goods)
         if random.random() < 0.8:
             text = mistyped(random, text, JSON_VALUES)
-            whole = whole[:12] + struct.pack("<I", len(text)) + whole[16:_HEADER] + text
+            whole = _with_text(whole, text)
         else:
             whole = damaged(random, whole)
         path.write_bytes(whole)

@@ -26,7 +26,7 @@ from tests.capture.films import write_capture, write_film
 from tests.fuzz.mutations import NUMBERS, TOML_LINES, TOML_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, each_of, named, taken
 
-_CONFIG = """\
+CONFIG = """\
 instance = "studio"
 rig = "rig.json"
 log_level = "debug"
@@ -124,7 +124,7 @@ _SIZES = (
 def files(place: Place) -> Attempt:
     """config.toml, with every value shown as `check-config` does."""
     path = place.folder / "config.toml"
-    good = _CONFIG.encode()
+    good = CONFIG.encode()
 
     def read() -> Effective:
         return load_config(file=path, env={})

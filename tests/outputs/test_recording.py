@@ -224,6 +224,49 @@ def test_damaged_messages_are_left_out(tmp_path: Path) -> None:
         list(RecordingReader(tmp_path / "a.mcap").everything())
 
 
+BAD_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, 3.5e38, -1.1e6)
+BAD_PERSONS = (-1, 2**31, 2**63)
+
+
+def bad_frames() -> list[SkeletonFrame]:
+    """One with each number in each place of a joint, and in each whole number of the frame."""
+    good = frames(0.1)[1]
+    out = []
+    for bad in BAD_NUMBERS:
+        for changes in (
+            {"p": (0.0, bad, 0.0)},
+            {"r": (bad, 0.0, 0.0, 1.0)},
+            {"l": (0.0, 0.0, 0.0, bad)},
+            {"c": bad},
+            {"u": bad},
+        ):
+            head = msgspec.structs.replace(good.joints["head"], **changes)
+            out.append(msgspec.structs.replace(good, joints=good.joints | {"head": head}))
+    out += [msgspec.structs.replace(good, person=person) for person in BAD_PERSONS]
+    for name in ("capture_monotonic_ns", "capture_unix_ns", "publish_monotonic_ns"):
+        out.append(msgspec.structs.replace(good, **{name: 2**63 - 1}))
+    crowd = {f"bone{number}": good.joints["head"] for number in range(1000)}
+    return [*out, msgspec.structs.replace(good, joints=crowd)]
+
+
+def test_frames_that_no_receiver_could_take_are_left_out_and_counted(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path, good, bad = tmp_path / "foreign.mcap", frames(0.1), bad_frames()
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        schema = writer.register_schema(wire.SCHEMA, "jsonschema", b"")
+        channel = writer.register_channel("/skeleton", "msgpack", schema)
+        for number, frame in enumerate((good[0], *bad, good[1])):
+            writer.add_message(channel, number, wire.encode_msgpack(frame), number)
+        writer.finish()
+    with caplog.at_level(logging.WARNING):
+        read = frames_of(list(RecordingReader(path).everything()))
+    assert read == [good[0], good[1]]
+    assert f"0 chunks and {len(bad)} messages are damaged, and left out" in caplog.text
+
+
 def test_a_disk_that_is_full_is_named(tmp_path: Path) -> None:
     full = Path("/dev/full")
     writer = RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0)

@@ -6,7 +6,7 @@
 import re
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import Any, get_args, get_origin, get_type_hints
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import msgspec
 
@@ -32,7 +32,7 @@ def type_words(kind: Any) -> str:
         return f"{len(items)} {type_words(items[0])}s"
     if get_origin(kind) is dict:
         return f"map of {type_words(get_args(kind)[1])}"
-    if isinstance(kind, UnionType):
+    if get_origin(kind) in (Union, UnionType):
         return " or ".join("null" if one is NoneType else type_words(one) for one in get_args(kind))
     return WORDS.get(kind) or str(kind.__name__)
 

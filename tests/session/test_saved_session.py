@@ -1,5 +1,6 @@
 """A daemon on what `mocapd calibrate` has saved."""
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,12 +8,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import read_calibration, write_calibration
+from mocapd.calibration.calibration_file import FILE_NAME, read_calibration, write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.config.sections import CameraSection, Config, TrackerSection
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, InputError
 from mocapd.session.saved_session import (
     cameras_of_calibration,
     configured_calibration,
@@ -149,3 +150,21 @@ def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
     ))  # fmt: skip
     with pytest.raises(ConfigError, match="no camera 'cam1'"):
         known_of_recording(alone, folder)
+
+
+@pytest.mark.parametrize("kind", ["pipe", "link to nothing", "folder"])
+def test_a_calibration_that_cannot_be_read_is_never_taken_for_none(
+    tmp_path: Path, kind: str
+) -> None:
+    path = tmp_path / FILE_NAME
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "folder":
+            path.mkdir()
+        case _:
+            path.symlink_to(tmp_path / "share" / FILE_NAME)
+    with pytest.raises(InputError):
+        configured_calibration(Config(state_dir=tmp_path))
+    path.rmdir() if kind == "folder" else path.unlink()
+    assert configured_calibration(Config(state_dir=tmp_path)) is None

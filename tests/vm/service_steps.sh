@@ -5,6 +5,7 @@ set -uo pipefail
 
 told mocapd install-service
 told systemd-sysusers
+told chgrp mocapd /etc/mocapd/config.toml
 told systemctl daemon-reload
 cat >/etc/mocapd/config.toml <<'TOML'
 [[camera]]

@@ -1,15 +1,12 @@
-"""The figures for a spreadsheet: one table of measures, one of every frame. Pure but for `write`."""
+"""The figures for a spreadsheet: one table of measures, one of every frame. Pure."""
 
 import csv
 import io
 import math
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 
-from mocapd.errors import CannotCreateError
-from mocapd.whole_file import whole_file
 from mocapd_analysis.joint_angles import SIDES
 from mocapd_analysis.measures import Measures
 
@@ -104,17 +101,6 @@ def frames_csv(found: Measures) -> str:
         columns += [values, found.angle_rates_deg_s[name]]
     table = np.stack(columns, axis=1).tolist()
     return _text(header, ([_number(value) for value in row] for row in table))
-
-
-def write(path: Path, text: str) -> None:
-    """Whole or not at all. Raises CannotCreateError."""
-    try:
-        with whole_file(path) as partial:
-            partial.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another place with --out"
-        ) from None
 
 
 def wrists(found: Measures) -> tuple[str, ...]:

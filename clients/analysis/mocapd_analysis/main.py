@@ -38,25 +38,31 @@ def report(
         typer.Option("--out", help="The report to write [default: beside the first FILE, .html]"),
     ] = None,
     person: PersonOption = 0,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace what is there, also a file of another kind.")
+    ] = False,
 ) -> None:
     """Write the report: FILE.html with its plots inside, FILE.csv of all measures, FILE_frames.csv of every frame.
 
     Example: mocapd-analysis report monday.mcap friday.mcap --out week.html
     """
-    from mocapd_analysis.csv_tables import frames_csv, measures_csv, write
+    from mocapd_analysis.csv_tables import frames_csv, measures_csv
     from mocapd_analysis.report import report_html
+    from mocapd_analysis.report_files import FRAMES_CSV, MEASURES_CSV, REPORT_HTML, write_all
 
     sessions = _measured(files, person)
     path = out if out is not None else files[0].with_suffix(".html")
-    write(path, report_html(sessions))
-    write(path.with_suffix(".csv"), measures_csv(sessions))
-    written = [path, path.with_suffix(".csv")]
+    texts = [
+        (path, REPORT_HTML, report_html(sessions)),
+        (path.with_suffix(".csv"), MEASURES_CSV, measures_csv(sessions)),
+    ]
     for number, found in enumerate(sessions):
         letter = f"_{'ab'[number]}" if len(sessions) > 1 else ""
-        written.append(path.with_name(f"{path.stem}{letter}_frames.csv"))
-        write(written[-1], frames_csv(found))
+        frames = path.with_name(f"{path.stem}{letter}_frames.csv")
+        texts.append((frames, FRAMES_CSV, frames_csv(found)))
         _say_of(found.session.name, found.session.notes)
-    typer.echo("\n".join(str(one) for one in written))
+    write_all(texts, files, force)
+    typer.echo("\n".join(str(one) for one, _, _ in texts))
 
 
 PortOption = Annotated[

@@ -33,7 +33,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     for line in unsafe_settings(effective):
         _log.warning("unsafe: %s", line)
 
-    from mocapd.app.daemon.main_loop import INTERNAL_ERROR, Signals, end_despite_work
+    from mocapd.app.daemon.main_loop import END_S, INTERNAL_ERROR, Signals, end_despite_work
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.app.terminal.status_line import StatusLine
@@ -43,7 +43,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.outputs.registry import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs, common_origin
 
-    signals, notifier = Signals(), Notifier.of_environment()
+    signals, notifier = Signals(within_s=END_S), Notifier.of_environment()
     origin = common_origin(config.camera)
     with ProgressBars() as progress:
         opened = open_origin(origin, config.cache_dir, progress) if origin else None

@@ -11,6 +11,7 @@ from types import FrameType
 from typing import Protocol
 
 from mocapd.app.daemon.early_signals import SIGINT_EXIT, ComesEarly, on_terminal
+from mocapd.app.daemon.end_deadline import EndDeadline
 from mocapd.app.terminal.status_line import StatusLine
 from mocapd.service.service import Service, Snapshot, ThreadDiedError
 
@@ -19,6 +20,7 @@ TELL_EVERY = (
     4  # health goes out with every fourth of them, and when something has happened to a camera
 )
 
+END_S = 1.7  # from a signal to the end of a daemon [s]: two seconds are promised
 JOIN_S = 0.2  # what idle threads may take to end [s]
 
 INTERNAL_ERROR = 70  # EX_SOFTWARE
@@ -41,8 +43,10 @@ class Signals:
     in the midst of an import): then it comes as soon as there is something to end.
     """
 
-    def __init__(self, reloads: bool = False) -> None:
+    def __init__(self, reloads: bool = False, within_s: float | None = None) -> None:
+        """within_s: how long the orderly end may take [s]; None: as long as it takes."""
         self.exit_code = 0
+        self._deadline = None if within_s is None else EndDeadline(within_s, lambda: self.exit_code)
         self._daemon: Stoppable | None = None
         self._is_told = False
         self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
@@ -59,8 +63,15 @@ class Signals:
     def ends(self, daemon: Stoppable) -> None:
         """From now on a signal ends this in order; also one that came before."""
         self._daemon = daemon
+        if self._deadline is not None:
+            self._deadline.start()
         if self._is_told:
-            daemon.end()
+            self._end(daemon)
+
+    def _end(self, daemon: Stoppable) -> None:
+        if self._deadline is not None:
+            self._deadline.begin()
+        daemon.end()
 
     def take_reload(self) -> bool:
         """Whether the configuration is to be read again; told once."""
@@ -79,7 +90,7 @@ class Signals:
         self._is_told = True
         if self._daemon is None:
             sys.exit(self.exit_code)
-        self._daemon.end()
+        self._end(self._daemon)
 
 
 def _silence(gone: Iterable[int]) -> None:

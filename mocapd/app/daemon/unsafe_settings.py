@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from mocapd.boundary.files import is_file
 from mocapd.boundary.folders import readable_by_others
+from mocapd.boundary.secret_files import narrowing, readers_of
 from mocapd.boundary.urls import has_password
 from mocapd.config.web_params import is_of_this_machine
 
@@ -34,10 +35,10 @@ def _camera_passwords(effective: "Effective") -> list[str]:
             " machine can read: write it into a config file of yours with mode 600"
         ]
     file = effective.file
-    if file is not None and origin.startswith(str(file)) and readable_by_others(file):
+    if file is not None and origin.startswith(str(file)) and readers_of(file):
         return [
-            f"{file} holds the password of camera {names}, and others may read it"
-            f" ({_mode(file)}): `chmod 600 {file}`"
+            f"{file} holds the password of camera {names}, and {readers_of(file)} may read it"
+            f" ({_mode(file)}): `{narrowing(file)}`"
         ]
     return []
 

@@ -1,12 +1,12 @@
 """The service put in place and taken away: what is done to which file, and what is to be run next."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.app.install import interpreter
-from mocapd.app.install.own_file import NEW, Outcome, put, put_once, take_away
+from mocapd.app.install.own_file import NEW, Outcome, gid_of, put, put_once, take_away
 from mocapd.app.install.places import (
     PlacedFile,
     Places,
@@ -15,6 +15,7 @@ from mocapd.app.install.places import (
     of_package,
     of_user,
 )
+from mocapd.boundary.secret_files import SERVICE_GROUPS
 from mocapd.errors import ConfigError, PermissionDeniedError
 
 _WANTS = "*.wants/mocapd*.service"  # of an enabled unit
@@ -95,6 +96,9 @@ def next_steps(target: Target, done: list[Done]) -> list[str]:
     if ".rules" in changed:
         steps.append("udevadm control --reload && udevadm trigger --subsystem-match=usb")
     steps += ["systemctl daemon-reload"] if ".service" in changed else []
+    made = [one.path for one in done if one.is_admins and one.outcome is Outcome.MADE]
+    if gid_of(SERVICE_GROUPS[0]) is None:  # systemd-sysusers makes it
+        steps += [f"chgrp {SERVICE_GROUPS[0]} {path}" for path in made]
     return [
         *steps,
         "mocapd cameras                     # the names of the cameras, for /etc/mocapd/config.toml",
@@ -114,7 +118,10 @@ def what_stays(target: Target) -> list[Path]:
     """What an uninstallation leaves: it is the admin's, or cannot be made again."""
     if target.user or target.root is not None:
         return []
-    stays = ("/etc/mocapd", "/var/lib/mocapd", "/var/lib/mocapd-rigs", "/var/cache/mocapd")
+    stays = (
+        *("/etc/mocapd", "/var/lib/mocapd", "/var/lib/mocapd-rigs"),
+        *("/var/cache/mocapd", "/var/cache/mocapd-node"),
+    )
     there = [path for path in map(Path, stays) if path.exists()]
     # what a service of a user made for it keeps is elsewhere, with a link to it
     return [*dict.fromkeys(one for path in there for one in (path, path.resolve()))]
@@ -171,8 +178,9 @@ def _require_sense(target: Target, euid: int) -> None:
 
 
 def _put(one: PlacedFile, dry_run: bool) -> Outcome:
-    how: Callable[[Path, str, bool], Outcome] = put_once if one.is_admins else put
-    return how(one.path, one.text, dry_run)
+    if one.is_admins:
+        return put_once(one.path, one.text, dry_run, SERVICE_GROUPS[0])
+    return put(one.path, one.text, dry_run)
 
 
 def _done(one: PlacedFile, outcome: Outcome) -> Done:

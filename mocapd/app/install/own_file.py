@@ -1,6 +1,8 @@
 """A file of ours in a folder of the system's: renewed while nobody has changed it, else left alone."""
 
+import grp
 import hashlib
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,10 +10,11 @@ from enum import StrEnum
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, read_file
-from mocapd.errors import CannotCreateError, InputError, PermissionDeniedError
+from mocapd.errors import CannotCreateError, InputError, PermissionDeniedError, mend_of
 from mocapd.whole_file import whole_file
 
 MODE = 0o644
+SECRET_MODE = 0o640  # with the group of the service that reads it
 NEW = ".new"  # what would have been written, beside a file that was changed
 
 _MOST_BYTES = 1 << 20
@@ -55,13 +58,24 @@ def put(path: Path, text: str, dry_run: bool) -> Outcome:
     return Outcome.KEPT
 
 
-def put_once(path: Path, text: str, dry_run: bool) -> Outcome:
-    """Write a text that is the admin's from then on, where there is none. Raises as `put`."""
+def put_once(path: Path, text: str, dry_run: bool, group: str) -> Outcome:
+    """Write a text that is the admin's from then on, where there is none. Raises as `put`.
+
+    It may come to hold passwords: besides its owner only the group may read it, root's while there is no such group.
+    """
     if _read(path) is not None:
         return Outcome.UNCHANGED
     if not dry_run:
-        _write(path, text.encode())
+        _write(path, text.encode(), SECRET_MODE, gid_of(group))
     return Outcome.MADE
+
+
+def gid_of(group: str) -> int | None:
+    """None while there is no such group."""
+    try:
+        return grp.getgrnam(group).gr_gid
+    except KeyError:
+        return None
 
 
 def take_away(path: Path, dry_run: bool) -> Outcome:
@@ -102,12 +116,14 @@ def _read(path: Path) -> bytes | None:
         ) from None
 
 
-def _write(path: Path, data: bytes) -> None:
+def _write(path: Path, data: bytes, mode: int = MODE, gid: int | None = None) -> None:
     with _told(path):
         path.parent.mkdir(mode=0o755, parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_bytes(data)
-            partial.chmod(MODE)  # for all to read, whatever the umask
+            if gid is not None and os.geteuid() == 0:
+                os.chown(partial, -1, gid)
+            partial.chmod(mode)  # whatever the umask
 
 
 @contextmanager
@@ -121,5 +137,7 @@ def _told(path: Path) -> Iterator[None]:
         ) from None
     except OSError as error:
         raise CannotCreateError(
-            f"cannot be changed ({error.strerror})", str(path), "make the folder writable"
+            f"cannot be changed ({error.strerror})",
+            str(path),
+            mend_of(error, "make the folder writable"),
         ) from None

@@ -83,14 +83,14 @@ class Replay:
     def _run(self) -> None:
         try:
             for rounds in itertools.count():
-                self._play(rounds)
+                self.play_once(rounds)
                 if self._ended.is_set() or not self._params.loop:
                     break
             self._over = True
         except MocapdError as error:  # raised again by `wait`, in the thread that watches
             self._error = error
 
-    def _play(self, rounds: int) -> None:
+    def play_once(self, rounds: int = 0) -> None:
         """The recording once. Raises InputError."""
         params, played = self._params, False
         due_ns = self._clock()

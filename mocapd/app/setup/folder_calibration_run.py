@@ -32,6 +32,7 @@ class FolderOptions:
     floor_frame: int | None
     strokes: Path | None
     as_json: bool
+    force: bool
 
 
 def calibrate_folder(options: FolderOptions, config: "Config") -> None:
@@ -45,10 +46,13 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
 
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibrate.extrinsics.folder_calibration import calibrate_folder as solve
-    from mocapd.calibrate.extrinsics.rig_writing import write_rig
-    from mocapd.session.offline import check_writable
+    from mocapd.calibrate.extrinsics.rig_writing import RIG, write_rig
+    from mocapd.calibration.calibration_file import CALIBRATION_KIND
+    from mocapd.output_file import OutputFile
 
-    check_writable(out)
+    kind = CALIBRATION_KIND if out.suffix == ".toml" else RIG
+    target = OutputFile(out, kind, options.force, inputs=(options.folder,))
+    target.check()
     with ProgressBars() as progress:
         found = solve(options.folder, spec, progress, options.floor_frame)
     if out.suffix == ".toml":
@@ -59,7 +63,7 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
         floor_known = options.floor_frame is not None
         save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
     else:
-        write_rig(out, found.rig)
+        write_rig(target, found.rig)
     for note in found.notes:
         typer.echo(f"mocapd: {note}", err=True)
     if options.as_json:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mocapd.boundary.files import is_file
+from mocapd.boundary.files import is_absent
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.saved_sources import require_password, sources_by_shown
 from mocapd.errors import ConfigError
@@ -70,7 +70,7 @@ def _with_passwords(draft: Draft, config: "Config") -> Draft:
 
 def saved_draft(config: "Config", step: "StepName | None") -> Draft:
     """The saved calibration, empty without one. Raises ConfigError when `step` alone needs it."""
-    if is_file(config.state_dir / FILE_NAME):
+    if not is_absent(config.state_dir / FILE_NAME):
         return load_draft(config.state_dir)
     if step is not None:
         raise ConfigError(

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
 from mocapd.errors import ConfigError
 
 
@@ -27,6 +27,7 @@ def export(
         ),
     ] = None,
     person: Annotated[int, typer.Option(help="Which person.", min=0)] = 0,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -38,7 +39,7 @@ def export(
     """
     from mocapd.app.recordings.exporting import motion_of
     from mocapd.app.terminal.logs import set_up_logs
-    from mocapd.exports.formats import FORMATS, write_export
+    from mocapd.exports.formats import FORMATS, export_file, write_export
     from mocapd.outputs.mcap.recording_reader import RecordingReader
 
     if to not in FORMATS:
@@ -47,8 +48,10 @@ def export(
         )
     set_up_logs(effective_config(config, settings).config.log_level)
     path = out if out is not None else file.with_suffix(f".{to}")
+    target = export_file(to, path, force, inputs=(file,))
+    target.check()
     found = motion_of(RecordingReader(file), person, rate)
-    write_export(found.motion, to, path)
+    write_export(found.motion, to, target)
     motion = found.motion
     gaps = f", {int(motion.gap.sum())} of them in gaps" if motion.gap.any() else ""
     lost = f"; {found.lost} frames were without a person" if found.lost else ""

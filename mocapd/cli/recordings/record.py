@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
 
 
 def add_to(app: typer.Typer) -> None:
@@ -42,6 +42,7 @@ def record(
     timeout_s: Annotated[
         float, typer.Option("--timeout", min=0.0, help="How long to look for a daemon [s].")
     ] = 5.0,
+    force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
@@ -73,7 +74,7 @@ def record(
     link = link_of(zenoh_section(effective.outputs), endpoint, instance, timeout_s)
     signals = Signals()
     path = file if file is not None else default_path()
-    params = RecordingParams(exact, foxglove_hz, private=pictures)
+    params = RecordingParams(exact, foxglove_hz, private=pictures, force=force)
     with ExitStack() as opened:
         stream = opened.enter_context(PublishedStream(link))
         page = None

@@ -16,7 +16,15 @@ from mocapd.body.skeleton import local_from_global
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
 from mocapd.outputs.messages import RestSkeleton
-from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame, decode_message
+from mocapd.outputs.wire import (
+    SCHEMA,
+    FrameNumber,
+    Joint,
+    Nanoseconds,
+    Person,
+    SkeletonFrame,
+    decode_message,
+)
 from mocapd.types import Bytes, Floats, Ints, Skeleton
 
 PACKED = "mocapd.PackedSkeleton.v1"
@@ -34,11 +42,11 @@ class PackedFrame(msgspec.Struct, frozen=True):
     """A SkeletonFrame whose joints are arrays, in the order of the person's rest skeleton. Lost: empty arrays."""
 
     instance: Annotated[str, Meta(description="as in mocapd.Skeleton.v1, and so down to `cameras`")]
-    person: int
-    seq: int
-    capture_monotonic_ns: int
-    capture_unix_ns: int
-    publish_monotonic_ns: int
+    person: Person
+    seq: FrameNumber
+    capture_monotonic_ns: Nanoseconds
+    capture_unix_ns: Nanoseconds
+    publish_monotonic_ns: Nanoseconds
     tracker: str
     tracking: str
     cameras: tuple[str, ...]
@@ -61,9 +69,9 @@ class PackedFrame(msgspec.Struct, frozen=True):
     ]
     c: Annotated[bytes, Meta(description="confidence * 255 of each joint")]
     smoothing_lag_ns: Annotated[
-        int, Meta(description="as in mocapd.Skeleton.v1, and so the next")
+        Nanoseconds, Meta(description="as in mocapd.Skeleton.v1, and so the next")
     ] = 0
-    predicted_ns: int = 0
+    predicted_ns: Nanoseconds = 0
     u: Annotated[
         bytes,
         Meta(

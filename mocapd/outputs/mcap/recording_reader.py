@@ -23,6 +23,8 @@ Recorded = SkeletonFrame | RestSkeleton | CalibrationInfo
 _OURS = (SCHEMA, PACKED, REST_SKELETON, CALIBRATION)
 _FAMILIES = tuple(name.rpartition(".")[0] + "." for name in _OURS)  # each without its version
 
+_MOST_REFUSED = 5_000  # messages, before reading ends unless more were good
+
 _NOBODY = RestSkeleton("", 0, 0.0, (), (), ())  # until somebody is told
 
 
@@ -58,6 +60,9 @@ class RecordingReader:
                 found = _decoded(item, rests)
             except InputError:
                 counts.refused += 1
+                if counts.refused > max(_MOST_REFUSED, counts.frames):
+                    file.ending = "it holds more damaged messages than frames"
+                    break
                 continue
             if isinstance(found, RestSkeleton):
                 rests[found.person] = found

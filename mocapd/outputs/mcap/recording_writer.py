@@ -24,7 +24,8 @@ from mocapd.capture.recording.recorded_picture import (
     image_topic,
 )
 from mocapd.clock import NS_PER_S
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, mend_of
+from mocapd.output_file import OutputFile
 from mocapd.outputs import schemas, wire
 from mocapd.outputs.mcap import foxglove_messages, foxglove_scene
 from mocapd.outputs.mcap.packed_frame import PACKED, PackedFrame, encode_packed, pack
@@ -40,28 +41,34 @@ _JSONSCHEMA = "jsonschema"
 @dataclass(frozen=True, slots=True)
 class RecordingParams:
     """exact: frames as the bytes that were published, 460 MB an hour at 60 Hz, instead of packed (packed_frame);
-    foxglove_hz: how often bones are told in Foxglove's words too [Hz], 0: never; private: nobody else may read it."""
+    foxglove_hz: how often bones are told in Foxglove's words too [Hz], 0: never; private: nobody else may read it; force:
+    replace a file that is there."""
 
     exact: bool = False
     foxglove_hz: float = 10.0
     private: bool = False
+    force: bool = False
 
 
 class RecordingWriter:
     """Used by one thread. Times are Unix time [ns], apart from those called `now_ns`, of any clock."""
 
     def __init__(self, path: Path, params: RecordingParams, now_ns: int) -> None:
-        """Make the file. Raises CannotCreateError; one that is there is never written over."""
+        """Make the file. Raises CannotCreateError; without force a recording that is there stays."""
         self.path, self._params = path, params
+        OutputFile(path, None, params.force).check_replaceable()
         mode = 0o600 if params.private else 0o666
         try:
+            if params.force:
+                path.unlink(missing_ok=True)
             self._descriptor = os.open(
                 path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode
             )
         except OSError as error:
-            why = "it is there already" if isinstance(error, FileExistsError) else error.strerror
             raise CannotCreateError(
-                f"cannot be written ({why})", str(path), "choose another name or place"
+                f"cannot be written ({error.strerror})",
+                str(path),
+                mend_of(error, "choose another name or place"),
             ) from None
         self._file = os.fdopen(self._descriptor, "wb")
         self._mcap = Writer(

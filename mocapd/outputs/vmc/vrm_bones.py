@@ -24,6 +24,7 @@ REQUIRED = (
 )  # fmt: skip
 
 _MOST = 1e4  # of any number of a node; in metres, and scaled by 100 at the most
+_MOST_ABOVE = 500  # nodes of one bone; real avatars have some dozens
 _LEAST_HEIGHT_M = 0.05  # of hips above the floor; travel is scaled by it
 _STRAIGHT = 1.0 - 1e-12  # cosine of half an angle of a millionth [rad]
 _ABOUT_XYZ = np.array([-1.0, 1.0, -1.0])  # half a turn about +Y
@@ -37,9 +38,10 @@ class VrmNode(msgspec.Struct, frozen=True):
     """A node of glTF: translation, rotation (xyzw) and scale, or all three as a matrix by columns."""
 
     children: tuple[int, ...] = ()
-    translation: Vector = (0.0, 0.0, 0.0)
-    rotation: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    scale: Vector = (1.0, 1.0, 1.0)
+    # of any size: what does not do is told with the node's number
+    translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     matrix: _Matrix | None = None
 
     def faced_about(self) -> "VrmNode":
@@ -53,8 +55,11 @@ class VrmNode(msgspec.Struct, frozen=True):
         return VrmNode(self.children, (x, y, z), tuple(rotation), self.scale, matrix)
 
 
-def avatar_of_nodes(nodes: Sequence[VrmNode], bones: Mapping[str, int]) -> Avatar:
-    """The avatar whose bones, by VRM 1.0 name, are these nodes. Raises MalformedError saying what does not fit."""
+def avatar_of_nodes(
+    nodes: Sequence[VrmNode], bones: Mapping[str, int], faces_back: bool = False
+) -> Avatar:
+    """The avatar whose bones, by VRM 1.0 name, are these nodes; faces_back: towards -Z. Raises MalformedError saying what
+    does not fit."""
     missing = [name for name in REQUIRED if name not in bones]
     if missing:
         raise MalformedError(f"its humanoid has no {', '.join(missing)}")
@@ -75,7 +80,8 @@ def avatar_of_nodes(nodes: Sequence[VrmNode], bones: Mapping[str, int]) -> Avata
         if (found is None) != (name == "hips"):
             raise MalformedError(f"its bone {name[:40]!r} is not below its hips")
         parents.append(-1 if found is None else place[found])
-    poses = {node: _pose(nodes[node]) for line in lines.values() for node in line}
+    used = {node for line in lines.values() for node in line}
+    poses = {node: _pose(nodes[node].faced_about() if faces_back else nodes[node]) for node in used}
     hips_above = _composed([poses[node] for node in lines["hips"][1:]])
     hips_m = (hips_above @ poses[bones["hips"]][0])[:3, 3]
     if hips_m[1] < _LEAST_HEIGHT_M:
@@ -116,6 +122,8 @@ def _line(above: Mapping[int, int], node: int) -> list[int]:
         line.append(above[line[-1]])
         if line[-1] in seen:
             raise MalformedError(f"its node {node} is below itself")
+        if len(line) > _MOST_ABOVE:
+            raise MalformedError(f"its node {node} has more than {_MOST_ABOVE} nodes above it")
         seen.add(line[-1])
     return line
 

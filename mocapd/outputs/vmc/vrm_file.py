@@ -7,8 +7,10 @@ Only the JSON is read, not the meshes and pictures behind it. Sources: glTF 2.0 
 
 import struct
 from pathlib import Path
+from typing import Annotated
 
 import msgspec
+from msgspec import Meta
 
 from mocapd.boundary.files import read_beginning
 from mocapd.boundary.messages import decode_json
@@ -17,7 +19,10 @@ from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.outputs.vmc.bone_names import vrm1_name
 from mocapd.outputs.vmc.vrm_bones import VrmNode, avatar_of_nodes
 
-MOST_JSON_BYTES = 64_000_000  # that of a large avatar has 5 MB
+MOST_JSON_BYTES = 16_000_000  # that of a large avatar has 5 MB
+_MOST_NODES = 30_000
+# Counted before any is made; a large avatar has a tenth of that.
+_MOST_OBJECTS, _MOST_COMMAS = 400_000, 4_000_000
 FIX = "export the avatar as VRM 0.x or 1.0, for example with UniVRM or the VRM add-on of Blender"
 
 _HEADER = struct.Struct(
@@ -33,7 +38,7 @@ class _Bone0(msgspec.Struct):
 
 
 class _Humanoid0(msgspec.Struct):
-    humanBones: tuple[_Bone0, ...] = ()  # noqa: N815 (the file's key)
+    humanBones: Annotated[tuple[_Bone0, ...], Meta(max_length=1000)] = ()  # noqa: N815 (the file's key)
 
 
 class _Vrm0(msgspec.Struct):
@@ -45,7 +50,7 @@ class _Bone1(msgspec.Struct):
 
 
 class _Humanoid1(msgspec.Struct):
-    humanBones: dict[str, _Bone1] = {}  # noqa: N815 (the file's key; msgspec copies it)
+    humanBones: Annotated[dict[str, _Bone1], Meta(max_length=1000)] = {}  # noqa: N815 (the file's key; msgspec copies it)
 
 
 class _Vrm1(msgspec.Struct):
@@ -58,7 +63,7 @@ class _Extensions(msgspec.Struct):
 
 
 class _Document(msgspec.Struct):
-    nodes: tuple[VrmNode, ...] = ()
+    nodes: Annotated[tuple[VrmNode, ...], Meta(max_length=_MOST_NODES)] = ()
     extensions: _Extensions = msgspec.field(default_factory=_Extensions)
 
 
@@ -76,7 +81,7 @@ def read_vrm(path: Path) -> Avatar:
         if extensions.VRM is not None and extensions.VRM.humanoid is not None:
             bones = {vrm1_name(b.bone): b.node for b in extensions.VRM.humanoid.humanBones}
             # of VRM 0.x an avatar faces -Z
-            return avatar_of_nodes([node.faced_about() for node in document.nodes], bones)
+            return avatar_of_nodes(document.nodes, bones, faces_back=True)
     except MalformedError as error:
         raise InputError(error.what, str(path), FIX) from None
     raise InputError("is a glTF model without a humanoid", str(path), FIX)
@@ -96,4 +101,6 @@ def _json_chunk(path: Path) -> bytes:
     data = read_beginning(path, _HEADER.size + length)[_HEADER.size :]
     if len(data) < length:
         raise InputError("ends within its JSON", str(path), "copy it again, it was cut off")
+    if data.count(b"{") > _MOST_OBJECTS or data.count(b",") > _MOST_COMMAS:
+        raise InputError("its JSON has more parts than any avatar", str(path), FIX)
     return data

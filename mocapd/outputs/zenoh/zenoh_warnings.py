@@ -1,8 +1,8 @@
 """What is permitted and yet unsafe in the Zenoh parameters, one line each."""
 
-import stat
 from pathlib import Path
 
+from mocapd.boundary.secret_files import narrowing, readers_of
 from mocapd.outputs.zenoh.zenoh_config import ENCRYPTED, Params, is_loopback
 
 SECRETS = ("tls_private_key", "password_file")
@@ -16,15 +16,9 @@ def warnings(params: Params) -> tuple[str, ...]:
 
 
 def _readable(name: str, path: str) -> str:
-    """Empty when only its owner may read the file."""
-    try:
-        mode = Path(path).stat().st_mode if path else 0
-    except OSError:  # it went away meanwhile: opening the session tells
-        return ""
-    if not mode & (stat.S_IRGRP | stat.S_IROTH):
-        return ""
-    who = "every user of this machine" if mode & stat.S_IROTH else "its group"
-    return f"zenoh.{name}: {who} may read {path} -- chmod 600 {path}"
+    """Empty when only those who must may read the file, or it is gone: opening the session tells."""
+    who = readers_of(Path(path)) if path else ""
+    return f"zenoh.{name}: {who} may read {path} -- {narrowing(Path(path))}" if who else ""
 
 
 def _open_to_a_network(params: Params, endpoint: str) -> str:

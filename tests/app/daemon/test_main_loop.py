@@ -1,6 +1,8 @@
 """Signals of a daemon, whatever happens while it is set up."""
 
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -47,3 +49,29 @@ def test_a_daemon_is_ended_once_and_not_before_it_is_told() -> None:
     assert daemon.ends == 0
     signal.raise_signal(signal.SIGTERM)
     assert daemon.ends == 1
+
+
+HANGING = """
+import signal, sys, threading
+from mocapd.app.daemon.main_loop import Signals
+class Daemon:
+    def end(self): print("asked", flush=True)
+signals = Signals(within_s=0.05)
+signals.ends(Daemon())
+print("ready", flush=True)
+hangs = threading.Lock(); hangs.acquire(); hangs.acquire()
+"""
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 0), (signal.SIGINT, 130)])
+def test_a_daemon_whose_end_hangs_is_over_all_the_same(number: signal.Signals, code: int) -> None:
+    words = (sys.executable, "-c", HANGING)
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(number)
+        out, err = process.communicate(timeout=600)
+    assert (process.returncode, out) == (code, "asked\n")
+    assert "the orderly end takes longer than" in err

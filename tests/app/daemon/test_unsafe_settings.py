@@ -1,11 +1,14 @@
 """What is permitted although it is unsafe is told in one line each, and passwords are not shown."""
 
+import grp
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 from mocapd.app.daemon.unsafe_settings import unsafe_settings
+from mocapd.boundary import secret_files
 from mocapd.config.effective import load_config
 from tests.cli.mocapd_process import mocapd
 
@@ -31,6 +34,36 @@ def test_a_password_in_a_file_that_others_may_read_is_told(file: Path) -> None:
     file.chmod(0o644)
     assert "camera door" in told(file)
     assert f"chmod 600 {file}" in told(file)
+
+
+def test_the_group_of_the_service_may_read_its_configuration(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file.chmod(0o640)
+    assert "its group may read it" in told(file)
+    for name in ("mocapd", "mocapd-node"):
+        group = grp.struct_group((name, "x", file.stat().st_gid, []))
+        monkeypatch.setattr(grp, "getgrgid", lambda _gid, group=group: group)
+        file.chmod(0o640)
+        assert told(file) == ""
+        file.chmod(0o644)
+        assert "every user of this machine may read it" in told(file)
+
+
+def test_what_a_service_only_reads_is_narrowed_by_its_group(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`chmod 600` of root's file would take it away from the service."""
+    file.chmod(0o644)
+    group = grp.struct_group(("mocapd", "x", 12_345, []))
+    monkeypatch.setattr(grp, "getgrgid", lambda _gid: group)
+    monkeypatch.setattr(os, "geteuid", lambda: file.stat().st_uid + 1)
+    assert f"`sudo chown root:mocapd {file} && sudo chmod 640 {file}`" in told(file)
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    monkeypatch.setattr(secret_files, "SERVICE_FOLDER", file.parent)
+    assert f"`chown root:mocapd {file} && chmod 640 {file}`" in told(file)
+    node = file.rename(file.parent / "camera-node.toml")
+    assert f"`chown root:mocapd-node {node} && chmod 640 {node}`" in told(node)
 
 
 def test_a_password_on_the_command_line_is_told(file: Path) -> None:

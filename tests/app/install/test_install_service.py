@@ -1,5 +1,6 @@
 """A service installed, installed again, changed by its admin, taken away: each file as its owner would have it."""
 
+import grp
 import os
 import stat
 from pathlib import Path
@@ -32,7 +33,30 @@ def test_installed_twice_is_as_installed_once(tmp_path: Path) -> None:
     once = contents(tmp_path)
     assert outcomes(install(target)) == {Outcome.UNCHANGED}
     assert contents(tmp_path) == once
-    assert {stat.S_IMODE(path.stat().st_mode) for path in once} == {0o644}
+    modes = {path: stat.S_IMODE(path.stat().st_mode) for path in once}
+    assert modes.pop(tmp_path / CONFIG) == 0o640  # it may come to hold passwords
+    assert {*modes.values()} == {0o644}
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")
+def test_the_configuration_is_of_the_services_group_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    group = grp.struct_group(("mocapd", "x", 12_345, []))
+    monkeypatch.setattr(grp, "getgrnam", {"mocapd": group}.__getitem__)
+    done = install(Target(root=tmp_path))
+    assert (tmp_path / CONFIG).stat().st_gid == 12_345
+    assert (tmp_path / UNIT).stat().st_gid == os.getegid()
+    assert "chgrp" not in " ".join(next_steps(Target(), done))
+
+
+def test_where_the_group_is_still_to_be_made_the_steps_give_it_the_configuration(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grp, "getgrnam", {}.__getitem__)
+    steps = next_steps(Target(), install(Target(root=tmp_path)))
+    made = steps.index("systemd-sysusers")
+    assert steps.index(f"chgrp mocapd {tmp_path / CONFIG}") > made
 
 
 def test_a_dry_run_says_the_same_and_changes_nothing(tmp_path: Path) -> None:

@@ -85,7 +85,31 @@ def test_the_user_is_made_in_the_group_of_the_webcams(package: Path) -> None:
     code, out = said("systemd-sysusers", f"--root={package}", path)
     assert code == 0, out
     groups = (package / "etc/group").read_text()
-    assert re.search(r"^video:.*:mocapd$", groups, re.MULTILINE)
+    (members,) = re.findall(r"^video:.*:(.*)$", groups, re.MULTILINE)
+    assert {*members.split(",")} == {"mocapd", "mocapd-node"}
+
+
+def test_what_the_camera_node_writes_is_never_run_by_the_daemon(package: Path) -> None:
+    """numba's index in the cache is unpickled."""
+    folder, own = package / "usr/lib/systemd/system", ("User", "CacheDirectory", "StateDirectory")
+    node, *daemons = (settings_of(folder / name, own) for name in reversed(UNITS))
+    for daemon in daemons:
+        assert not {*node.values()} & {*daemon.values()}
+    assert node["User"] == "mocapd-node"
+
+
+@pytest.mark.parametrize("unit", [*(f"system/{unit}" for unit in UNITS), "user/mocapd.service"])
+def test_no_unit_takes_the_machines_memory(package: Path, unit: str) -> None:
+    found = settings_of(
+        package / "usr/lib/systemd" / unit, ("MemoryMax", "TasksMax", "LimitNOFILE")
+    )
+    assert found == {"MemoryMax": "2G", "TasksMax": "512", "LimitNOFILE": "4096"}
+
+
+def settings_of(unit: Path, names: tuple[str, ...]) -> dict[str, str]:
+    """Those of these settings that the unit has."""
+    lines = (line.partition("=") for line in unit.read_text().splitlines())
+    return {name: value for name, _, value in lines if name in names}
 
 
 def test_the_units_start_the_mocapd_that_installed_them(package: Path) -> None:

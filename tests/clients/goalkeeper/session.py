@@ -69,8 +69,7 @@ def record_session(path: Path, seconds: float) -> Path:
     return write_session(path, session_frames(seconds))
 
 
-def with_nan_hand(frame: SkeletonFrame) -> SkeletonFrame:
-    """The left hand is no number."""
-    nan = float("nan")
-    hand = msgspec.structs.replace(frame.joints["leftHand"], p=(nan, nan, nan))
-    return msgspec.structs.replace(frame, joints=frame.joints | {"leftHand": hand})
+def without_left_hand(frame: SkeletonFrame) -> SkeletonFrame:
+    """The left hand is not known."""
+    joints = {name: joint for name, joint in frame.joints.items() if name != "leftHand"}
+    return msgspec.structs.replace(frame, joints=joints)

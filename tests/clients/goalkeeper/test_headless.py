@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from goalkeeper.app.main import main
-from tests.clients.goalkeeper.session import session_frames, with_nan_hand, write_session
+from tests.clients.goalkeeper.session import session_frames, without_left_hand, write_session
 
 SECONDS = 30.0
 
@@ -14,7 +14,7 @@ SECONDS = 30.0
 def session(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Half a minute, in which the player is lost for two seconds and his left hand for one."""
     frames = session_frames(SECONDS, lost_s=(15.0, 17.0))
-    frames[300:330] = [with_nan_hand(frame) for frame in frames[300:330]]
+    frames[300:330] = [without_left_hand(frame) for frame in frames[300:330]]
     return write_session(tmp_path_factory.mktemp("session") / "session.mcap", frames)
 
 

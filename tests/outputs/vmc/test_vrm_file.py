@@ -234,6 +234,20 @@ def test_an_avatar_that_does_not_do_says_why_where_and_the_mend(which: str, tmp_
 
 
 GOOD = glb(model(1).document())
+
+
+def document(nodes: bytes, one: Model | None = None) -> bytes:
+    """A file with these nodes, of an avatar or of nothing; the avatar's bones are the deepest of them."""
+    extensions: dict[str, Any] = {}
+    if one is not None:
+        whole: Any = one.document()
+        extensions = whole["extensions"]
+        for number, bone in enumerate(extensions["VRM"]["humanoid"]["humanBones"]):
+            bone["node"] = 19_999 - number
+    text = b'{"nodes":[' + nodes + b'],"extensions":' + json.dumps(extensions).encode() + b"}"
+    return GOOD[:12] + struct.pack("<I", len(text)) + GOOD[16:20] + text
+
+
 FILES = {
     "empty": (b"", "not a binary glTF"),
     "text": (b'{"asset": {}}' * 9, "not a binary glTF"),
@@ -241,7 +255,14 @@ FILES = {
     "header-only": (GOOD[:12], "not a binary glTF"),
     "old": (GOOD[:4] + struct.pack("<I", 1) + GOOD[8:], "version 1"),
     "cut": (GOOD[:500], "ends within its JSON"),
-    "long": (GOOD[:12] + struct.pack("<I", MOST_JSON_BYTES + 1) + GOOD[16:], "larger than 64 MB"),
+    "long": (GOOD[:12] + struct.pack("<I", MOST_JSON_BYTES + 1) + GOOD[16:], "larger than 16 MB"),
+    "many-nodes": (document(b"{}," * 40_000 + b"{}"), "no VRM avatar"),
+    "more-nodes": (document(b"{}," * 500_000 + b"{}"), "more parts than any avatar"),
+    "children": (document(b'{"children":[' + b"1," * 5_000_000 + b"1]}"), "more parts than any"),
+    "deep": (
+        document(b",".join(b'{"children":[%d]}' % k for k in range(1, 20_000)) + b",{}", model(0)),
+        "more than 500 nodes above it",
+    ),
     "garbage": (GOOD[:20] + bytes(range(256)) * 99, "no VRM avatar"),
 }
 

@@ -1,0 +1,47 @@
+"""Files that hold secrets: who may read them, and the command that narrows it to those who must."""
+
+import grp
+import os
+import stat
+from pathlib import Path
+
+# of the users that the units run as, who are alone in them
+SERVICE_GROUPS = ("mocapd", "mocapd-node")
+SERVICE_FOLDER = Path("/etc/mocapd")
+_NODE_CONFIG = "camera-node.toml"
+
+
+def readers_of(path: Path) -> str:
+    """Who may read the file besides its owner and, by its group, a service of ours; empty for nobody, or no file."""
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return ""
+    if state.st_mode & stat.S_IROTH:
+        return "every user of this machine"
+    if state.st_mode & stat.S_IRGRP and _group_name(state.st_gid) not in SERVICE_GROUPS:
+        return "its group"
+    return ""
+
+
+def narrowing(path: Path) -> str:
+    """The command after which its owner alone may read it, or a service's group where a service must."""
+    try:
+        is_ours = path.stat().st_uid == os.geteuid()
+    except (OSError, ValueError):
+        is_ours = True
+    if os.geteuid() == 0 and path.absolute().parent == SERVICE_FOLDER:
+        return _for_group(path, SERVICE_GROUPS[path.name == _NODE_CONFIG])
+    return f"chmod 600 {path}" if is_ours else _for_group(path, _group_name(os.getegid()))
+
+
+def _for_group(path: Path, group: str) -> str:
+    sudo = "" if os.geteuid() == 0 else "sudo "
+    return f"{sudo}chown root:{group} {path} && {sudo}chmod 640 {path}"
+
+
+def _group_name(gid: int) -> str:
+    try:
+        return grp.getgrgid(gid).gr_name
+    except KeyError:
+        return str(gid)
