@@ -1,7 +1,7 @@
 """`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -56,6 +56,8 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
 
         strokes = options.strokes
         pictures = stroked_pictures(strokes, found.rig) if strokes is not None else {}
+        if strokes is not None:
+            found = _with_note_of_unpainted(found, set(found.rig.names) - set(pictures))
         floor_known = options.floor_frame is not None
         save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
     else:
@@ -66,6 +68,18 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
         print(json.dumps(_as_dict(found)))
     else:
         print(_as_text(found, out))
+
+
+def _with_note_of_unpainted(found: "FolderCalibration", names: set[str]) -> "FolderCalibration":
+    """The cameras without a picture of strokes are named."""
+    if not names:
+        return found
+    files = ", ".join(f"{name}.png" for name in sorted(names))
+    note = (
+        f"--strokes lacks {files}: those cameras see the shirt's colours as in neutral light"
+        " until the colours are painted in the setup"
+    )
+    return replace(found, notes=(*found.notes, note))
 
 
 def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:

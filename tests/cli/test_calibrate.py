@@ -138,6 +138,7 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     assert saved.tables.room.floor_known
     assert saved.known.shirt is not None
     assert set(saved.known.shirt.white_balance) == {"cam0"}
+    assert "--strokes lacks cam1.png" in outcome.err
     # the strokes lie on the standard's own colours
     colour = saved.tables.camera[0].colour
     assert colour is not None
