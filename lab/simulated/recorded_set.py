@@ -22,7 +22,7 @@ SCENES = ("living_room", "outdoor", "gym_mono")
 def planned(clips: Path, *, plain: bool = False) -> list[PlannedSession]:
     """The sessions of a folder of clips, in the shirt or in plain clothes. Raises InputError when there is none
     that can be used."""
-    paths = sorted(clips.glob("*.npz")) if clips.is_dir() else []
+    paths = sorted(clips.glob("[!.]*.npz")) if clips.is_dir() else []
     scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
     make = plain_plan if plain else plan
     sessions = make([read_clip(path) for path in paths], scenes)

@@ -79,7 +79,7 @@ def main() -> int:
     parser.add_argument("clips", type=Path)
     parser.add_argument("out", type=Path)
     arguments = parser.parse_args()
-    clips = [read_clip(path) for path in sorted(arguments.clips.glob("*.npz"))]
+    clips = [read_clip(path) for path in sorted(arguments.clips.glob("[!.]*.npz"))]
     arms = [(poses, clip.rate_hz) for clip in clips for poses in arms_of(clip)]
     samples = np.concatenate([poses for poses, _ in arms])
     weight = np.concatenate([np.full(len(p), 1.0 / (len(p) * len(arms))) for p, _ in arms])

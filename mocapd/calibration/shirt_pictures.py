@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from mocapd.boundary.files import is_file, is_folder
+from mocapd.boundary.files import is_file
 from mocapd.errors import InputError
-from mocapd.shirt.colour.strokes import stroked_pictures, strokes_beside
+from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_beside
 from mocapd.shirt.colour.white_balance import balanced
 from mocapd.types import Floats, LabelledPicture
 
@@ -22,7 +22,8 @@ def stroked_image(image: Path) -> Path:
 
 def stroked_folder(folder: Path) -> tuple[Path, ...]:
     """Every image of a folder, its strokes beside it. Raises InputError when there is none."""
-    images = stroked_pictures(folder) if is_folder(folder) else []
+    require_pictures(folder)
+    images = stroked_pictures(folder)
     if not images:
         raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
     return tuple(stroked_image(image) for image in images)

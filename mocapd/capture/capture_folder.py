@@ -8,13 +8,14 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from mocapd.boundary.files import is_absent, is_folder
+from mocapd.boundary.files import is_absent, is_file, is_folder
+from mocapd.boundary.listing import shown_in
 from mocapd.boundary.numbers import brief, finite_number
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
 from mocapd.capture.pace import Pace
 from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
-from mocapd.shirt.colour.strokes import stroked_pictures, strokes_beside
+from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_beside
 from mocapd.types import Frame, FrameSet, Rig
 
 _LOG = logging.getLogger(__name__)
@@ -72,6 +73,8 @@ def load_folder(path: Path) -> CaptureFolder:
     rig_path = path / "rig.json"
     rig = load_rig(rig_path)
     entries = read_json(rig_path)["cameras"]
+    _require_videos(path, entries)
+    require_pictures(path / "scribble")
     cameras = tuple(
         _camera(path, entry, camera.size_px)
         for entry, camera in zip(entries, rig.cameras, strict=True)
@@ -88,6 +91,38 @@ def load_folder(path: Path) -> CaptureFolder:
     )
 
 
+def _require_videos(folder: Path, entries: list[dict[str, Any]]) -> None:
+    """Raises InputError naming every camera whose video is missing, and the videos that are of no camera."""
+    videos = {entry["name"]: _video_name(folder, entry) for entry in entries}
+    missing = [
+        f"{file} of camera {name!r}" for name, file in videos.items() if not is_file(folder / file)
+    ]
+    if not missing:
+        return
+    kinds = {Path(file).suffix.lower() for file in videos.values()}
+    others = [
+        one.name
+        for one in shown_in(folder)
+        if one.suffix.lower() in kinds and one.name not in videos.values()
+    ]
+    of_none = f"; {', '.join(others)[:200]} is of no camera" if others else ""
+    raise InputError(
+        f"no such video file: {', '.join(missing)}{of_none}",
+        str(folder),
+        "put it there, or correct 'file' in rig.json, or take the camera out of rig.json",
+    )
+
+
+def _video_name(folder: Path, entry: dict[str, Any]) -> str:
+    file = entry.get("file", f"{entry['name']}.mp4")
+    if not isinstance(file, str):
+        where = f"{folder / 'rig.json'}, camera {entry['name']!r}"
+        raise ConfigError(
+            f"'file' must be a file name, is {brief(file)}", where, "correct the file"
+        )
+    return file
+
+
 def _number(value: object, key: str, low: float, high: float, where: str) -> float:
     try:
         return finite_number(value, low, high)
@@ -98,11 +133,7 @@ def _number(value: object, key: str, low: float, high: float, where: str) -> flo
 def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> RecordedCamera:
     name: str = entry["name"]
     where = f"{folder / 'rig.json'}, camera {name!r}"
-    file = entry.get("file", f"{name}.mp4")
-    if not isinstance(file, str):
-        raise ConfigError(
-            f"'file' must be a file name, is {brief(file)}", where, "correct the file"
-        )
+    file = _video_name(folder, entry)
     video = folder / file
     info = probe_video(video)
     if info.size_px != size_px:
@@ -155,6 +186,7 @@ def _stroked(image: Path) -> Path | None:
 
 
 def _model(folder: Path) -> tuple[Path, ...]:
+    require_pictures(folder)
     images = (_stroked(image) for image in stroked_pictures(folder))
     return tuple(image for image in images if image is not None)
 

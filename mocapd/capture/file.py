@@ -14,6 +14,7 @@ from mocapd.boundary.pictures import MOST_PIXELS
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.video_codec import conversion, undecodable_codec
 from mocapd.capture.video_container import require_video
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
@@ -55,6 +56,9 @@ def probe_video(path: Path) -> VideoInfo:
                 "convert the video to a smaller size",
             )
         if not capture.grab():
+            codec = undecodable_codec(capture)
+            if codec:
+                raise InputError(f"{codec} cannot be read here", str(path), conversion(path))
             raise InputError(
                 "the video holds no frame that can be decoded", str(path), "record it again"
             )

@@ -9,6 +9,7 @@ from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
+from mocapd.capture.video_codec import undecodable_codec
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, MalformedError, UnavailableError
 from mocapd.types import Frame
@@ -47,11 +48,13 @@ class UrlSource:
         self.torn = 0
         self._seq = 0
         self._is_mjpg = False
+        self._came = False  # a frame since it was opened
         self._openings = Openings()
 
     def open(self) -> None:
         """Raises UnavailableError, or ConfigError for another size than its calibration."""
         number = self._openings.begin()
+        self._came = False
         open_ms, read_ms = self._timeouts_ms
         capture = cv2.VideoCapture(
             self._url,
@@ -100,13 +103,17 @@ class UrlSource:
         if guarded is None:
             raise CameraLost("is closed", self._shown, "it is opened again by itself")
         began_ns = monotonic_ns()
+        codec = ""
         while True:
             with guarded as capture:
                 grabbed = not guarded.closing and capture.grab()
                 t_ns = monotonic_ns()
                 good, raw = capture.retrieve() if grabbed else (False, None)
+                if not good and not guarded.closing and not self._came:
+                    codec = undecodable_codec(capture)
             if not good or raw is None:
                 break
+            self._came = True
             seq, self._seq = self._seq, self._seq + 1
             if not self._is_mjpg:
                 return Frame(self.name, seq, t_ns, frozen_pixels(raw))
@@ -119,6 +126,12 @@ class UrlSource:
                 break
             return Frame(self.name, seq, t_ns, pixels, delivered_jpeg(raw, pixels))
         guarded.close()
+        if codec:
+            raise CameraLost(
+                f"the network camera sends {codec}, which cannot be read here",
+                self._shown,
+                "set it to H.264 or Motion JPEG",
+            )
         raise CameraLost("the network camera stopped sending", self._shown, "check its network")
 
     def close(self) -> None:

@@ -1,20 +1,29 @@
 """The formats that a recording can be exported to: one line each in FORMATS."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from mocapd.exports.bvh.bvh_writer import bvh_text
-from mocapd.exports.c3d.c3d_writer import write_c3d
-from mocapd.exports.csv_table.csv_writer import csv_text
-from mocapd.exports.glb.glb_writer import glb_bytes
-from mocapd.exports.sampled_motion import SampledMotion
-from mocapd.exports.trc.trc_writer import trc_text
+from mocapd.errors import CannotCreateError
+from mocapd.exports.bvh.bvh_writer import bvh_text, frames_in_bvh
+from mocapd.exports.c3d.c3d_writer import MOST_FRAMES as MOST_C3D_FRAMES
+from mocapd.exports.c3d.c3d_writer import frames_in_c3d, write_c3d
+from mocapd.exports.csv_table.csv_writer import csv_text, frames_in_csv
+from mocapd.exports.glb.glb_writer import frames_in_glb, most_glb_frames, write_glb
+from mocapd.exports.sampled_motion import MOST_FRAMES, SampledMotion, too_long
+from mocapd.exports.trc.trc_writer import frames_in_trc, trc_text
 from mocapd.output_file import FileKind, OutputFile, kind_by_magic
 
-Write = Callable[
-    [SampledMotion, Path, str], None
-]  # the motion, where to, the name that the file will have
+
+@dataclass(frozen=True, slots=True)
+class ExportFormat:
+    """One format. write: the motion, where to, the name that the file will have; frames_in: how many frames a file
+    that was written holds; most_frames: how many it can hold, by the number of joints."""
+
+    write: Callable[[SampledMotion, Path, str], None]
+    frames_in: Callable[[Path], int]
+    most_frames: Callable[[int], int]
 
 
 def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
@@ -22,7 +31,7 @@ def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
 
 
 def _glb(motion: SampledMotion, path: Path, _name: str) -> None:
-    path.write_bytes(glb_bytes(motion))
+    write_glb(motion, path)
 
 
 def _csv(motion: SampledMotion, path: Path, _name: str) -> None:
@@ -37,8 +46,18 @@ def _c3d(motion: SampledMotion, path: Path, _name: str) -> None:
     write_c3d(motion, path)
 
 
-FORMATS: Mapping[str, Write] = MappingProxyType(
-    {"bvh": _bvh, "glb": _glb, "csv": _csv, "trc": _trc, "c3d": _c3d}
+def _unlimited(_joints: int) -> int:
+    return MOST_FRAMES
+
+
+FORMATS: Mapping[str, ExportFormat] = MappingProxyType(
+    {
+        "bvh": ExportFormat(_bvh, frames_in_bvh, _unlimited),
+        "glb": ExportFormat(_glb, frames_in_glb, most_glb_frames),
+        "csv": ExportFormat(_csv, frames_in_csv, _unlimited),
+        "trc": ExportFormat(_trc, frames_in_trc, _unlimited),
+        "c3d": ExportFormat(_c3d, frames_in_c3d, lambda _joints: MOST_C3D_FRAMES),
+    }
 )
 
 KINDS: Mapping[str, FileKind] = MappingProxyType(
@@ -60,7 +79,22 @@ def export_file(
 
 
 def write_export(motion: SampledMotion, name: str, out: OutputFile | Path) -> None:
-    """Write the format of this name, whole or not at all. Raises CannotCreateError."""
+    """Write the format of this name, whole or not at all.
+
+    Raises InputError where the format cannot hold the motion, CannotCreateError where the file cannot be written, or
+    holds fewer frames than were to be written.
+    """
     out = export_file(name, out) if isinstance(out, Path) else out
+    chosen, frames = FORMATS[name], len(motion.joints_m)
+    most = chosen.most_frames(len(motion.skeleton.names))
+    if frames > most:
+        raise too_long(frames, most, motion.rate_hz, name.upper(), str(out.path))
     with out.writing() as partial:
-        FORMATS[name](motion, partial, out.path.name)
+        chosen.write(motion, partial, out.path.name)
+        held = chosen.frames_in(partial)
+        if held != frames:
+            raise CannotCreateError(
+                f"{held} of {frames} frames are readable in what was written",
+                str(out.path),
+                "choose another place by --out; if that does not help, another format by --to",
+            )

@@ -1,5 +1,6 @@
 """A person's motion at a constant rate: what every format writes."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -85,7 +86,7 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
     at_s = (times_ns - times_ns[0]) * NS
     count = int(np.floor(at_s[-1] * rate_hz + 1e-6)) + 1
     if count > MOST_FRAMES:
-        raise InputError(f"{count} frames are too many", fix="choose a lower rate by --rate")
+        raise too_long(count, MOST_FRAMES, rate_hz)
     wanted_s = np.arange(count) / rate_hz
     after = np.clip(np.searchsorted(at_s, wanted_s, side="left"), 1, max(1, len(at_s) - 1))
     before = np.minimum(after - 1, len(at_s) - 1)
@@ -116,6 +117,28 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
         is_apart.astype(np.uint8),
         at_worst,
     )
+
+
+def too_long(
+    count: int, most: int, rate_hz: float, name: str = "a file", where: str = ""
+) -> InputError:
+    """The error of `count` frames where `name` holds `most`, with the rate at which they would fit."""
+    fitting_hz = math.floor(100.0 * rate_hz * (most - 1) / count) / 100.0
+    return InputError(
+        f"{count} frames are too many: {name} holds {most}, {duration_text(most / rate_hz)} at {rate_hz:g} Hz",
+        where,
+        f"choose a lower rate by --rate: {fitting_hz:g} Hz or less"
+        if fitting_hz >= RATES_HZ[0]
+        else f"its times span {duration_text(count / rate_hz)}: record it again",
+    )
+
+
+def duration_text(duration_s: float) -> str:
+    """Hours, minutes and seconds, whole ones."""
+    minutes, seconds = divmod(int(duration_s), 60)
+    hours, minutes = divmod(minutes, 60)
+    parts = [f"{hours} h"] * (hours > 0) + [f"{minutes} min"] * (hours + minutes > 0)
+    return " ".join([*parts, f"{seconds} s"])
 
 
 def usual_rate_hz(times_ns: Ints, rates_hz: Sequence[float] = RATES_HZ) -> float:

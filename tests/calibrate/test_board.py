@@ -97,7 +97,12 @@ def test_every_board_that_is_taken_can_be_looked_for(
 def test_why_a_board_is_not_seen_is_told_of_boards_at_the_limits(spec: BoardSpec) -> None:
     """Its neighbours in size, which are tried too, cannot all be printed."""
     told = diagnose_detection(BoardDetector(spec), picture())
-    assert told.reason in (Reason.NOTHING, Reason.OTHER_SIZE, Reason.FEW)
+    assert told.reason in (
+        Reason.NOTHING,
+        Reason.OTHER_SIZE,
+        Reason.OTHER_KIND,
+        Reason.FEW,
+    )
 
 
 def test_the_size_is_columns_by_rows() -> None:
@@ -169,6 +174,7 @@ def test_a_blurred_picture_is_less_sharp() -> None:
         ),
         (replace(SPEC, columns=6, rows=5), picture, Reason.OTHER_SIZE, "rows of 5"),
         (replace(SPEC, columns=3, rows=4), picture, Reason.OTHER_SIZE, "marker 14"),
+        (replace(CHESS, columns=9, rows=4), picture, Reason.OTHER_KIND, "markers of DICT_4X4_1000"),
         (
             replace(CHESS, columns=4, rows=5),
             partial(picture, replace(PRINT, dictionary="", columns=5, rows=6)),

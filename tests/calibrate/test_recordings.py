@@ -12,7 +12,7 @@ import pytest
 
 from mocapd.calibrate.board.recordings import find_recordings, read_picture
 from mocapd.errors import InputError
-from tests.capture.films import picture
+from tests.capture.films import picture, write_film
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"])
@@ -79,3 +79,28 @@ def test_what_is_no_picture_is_an_input_error(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(InputError, match=r"0\.tif"):
             read_picture(path)
+
+
+def test_what_other_systems_leave_in_a_folder_is_passed_over(tmp_path: Path) -> None:
+    write_film(tmp_path / "left.avi", 3)
+    (tmp_path / "right").mkdir()
+    cv2.imwrite(str(tmp_path / "right" / "1.png"), picture(1))
+    for name in ("._left.avi", "._right", ".DS_Store", "Thumbs.db", "desktop.ini"):
+        (tmp_path / name).write_bytes(b"none of ours")
+    for folder in (".Trash-1000", "__MACOSX", "@eaDir", "right/.thumbs"):
+        (tmp_path / folder).mkdir()
+        cv2.imwrite(str(tmp_path / folder / "1.png"), picture(1))
+    (tmp_path / "right" / "._1.png").write_bytes(b"none of ours")
+    assert [(one.name, one.frames) for one in find_recordings(tmp_path)] == [
+        ("left", 3),
+        ("right", 1),
+    ]
+
+
+def test_what_is_there_but_no_recording_is_named(tmp_path: Path) -> None:
+    (tmp_path / "left.heic").touch()
+    (tmp_path / "right").mkdir()
+    with pytest.raises(
+        InputError, match=r"no recording in it that can be read, but left\.heic, right"
+    ):
+        find_recordings(tmp_path)

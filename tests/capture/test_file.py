@@ -119,6 +119,35 @@ def test_what_is_not_a_video_is_an_input_error(tmp_path: Path, content: bytes) -
         probe_video(path)
 
 
+@pytest.mark.parametrize(
+    ("code", "named"),
+    [(b"VVC1", r"H\.266 \(VVC\)"), (b"APV1", "APV"), (b"IV50", "the codec 'IV50'")],
+)
+def test_a_codec_that_cannot_be_decoded_is_named(tmp_path: Path, code: bytes, named: str) -> None:
+    path = tmp_path / "a film.avi"
+    path.write_bytes(write_film(tmp_path / "a.avi", 5).read_bytes().replace(b"MJPG", code))
+    convert = r"convert it to H\.264 .*ffmpeg -i 'a film\.avi' .* 'a film-h264\.mp4'"
+    with pytest.raises(InputError, match=rf"a film\.avi: {named} cannot be read here -- {convert}"):
+        probe_video(path)
+
+
+def test_av1_is_named(shared_dir: Path) -> None:
+    video = shared_dir / "findings/reports-2026-11-26/08-av1/right.mkv"
+    if not video.exists():
+        pytest.skip("no such finding here")
+    with pytest.raises(InputError, match=r"AV1 cannot be read here -- convert it to H\.264"):
+        probe_video(video)
+
+
+@pytest.mark.parametrize("code", [b"H264", b"HEVC", b"VP90"])
+def test_damage_is_not_taken_for_the_codec(tmp_path: Path, code: bytes) -> None:
+    data = write_film(tmp_path / "a.avi", 5).read_bytes().replace(b"MJPG", code)
+    path = tmp_path / "b.avi"
+    path.write_bytes(data.replace(b"\xff\xd8\xff", bytes(3)))
+    with pytest.raises(InputError, match="holds no frame that can be decoded -- record it again"):
+        probe_video(path)
+
+
 def test_a_film_cut_short_delivers_what_is_there_and_says_how_much(tmp_path: Path) -> None:
     whole = write_film(tmp_path / "a.avi", 40).read_bytes()
     cut = tmp_path / "cut.avi"

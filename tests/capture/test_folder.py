@@ -143,6 +143,18 @@ def test_a_missing_file_is_an_input_error_naming_it(tmp_path: Path, gone: str) -
         load_folder(path)
 
 
+def test_every_camera_without_a_video_is_named(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture", (3, 3, 3), (0.0, 0.0, 0.0))
+    (path / "cam1.avi").rename(path / "camera1.avi")
+    (path / "cam2.avi").unlink()
+    (path / "._cam2.avi").touch()
+    said = (
+        r"cam1\.avi of camera 'cam1', cam2\.avi of camera 'cam2'; camera1\.avi is of no camera -- "
+    )
+    with pytest.raises(InputError, match=said):
+        load_folder(path)
+
+
 @pytest.mark.parametrize(
     "subject",
     ["{}", "[]", *(f'{{"stature_m": {value}}}' for value in (172, '"tall"', "true", "1" * 999))],
@@ -160,6 +172,23 @@ def test_an_image_without_its_strokes_is_an_input_error(tmp_path: Path) -> None:
     (path / "model" / "0.png").touch()
     with pytest.raises(InputError, match=r"0_strokes\.png"):
         load_folder(path)
+
+
+@pytest.mark.parametrize("folder", ["model", "scribble"])
+def test_strokes_without_their_image_are_named(tmp_path: Path, folder: str) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / folder).mkdir()
+    (path / folder / "cam0_strokes.png").touch()
+    with pytest.raises(InputError, match=r"cam0_strokes\.png: the picture .* put cam0\.png beside"):
+        load_folder(path)
+
+
+def test_what_other_systems_leave_in_a_folder_is_passed_over(tmp_path: Path) -> None:
+    path = write_capture(tmp_path / "capture")
+    (path / "model").mkdir()
+    for name in ("._0.png", "._0_strokes.png", "Thumbs.db", ".DS_Store", "desktop.ini"):
+        (path / "model" / name).write_bytes(b"none of ours")
+    assert load_folder(path).model == ()
 
 
 def test_a_development_capture_loads_whole(dev_captures: Callable[[str], Path]) -> None:

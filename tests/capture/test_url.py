@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import cv2
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from mocapd.capture.url import UrlSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
-from tests.capture.films import SIZE_PX, number_of, picture
+from tests.capture.films import SIZE_PX, number_of, picture, write_film
 
 FRAMES = 40
 
@@ -20,10 +21,18 @@ def jpeg(index: int) -> bytes:
 
 
 class NetworkCamera(BaseHTTPRequestHandler):
-    """Sends FRAMES numbered pictures at about 50 Hz, then hangs up; from /torn every third is cut short."""
+    """Sends FRAMES numbered pictures at about 50 Hz, then hangs up; from /torn every third is cut short, and
+    from /codec a film of a codec that cannot be read."""
+
+    film: bytes
 
     def do_GET(self) -> None:
         self.send_response(200)
+        if self.path.startswith("/codec"):
+            self.send_header("Content-Length", str(len(self.film)))
+            self.end_headers()
+            self.wfile.write(self.film)
+            return
         self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
         self.end_headers()
         pause = threading.Event()
@@ -95,6 +104,18 @@ def test_the_end_of_the_stream_is_a_lost_camera(camera_url: str) -> None:
         except CameraLost:
             break  # FFmpeg keeps the last pictures to itself
     with pytest.raises(CameraLost):
+        source.read()
+    source.close()
+
+
+def test_a_codec_that_cannot_be_read_is_named(
+    camera_url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    film = write_film(tmp_path / "a.avi", 5).read_bytes().replace(b"MJPG", b"VVC1")
+    monkeypatch.setattr(NetworkCamera, "film", film, raising=False)
+    source = UrlSource("net", camera_url.replace("/video.mjpg", "/codec.avi"))
+    source.open()
+    with pytest.raises(CameraLost, match=r"sends H\.266 \(VVC\), which cannot be read here"):
         source.read()
     source.close()
 

@@ -117,6 +117,19 @@ def test_what_cannot_be_is_refused_at_once(
     assert not out.exists()
 
 
+def test_a_camera_of_the_configuration_without_a_recording_is_named(
+    clean_env: dict[str, str], pictures: Path, tmp_path: Path
+) -> None:
+    config = tmp_path / "mocapd.toml"
+    config.write_text(
+        "".join(f'[[camera]]\nid = "{name}"\nsource = "{name}.mp4"\n' for name in ("cam0", "cam7"))
+    )
+    out = tmp_path / "rig.json"
+    outcome = calibrate(clean_env, pictures, out, "--config", str(config))
+    assert outcome.code == 0, outcome.err
+    assert "no recording of cam7, which the configuration names too" in outcome.err
+
+
 def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     clean_env: dict[str, str], pictures: Path, tmp_path: Path
 ) -> None:
@@ -139,6 +152,7 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     assert saved.tables.room.floor_known
     assert saved.known.shirt is not None
     assert set(saved.known.shirt.white_balance) == {"cam0"}
+    assert "--strokes lacks cam1.png" in outcome.err
     # the strokes lie on the standard's own colours
     colour = saved.tables.camera[0].colour
     assert colour is not None

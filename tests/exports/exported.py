@@ -1,8 +1,10 @@
 """What the tests of every format export: the moving asymmetric person, bones that change a little among it."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 
 from mocapd.app.recordings.exporting import motion_of
 from mocapd.exports.formats import write_export
@@ -26,6 +28,11 @@ def exported(folder: Path, name: str) -> tuple[SampledMotion, Path]:
     path = folder / f"a.{name}"
     write_export(motion, name, path)
     return motion, path
+
+
+def by_ezc3d(path: Path) -> Any:
+    """A C3D file as that library reads it; skips the test on machines that it has no wheel for."""
+    return pytest.importorskip("ezc3d").c3d(str(path))
 
 
 def check_places(found_m: Floats, motion: SampledMotion) -> None:

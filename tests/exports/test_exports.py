@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import bvhio
-import ezc3d
+import c3d
 import numpy as np
 import pygltflib
 import pytest
@@ -15,7 +15,7 @@ from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 from tests.cli.mocapd_process import Outcome, mocapd_here
-from tests.exports.exported import SECONDS, check_places, exported
+from tests.exports.exported import SECONDS, by_ezc3d, check_places, exported
 from tests.outputs.recorded import HZ, frames, record
 
 FRAMES = round(SECONDS * HZ)
@@ -84,13 +84,25 @@ def _accessor(file: Any, number: int) -> Floats:
 
 def test_c3d_by_ezc3d(tmp_path: Path) -> None:
     motion, path = exported(tmp_path, "c3d")
-    file = ezc3d.c3d(str(path))
+    file = by_ezc3d(path)
     point = file["parameters"]["POINT"]
     assert point["UNITS"]["value"] == ["mm"]
     assert point["RATE"]["value"][0] == pytest.approx(HZ)
     assert tuple(point["LABELS"]["value"]) == motion.skeleton.names
     assert (point["X_SCREEN"]["value"], point["Y_SCREEN"]["value"]) == (["+X"], ["+Y"])
     check_places(np.moveaxis(file["data"]["points"][:3], (0, 1, 2), (2, 1, 0)) / 1000.0, motion)
+
+
+@pytest.mark.filterwarnings("ignore:No analog data")
+def test_c3d_by_c3d(tmp_path: Path) -> None:
+    motion, path = exported(tmp_path, "c3d")
+    with path.open("rb") as file:
+        reader = c3d.Reader(file)
+        assert reader.point_rate == pytest.approx(HZ)
+        assert tuple(name.strip() for name in reader.point_labels) == motion.skeleton.names
+        points = np.stack([points for _, points, _ in reader.read_frames()])
+    assert (points[..., 3] == 0.0).all()  # none is invalid
+    check_places(points[..., :3] / 1000.0, motion)
 
 
 def test_csv_by_the_standard_library(tmp_path: Path) -> None:
@@ -134,7 +146,7 @@ def test_gaps_are_empty_where_the_format_can(tmp_path: Path) -> None:
         write_export(motion, name, tmp_path / f"gap.{name}")
     line = (tmp_path / "gap.trc").read_text().split("\n")[6 + 40].split("\t")
     assert set(line[2:]) == {""}
-    points = ezc3d.c3d(str(tmp_path / "gap.c3d"))["data"]["points"]
+    points = by_ezc3d(tmp_path / "gap.c3d")["data"]["points"]
     assert np.isnan(points[:3, :, 40]).all()
     assert np.isfinite(points[:3, :, 39]).all()
     assert (tmp_path / "gap.csv").read_text().split("\n")[1 + 40].split(",")[1] == "1"

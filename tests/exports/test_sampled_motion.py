@@ -13,8 +13,11 @@ from mocapd.exports.formats import write_export
 from mocapd.exports.sampled_motion import usual_rate_hz
 from mocapd.geometry import rotations
 from mocapd.outputs.mcap.recording_reader import RecordingReader
+from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
+from mocapd.outputs.messages import RestSkeleton
+from mocapd.outputs.wire import SkeletonFrame
 from tests.cli.mocapd_process import mocapd
-from tests.outputs.recorded import frame_at, frames, moving_body, record
+from tests.outputs.recorded import frame_at, frames, moving_body, record, rest
 
 
 def test_uneven_frames_become_an_even_motion(tmp_path: Path) -> None:
@@ -68,6 +71,46 @@ def test_nobody_in_it_is_named(tmp_path: Path) -> None:
         motion_of(reader, 0, None)
     with pytest.raises(InputError, match="no rest skeleton of person 3"):
         motion_of(reader, 3, None)
+
+
+def test_frames_of_another_skeleton_are_counted(tmp_path: Path) -> None:
+    def without_hands(one: SkeletonFrame) -> SkeletonFrame:
+        kept = {name: joint for name, joint in one.joints.items() if "Hand" not in name}
+        return msgspec.structs.replace(one, joints=kept)
+
+    mixed = [without_hands(one) if one.seq < 10 else one for one in frames(0.5)]
+    found = motion_of(RecordingReader(record(tmp_path / "a.mcap", mixed)), 0, None)
+    assert (found.tracked, found.lost, found.other_skeleton) == (20, 0, 10)
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        {"parents": (-1, -1, *rest().parents[2:])},
+        {"names": ("left hip", *rest().names[1:])},
+        {"names": ("spine", *rest().names[1:])},
+        {"names": ("h" * 65, *rest().names[1:])},
+    ],
+)
+def test_a_skeleton_that_no_format_holds_is_refused(
+    tmp_path: Path, damaged: dict[str, object]
+) -> None:
+    skeleton: RestSkeleton = msgspec.structs.replace(rest(), **damaged)
+    path, (frame, *_) = tmp_path / "a.mcap", frames(0.1)
+    joints = dict(zip(skeleton.names, frame.joints.values(), strict=True))
+    with RecordingWriter(path, RecordingParams(), frame.capture_unix_ns) as writer:
+        writer.tell(skeleton, frame.capture_unix_ns)
+        writer.frame(msgspec.structs.replace(frame, joints=joints))
+    with pytest.raises(InputError, match="skeleton is none of mocapd"):
+        motion_of(RecordingReader(path), 0, None)
+
+
+def test_a_motion_that_is_too_long_is_refused_with_the_rate_that_fits(tmp_path: Path) -> None:
+    first, *_ = frames(0.1)
+    day = msgspec.structs.replace(first, capture_unix_ns=first.capture_unix_ns + 86_400 * 10**9)
+    reader = RecordingReader(record(tmp_path / "a.mcap", [first, day]))
+    with pytest.raises(InputError, match=r"2 h 46 min 40 s at 1000 Hz -- .*115\.74 Hz or less"):
+        motion_of(reader, 0, 1000.0)
 
 
 @pytest.mark.parametrize("up", [1.0, -1.0])

@@ -5,7 +5,6 @@ from importlib import metadata
 
 # by wheel, the libraries by the stem of their files' names: both x86_64 and aarch64
 CARRIED: dict[str, tuple[str, ...]] = {
-    "ezc3d": ("libezc3d",),
     "libusb-package": ("libusb",),
     "llvmlite": ("libllvmlite",),
     "numpy": ("libgfortran", "libquadmath", "libscipy_openblas64_"),
@@ -39,7 +38,6 @@ WORKS: dict[str, tuple[str, str]] = {
     "libbrotlidec": _BROTLI,
     "libcrypto": _OPENSSL,
     "libdrm": ("libdrm", "MIT"),
-    "libezc3d": ("ezc3d", "MIT"),
     "libfreetype": ("FreeType", "FTL OR GPL-2.0-or-later"),
     "libgfortran": ("GCC's Fortran runtime", "GPL-3.0-or-later WITH GCC-exception-3.1"),
     "libharfbuzz": ("HarfBuzz", "MIT"),

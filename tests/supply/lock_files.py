@@ -19,6 +19,22 @@ PYTHONS = ("3.11", "3.12", "3.13")
 MACHINES = ("x86_64", "aarch64")
 
 
+def applies(marker: Marker | None, python: str, machine: str) -> bool:
+    """Whether a requirement with this marker is one on a Linux machine with this Python."""
+    return marker is None or marker.evaluate(
+        {
+            "implementation_name": "cpython",
+            "platform_python_implementation": "CPython",
+            "os_name": "posix",
+            "sys_platform": "linux",
+            "platform_system": "Linux",
+            "platform_machine": machine,
+            "python_version": python,
+            "python_full_version": f"{python}.0",
+        }
+    )
+
+
 @dataclass(frozen=True)
 class Pin:
     """One entry of a lock."""
@@ -30,18 +46,7 @@ class Pin:
 
     def holds(self, python: str, machine: str) -> bool:
         """Whether a Linux machine with this Python installs it."""
-        return self.marker is None or self.marker.evaluate(
-            {
-                "implementation_name": "cpython",
-                "platform_python_implementation": "CPython",
-                "os_name": "posix",
-                "sys_platform": "linux",
-                "platform_system": "Linux",
-                "platform_machine": machine,
-                "python_version": python,
-                "python_full_version": f"{python}.0",
-            }
-        )
+        return applies(self.marker, python, machine)
 
     @property
     def on_linux(self) -> bool:

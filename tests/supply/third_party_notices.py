@@ -61,6 +61,10 @@ _BESIDES = """
 
 ## Files in mocapd itself
 
+`calib/joint_heatmaps.onnx` was trained by mocapd's own authors on pictures of its simulator, in poses that are made up or
+of the CMU Graphics Lab Motion Capture Database: "The data used in this project was obtained from mocap.cs.cmu.edu. The
+database was created with funding from NSF EIA-0196217."
+
 `mocapd/vision/face/lbpcascade_frontalface.xml` is OpenCV's cascade of frontal faces, unchanged but for a note at its head
 (Copyright OpenCV Foundation and contributors, Apache License 2.0).
 """

@@ -138,6 +138,15 @@ def test_markers_of_another_dictionary_are_told(tmp_path: Path) -> None:
     assert "DICT_4X4" in shown.told()
 
 
+def test_what_was_seen_of_a_wrong_board_stays_told_while_it_is_away(tmp_path: Path) -> None:
+    shown = Shown(tmp_path, replace(SPEC, dictionary="DICT_6X6_250"), cameras=1)
+    shown.show(to(0, close_pictures(0)[4:5]), 3.0)
+    shown.show([{}], 9.0)
+    assert "another dictionary" in shown.told()
+    shown.show([{}], 9.0)
+    assert "no board in the picture" in shown.told()
+
+
 def test_a_mirrored_camera_is_told_while_the_other_sees_the_board(tmp_path: Path) -> None:
     shown = Shown(tmp_path)
     both = held_pictures()[0]

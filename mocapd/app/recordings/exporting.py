@@ -1,6 +1,7 @@
 """From a recording to motion at a constant rate, for `mocapd export`."""
 
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +13,19 @@ from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.types import Skeleton
 
+_MOST_JOINTS = 255
+_NAME = re.compile(r"[!-~]{1,64}")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
-    """tracked, lost: frames of the recording with this person's pose, and without."""
+    """tracked, lost: frames of the recording with this person's pose, and without; other_skeleton: frames left out,
+    as their joints are others than those of the last rest skeleton."""
 
     motion: SampledMotion
     tracked: int
     lost: int
+    other_skeleton: int
 
 
 def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Exported:
@@ -38,16 +44,19 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
     place = str(reader.path)
     if rest is None:
         raise InputError(f"knows no rest skeleton of person {person}", place, "record it again")
+    skeleton = _skeleton(rest, place)
+    others = len(frames)
     frames = [one for one in frames if tuple(one.joints) == rest.names]
+    others -= len(frames)
     if not frames:
         raise InputError(f"person {person} is tracked nowhere in it", place, "record it again")
     samples = _samples(frames)
     try:
         rate_hz = rate_hz if rate_hz is not None else usual_rate_hz(samples.times_ns)
-        motion = resampled(samples, _skeleton(rest), rate_hz)
+        motion = resampled(samples, skeleton, rate_hz)
     except InputError as error:
         raise InputError(error.what, place, error.fix) from None
-    return Exported(motion, len(samples.times_ns), lost)
+    return Exported(motion, len(samples.times_ns), lost, others)
 
 
 def _samples(frames: list[SkeletonFrame]) -> Samples:
@@ -64,7 +73,16 @@ def _samples(frames: list[SkeletonFrame]) -> Samples:
     )
 
 
-def _skeleton(rest: RestSkeleton) -> Skeleton:
+def _skeleton(rest: RestSkeleton, place: str) -> Skeleton:
+    """Raises InputError for names that no format could hold, or joints without one root."""
+    names = rest.names
+    if not (
+        len(names) <= _MOST_JOINTS
+        and len(set(names)) == len(names)
+        and all(_NAME.fullmatch(name) for name in names)
+        and rest.parents.count(-1) == 1
+    ):
+        raise InputError("its rest skeleton is none of mocapd", place, "record it again")
     rest_m = np.array(rest.offsets_m)
     for joint, parent in enumerate(rest.parents):
         if parent >= 0:

@@ -1,7 +1,8 @@
 """`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
 
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,11 +56,14 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     target.check()
     with ProgressBars() as progress:
         found = solve(options.folder, spec, progress, options.floor_frame)
+    found = _with_notes(found, _unrecorded(found.rig.names, [one.id for one in config.camera]))
     if out.suffix == ".toml":
         from mocapd.app.setup.saving_from_folder import save_from_folder, stroked_pictures
 
         strokes = options.strokes
         pictures = stroked_pictures(strokes, found.rig) if strokes is not None else {}
+        if strokes is not None:
+            found = _with_notes(found, _unpainted(set(found.rig.names) - set(pictures)))
         floor_known = options.floor_frame is not None
         save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
     else:
@@ -70,6 +74,31 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
         print(json.dumps(_as_dict(found)))
     else:
         print(_as_text(found, out))
+
+
+def _with_notes(found: "FolderCalibration", notes: tuple[str, ...]) -> "FolderCalibration":
+    return replace(found, notes=(*found.notes, *notes))
+
+
+def _unrecorded(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str, ...]:
+    """Names the cameras of the configuration that have no recording, where others of it have one."""
+    missing = [name for name in configured if name not in recorded]
+    if not missing or len(missing) == len(configured):
+        return ()
+    names = ", ".join(missing)
+    return (
+        f"no recording of {names}, which the configuration names too: put it into the folder, named as the camera",
+    )
+
+
+def _unpainted(names: set[str]) -> tuple[str, ...]:
+    """Names the cameras without a picture of strokes."""
+    files = ", ".join(f"{name}.png" for name in sorted(names))
+    note = (
+        f"--strokes lacks {files}: those cameras see the shirt's colours as in neutral light"
+        " until the colours are painted in the setup"
+    )
+    return (note,) if names else ()
 
 
 def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:

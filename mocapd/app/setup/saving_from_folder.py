@@ -22,7 +22,7 @@ from mocapd.calibration.saved_calibration import (
 from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
-from mocapd.shirt.colour.strokes import read_labelled, strokes_beside
+from mocapd.shirt.colour.strokes import read_labelled, require_pictures, strokes_beside
 from mocapd.types import Camera, Floats, LabelledPicture, Rig
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
@@ -30,6 +30,7 @@ from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
     """NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, and
     naming what is wrong with the strokes of one."""
+    require_pictures(strokes)
     model = colour_model(())
     pictures = {}
     for camera in rig.cameras:

@@ -29,6 +29,7 @@ class Reason(StrEnum):
     FEW = "too little of the board is in sight"
     OTHER_SIZE = "the board has another size than the one given"
     OTHER_DICTIONARY = "the markers are of another dictionary"
+    OTHER_KIND = "the board is of another kind"
     MIRRORED = "the picture is mirrored"
     NOTHING = "no board in the picture"
 
@@ -50,11 +51,12 @@ class BoardView:
 
 @dataclass(frozen=True, slots=True)
 class DetectionFailure:
-    """No usable board in this picture. `detail` adds what was seen instead."""
+    """No usable board in this picture. `detail` adds what was seen instead; `markers`: how many of any dictionary."""
 
     index: int
     reason: Reason
     detail: str = ""
+    markers: int = 0
 
 
 class BoardDetector:

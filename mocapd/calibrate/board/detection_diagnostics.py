@@ -1,7 +1,10 @@
 """Why no board is found in a picture: asked only of pictures without one, since it looks long."""
 
-from collections.abc import Mapping
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
@@ -21,8 +24,10 @@ from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Ints
 
 _DARK = 45  # grey value under which all but the lamps of a dark picture lie
-_SHARP = 25.0  # variance of the Laplacian of a picture of 640 pixels across, whose noise is gone
+_SHARP = 0.12  # of the contrast per pixel, of pictures of 640 pixels across: what steep edges rise in focus
+_CONTRAST = 15.0  # grey values between light and dark, under which nothing tells focus
 _BEGINNING = 50  # markers of another dictionary that are looked for: boards begin with the first
+_SQUARES_PX = 480  # width of a picture in which plain chessboards are looked for, which takes long
 _CERTAIN = 3  # markers that are not there by chance
 
 # what to do about each; of recordings
@@ -32,10 +37,32 @@ FIX: Mapping[Reason, str] = {
     Reason.FEW: "show the whole board, nearer",
     Reason.OTHER_SIZE: "give --board-size as columns x rows of squares",
     Reason.OTHER_DICTIONARY: "give the --dictionary that the board was printed with",
+    Reason.OTHER_KIND: "give the --board that it is, charuco or chessboard",
     Reason.MIRRORED: "switch mirroring off in the camera or the recorder, and record again; if it is the "
     "mirrored back of a board that is printed on both sides, give --two-sided",
     Reason.NOTHING: "show the board to this camera, or take its recording out of the folder",
 }
+
+
+# Reasons that name what is seen instead of the board: one picture with them says more than many without a board.
+TELLING = frozenset(
+    {Reason.OTHER_SIZE, Reason.OTHER_DICTIONARY, Reason.OTHER_KIND, Reason.MIRRORED}
+)
+
+
+def most_telling(failures: Sequence[DetectionFailure]) -> DetectionFailure:
+    """The one of several pictures' failures to report: what was seen outranks that nothing was, then the commonest.
+
+    Of the failures of that reason the one with the most markers in sight, of these the first.
+    """
+    counts = Counter(one.reason for one in failures)
+
+    def rank(one: DetectionFailure) -> tuple[int, int, int]:
+        is_part = one.reason is Reason.FEW and one.markers >= _CERTAIN
+        level = 2 if one.reason in TELLING else int(is_part)
+        return level, counts[one.reason], one.markers
+
+    return max(failures, key=rank)
 
 
 def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -> DetectionFailure:
@@ -44,39 +71,67 @@ def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -
     lit = as_grey(pixels)
     if np.percentile(lit, 98) < _DARK:
         return DetectionFailure(index, Reason.TOO_DARK)
-    spec = detector.spec
-    if spec.kind is BoardKind.CHARUCO:
-        told = _of_markers(detector, grey, index)
+    if detector.spec.kind is BoardKind.CHARUCO:
+        failure = _of_markers(detector, grey, index)
     else:
-        told = _of_squares(spec, grey, index)
-    if told is not None:
-        return told
-    small = cv2.resize(lit, (640, max(1, round(640 * lit.shape[0] / lit.shape[1]))))
-    fine = cv2.Laplacian(cv2.GaussianBlur(small, (0, 0), 1.0), cv2.CV_32F)
-    if float(fine.var()) < _SHARP:
-        return DetectionFailure(index, Reason.BLURRED)
-    return DetectionFailure(index, Reason.NOTHING)
+        failure = _of_squares(detector.spec, grey, index)
+    if failure is not None:
+        return failure
+    return DetectionFailure(index, Reason.BLURRED if _is_blurred(lit) else Reason.NOTHING)
+
+
+def _is_blurred(lit: Bytes) -> bool:
+    """Whether the steepest edges of a picture are flat; a picture without contrast has no edges to tell by."""
+    smooth = cv2.GaussianBlur(reduced(lit, 640), (0, 0), 0.8).astype(np.float32)
+    low, high = np.percentile(smooth, (1, 99))
+    if high - low < _CONTRAST:
+        return False
+    gx = cv2.Scharr(smooth, cv2.CV_32F, 1, 0) / 32.0
+    gy = cv2.Scharr(smooth, cv2.CV_32F, 0, 1) / 32.0
+    return float(np.percentile(np.hypot(gx, gy), 99.9)) < _SHARP * float(high - low)
 
 
 def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFailure | None:
     spec = detector.spec
     ids = detector.markers(grey)
-    on_board = spec.columns * spec.rows // 2
     if spec.two_sided:
         grey, ids = _clearer_side(detector, grey, ids)
     # first, since a mirrored marker may well be another marker of a large dictionary
-    elif detector.find(grey_of(spec, flipped(grey))) is not None:
+    elif _is_mirrored(detector, grey, len(ids)):
         return DetectionFailure(index, Reason.MIRRORED)
     if len(ids) >= _CERTAIN:
-        foreign = ids[ids >= on_board]
-        if len(foreign):
-            detail = f"marker {foreign[-1]} is seen; {spec} has markers 0 to {on_board - 1}"
-            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
-        return _misfit(spec, ids, grey, index)
-    other = _other_dictionary(spec, grey, index)
-    if other is None and len(ids):
-        return DetectionFailure(index, Reason.FEW, f"{len(ids)} of {on_board} markers")
-    return other
+        return _of_known_markers(spec, ids, grey, index)
+    swapped = BoardDetector(replace(spec, inverted=not spec.inverted))
+    swapped_ids = swapped.markers(255 - grey)
+    if len(swapped_ids) >= _CERTAIN:
+        failure = _of_known_markers(swapped.spec, swapped_ids, 255 - grey, index)
+        ink = "light on dark" if swapped.spec.inverted else "dark on light"
+        return replace(failure, detail=f"{failure.detail}, printed {ink}")
+    other = _other_dictionary(spec, grey, index) or _other_kind(spec, grey, index)
+    return _few(spec, ids, index) if other is None and len(ids) else other
+
+
+def _is_mirrored(detector: BoardDetector, grey: Bytes, markers: int) -> bool:
+    """Whether the mirror image shows the board, or twice as many of its dictionary's markers."""
+    mirrored = flipped(grey)
+    if detector.find(grey_of(detector.spec, mirrored)) is not None:
+        return True
+    return len(detector.markers(mirrored)) >= max(_CERTAIN, 2 * markers + 1)
+
+
+def _of_known_markers(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
+    """Markers of the right dictionary are in sight: those of a larger board, of another one, or too few."""
+    on_board = spec.columns * spec.rows // 2
+    foreign = ids[ids >= on_board]
+    if len(foreign) > 1:  # a single one may be chance
+        detail = f"marker {foreign[-1]} is seen; {spec} has markers 0 to {on_board - 1}"
+        return DetectionFailure(index, Reason.OTHER_SIZE, detail, len(ids))
+    return _misfit(spec, ids, grey, index)
+
+
+def _few(spec: BoardSpec, ids: Ints, index: int) -> DetectionFailure:
+    detail = f"{len(ids)} of {spec.columns * spec.rows // 2} markers"
+    return DetectionFailure(index, Reason.FEW, detail, len(ids))
 
 
 def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Bytes, Ints]:
@@ -100,17 +155,17 @@ def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFai
     for columns, rows in sizes:
         if _shows(_resized(spec, columns, rows), grey):
             detail = f"it fits rows of {columns} squares, {spec.columns}x{spec.rows} was given"
-            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
-    return DetectionFailure(
-        index, Reason.FEW, f"{len(ids)} of {spec.columns * spec.rows // 2} markers"
-    )
+            return DetectionFailure(index, Reason.OTHER_SIZE, detail, len(ids))
+    return _few(spec, ids, index)
 
 
-def _resized(spec: BoardSpec, columns: int, rows: int) -> BoardSpec | None:
+def _resized(
+    spec: BoardSpec, columns: int, rows: int, kind: BoardKind | None = None
+) -> BoardSpec | None:
     """The board with so many squares; None when there is none, as with more than its dictionary has
     markers for."""
     try:
-        return replace(spec, columns=columns, rows=rows)
+        return replace(spec, columns=columns, rows=rows, kind=kind or spec.kind)
     except ConfigError:
         return None
 
@@ -127,29 +182,80 @@ def grey_of(spec: BoardSpec, as_printed: Bytes) -> Bytes:
 
 
 def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
-    """The family of dictionaries with the most markers in sight."""
-    best, name = 0, ""
-    for one in dictionaries():
-        # DICT_5X5_50 and so on are the beginnings of DICT_5X5_1000
-        family = one.rpartition("_")[0]
-        if one.endswith(("_50", "_100", "_250")) or spec.dictionary.startswith(family + "_"):
-            continue
-        beginning = first_markers(one, _BEGINNING)
-        ids: Any = cv2.aruco.ArucoDetector(beginning).detectMarkers(grey)[1]
-        if ids is not None and len(ids) > best:
-            best, name = len(ids), one
-    if best < _CERTAIN:
+    """The family of dictionaries with the most markers in sight, dark on light or light on dark."""
+    found = _most_markers(grey, _family(spec.dictionary))
+    if found is None:
         return None
-    return DetectionFailure(index, Reason.OTHER_DICTIONARY, f"{best} markers of {name}")
+    count, name = found
+    return DetectionFailure(index, Reason.OTHER_DICTIONARY, f"{count} markers of {name}", count)
+
+
+def _most_markers(grey: Bytes, left_out: str = "") -> tuple[int, str] | None:
+    """How many markers of the family of dictionaries that has the most, and its name; None for too few."""
+    names = [name for name in _families() if _family(name) != left_out]
+    known: Any = [first_markers(name, _BEGINNING) for name in names]
+    detector = cv2.aruco.ArucoDetector(known)
+    for picture in (grey, 255 - grey):
+        which: Any = detector.detectMarkersMultiDict(picture)[3]
+        if which is not None and len(which) >= _CERTAIN:
+            counts = np.bincount(np.ravel(which), minlength=len(names))
+            best = int(counts.argmax())
+            if counts[best] >= _CERTAIN:
+                return int(counts[best]), names[best]
+    return None
+
+
+@cache
+def _families() -> tuple[str, ...]:
+    """The largest dictionary of each family: the others of it are its beginnings, or other spellings."""
+    return tuple({_family(name): name for name in dictionaries()}.values())
+
+
+def _family(name: str) -> str:
+    return re.sub(r"_(50|100|250|1000)$", "", name.lower())
+
+
+def _other_kind(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
+    """A chessboard in place of the ChArUco board of so many squares."""
+    plain, small = replace(spec, two_sided=False), reduced(grey, _SQUARES_PX)
+    for columns, rows in ((spec.columns, spec.rows), (spec.rows, spec.columns)):
+        if _shows_squares(_resized(plain, columns, rows, BoardKind.CHESSBOARD), small):
+            detail = f"a plain chessboard of {columns}x{rows} squares, without markers"
+            return DetectionFailure(index, Reason.OTHER_KIND, detail)
+    return None
 
 
 def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
-    """A plain board of another size: turned, or its inner corners counted in place of squares."""
+    """A board with markers, or a plain one of another size: turned, or its inner corners counted."""
+    markers = _most_markers(grey)
+    if markers is not None:
+        count, name = markers
+        detail = f"a ChArUco board with {count} markers of {name}"
+        return DetectionFailure(index, Reason.OTHER_KIND, detail, count)
     c, r = spec.columns, spec.rows
     others = [(r, c), (c + 1, r + 1), (c - 1, r - 1), (r + 1, c + 1), (r - 1, c - 1)]
     others += [(c + 1, r), (c, r + 1), (c - 1, r), (c, r - 1)]
+    small = reduced(grey, _SQUARES_PX)
     for columns, rows in dict.fromkeys(others):
-        if {columns, rows} != {c, r} and _shows(_resized(spec, columns, rows), grey):
+        if {columns, rows} != {c, r} and _shows_squares(_resized(spec, columns, rows), small):
             detail = f"{columns}x{rows} squares are seen, {c}x{r} were given (squares, not corners)"
             return DetectionFailure(index, Reason.OTHER_SIZE, detail)
     return None
+
+
+def _shows_squares(spec: BoardSpec | None, as_printed: Bytes) -> bool:
+    """As `_shows`, of a chessboard; a look that takes a hundredth of the time comes first."""
+    return (
+        spec is not None
+        and bool(cv2.checkChessboard(as_printed, spec.grid))
+        and _shows(spec, as_printed)
+    )
+
+
+def reduced(picture: Bytes, width_px: int) -> Bytes:
+    """A picture of this width at most."""
+    height, width = picture.shape[:2]
+    if width <= width_px:
+        return picture
+    size = (width_px, max(1, round(height * width_px / width)))
+    return np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)

@@ -11,12 +11,16 @@ import cv2
 import numpy as np
 
 from mocapd.boundary.files import read_file
+from mocapd.boundary.listing import shown_in
 from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
 from mocapd.capture.file import FileSource, probe_video
 from mocapd.errors import EndOfStream, InputError, MalformedError
 from mocapd.types import Bytes
 
-_VIDEOS = {".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mjpeg", ".mjpg"}
+_VIDEOS = {
+    *(".mp4", ".mkv", ".avi", ".mov", ".webm", ".m4v", ".mjpeg", ".mjpg", ".wmv", ".mpg", ".mpeg"),
+    *(".ts", ".mts", ".m2ts", ".3gp", ".flv", ".ogv"),
+}
 _PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 # How those begin whose headers are OpenCV's to measure, against the limit that `environment` sets.
 _OTHERS = (b"BM", b"II*\0", b"MM\0*", b"RIFF")
@@ -89,7 +93,7 @@ def _decode_other(data: bytes) -> Bytes:
 
 def numbered(folder: Path) -> list[tuple[int, Path]]:
     """The pictures of a folder by index: the last number in their names, else their order."""
-    paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in _PICTURES)
+    paths = [path for path in shown_in(folder) if path.suffix.lower() in _PICTURES]
     numbers = [re.findall(r"\d+", path.stem) for path in paths]
     if all(numbers):
         indices = [int(number[-1]) for number in numbers]
@@ -103,19 +107,24 @@ def find_recordings(folder: Path) -> tuple[Recording, ...]:
     if not folder.is_dir():
         raise InputError("no such folder", str(folder), "check the path")
     found = []
-    for path in sorted(folder.iterdir()):
-        if path.is_dir() and numbered(path):
-            pictures = numbered(path)
+    passed_over = []
+    for path in shown_in(folder):
+        if pictures := numbered(path):
             shape = read_picture(pictures[0][1]).shape
             found.append(Recording(path.name, path, len(pictures), (shape[1], shape[0])))
         elif path.suffix.lower() in _VIDEOS:
             info = probe_video(path)
             found.append(Recording(path.stem, path, info.frames, info.size_px))
+        else:
+            passed_over.append(path.name)
     names = [one.name for one in found]
     if not found or len(set(names)) < len(names):
         twice = sorted({name for name in names if names.count(name) > 1})
+        others = f" that can be read, but {', '.join(passed_over)[:200]}" if passed_over else ""
         raise InputError(
-            f"two recordings of one camera: {', '.join(twice)}" if twice else "no recording in it",
+            f"two recordings of one camera: {', '.join(twice)}"
+            if twice
+            else f"no recording in it{others}",
             str(folder),
             "put one video, or one folder of pictures, per camera there, named as the camera",
         )

@@ -1,35 +1,30 @@
 """From a folder of recordings of a board to a rig: intrinsics, extrinsics, and what was refused on the way."""
 
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
-from mocapd.calibrate.board.board_detection import (
-    BoardDetector,
-    BoardView,
-    DetectionFailure,
-    settle_variant,
-)
-from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
-from mocapd.calibrate.board.recordings import Recording, find_recordings
+from mocapd.calibrate.board.recordings import find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
     place_in_world,
     solve_extrinsics,
 )
+from mocapd.calibrate.extrinsics.board_sighting import (
+    BoardSighting,
+    Progress,
+    refuse_unseen,
+    sight_board,
+)
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
-from mocapd.types import Bytes, Floats, Rig
+from mocapd.types import Floats, Rig
 
-Progress = Callable[[str, int, int], None]
-_PROBES = 6  # pictures per camera that the board's variant is settled with
-_ASKED = 2  # pictures per camera that are asked why there is no board
 # One camera alone may leave its focal length open where all together then settle it.
 _ALONE = IntrinsicsLimits(focal_deviation=0.25)
 
@@ -41,16 +36,6 @@ class FolderParams:
     most_pictures: int = 200  # per camera, evenly over the recording
     choice: Choice = field(default_factory=Choice)
     extrinsics: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BoardSighting:
-    """What was found in one camera's recording: views by index, and reasons of pictures without."""
-
-    recording: Recording
-    views: Mapping[int, BoardView]
-    pictures: int
-    not_seen: tuple[DetectionFailure, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,12 +93,12 @@ def calibrate_folder(
     sightings = []
     stride = max(1, -(-max(one.frames for one in recordings) // params.most_pictures))
     for recording in recordings:
-        sighting, found = _sighting(recording, spec, stride, progress)
-        if found != spec:
-            notes.append(f"{recording.name}: the board is {_difference(found)}, unlike given")
-            spec = found
+        sighting = sight_board(recording, spec, stride, progress)
+        if sighting.spec != spec:
+            notes.append(sighting.variant_note)
+            spec = sighting.spec
         sightings.append(sighting)
-    _refuse_blind(sightings)
+    refuse_unseen(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}
     for done, one in enumerate(sightings):
@@ -121,54 +106,6 @@ def calibrate_folder(
         intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
     progress("lenses", len(sightings), len(sightings))
     return _solve_rig(sightings, intrinsics_of, spec, floor_frame, params, notes, progress)
-
-
-def _sighting(
-    recording: Recording, spec: BoardSpec, stride: int, progress: Progress
-) -> tuple[BoardSighting, BoardSpec]:
-    step = max(1, recording.frames // (stride * _PROBES)) * stride
-    probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
-    spec = settle_variant(spec, probes)
-    detector = BoardDetector(spec)
-    views: dict[int, BoardView] = {}
-    blank: list[tuple[int, Bytes]] = []
-    count = 0
-    total = max(1, -(-recording.frames // stride))
-    for index, pixels in recording.pictures(stride):
-        view = detector.find(pixels, index)
-        if view is not None:
-            views[index] = view
-        elif len(blank) < _ASKED:
-            blank.append((index, pixels))
-        count += 1
-        progress(f"board in {recording.name}", min(count, total), total)
-    reasons: tuple[DetectionFailure, ...] = ()
-    if len(views) < _ALONE.fewest_views:
-        reasons = tuple(diagnose_detection(detector, pixels, index) for index, pixels in blank)
-    return BoardSighting(recording, views, count, reasons), spec
-
-
-def _difference(found: BoardSpec) -> str:
-    ink = "inverted" if found.inverted else "dark on light"
-    return f"{ink}, of the {'legacy' if found.legacy else 'present'} layout"
-
-
-def _refuse_blind(sightings: Sequence[BoardSighting]) -> None:
-    """Raises ConfigError for the first camera that hardly sees the board, with the commonest reason."""
-    for one in sightings:
-        if len(one.views) >= _ALONE.fewest_views:
-            continue
-        others = [other.recording.name for other in sightings if len(other.views) > len(one.views)]
-        where = str(one.recording.path)
-        what = f"the board is usable in {len(one.views)} of {one.pictures} pictures"
-        if others:
-            what += f" (it is seen by {', '.join(others)})"
-        if not one.not_seen:
-            raise ConfigError(what, where, "show the board in more pictures")
-        reason = Counter(told.reason for told in one.not_seen).most_common(1)[0][0]
-        detail = next((told.detail for told in one.not_seen if told.reason is reason), "")
-        what += f": {reason}" + (f", {detail}" if detail else "")
-        raise ConfigError(what, where, FIX[reason])
 
 
 def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:

@@ -55,6 +55,12 @@ def export(
     motion = found.motion
     gaps = f", {int(motion.gap.sum())} of them in gaps" if motion.gap.any() else ""
     lost = f"; {found.lost} frames were without a person" if found.lost else ""
+    others = (
+        f"; {found.other_skeleton} frames of another skeleton were left out"
+        if found.other_skeleton
+        else ""
+    )
     typer.echo(
-        f"{path}: {len(motion.joints_m)} frames at {motion.rate_hz:g} Hz{gaps}{lost}", err=True
+        f"{path}: {len(motion.joints_m)} frames at {motion.rate_hz:g} Hz{gaps}{lost}{others}",
+        err=True,
     )

@@ -7,6 +7,7 @@ channels each, which importers of BVH take; those that want rotations alone use 
 """
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from mocapd.types import Floats
 
 CM = 100.0
 END_CM = 8.0  # the tip of a bone without children, which the format wants
+_FRAMES = "Frames:"
 _CHANNELS = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 
 
@@ -32,12 +34,20 @@ def bvh_text(motion: SampledMotion) -> str:
             "HIERARCHY",
             *lines,
             "MOTION",
-            f"Frames: {len(rows)}",
+            f"{_FRAMES} {len(rows)}",
             f"Frame Time: {1.0 / motion.rate_hz:.9f}",
             *(" ".join(f"{number:.5f}" for number in row) for row in rows.tolist()),
             "",
         ]
     )
+
+
+def frames_in_bvh(path: Path) -> int:
+    """How many frames a file of ours holds: as it says, or fewer where lines are missing."""
+    with path.open(encoding="utf-8") as file:
+        said = next(line for line in file if line.startswith(_FRAMES))
+        next(file)  # the time between them
+        return min(int(said.removeprefix(_FRAMES)), sum(1 for _ in file))
 
 
 def zxy_degrees(R: Floats) -> Floats:

@@ -8,6 +8,7 @@ after its name and an underscore, PARTS: its joint in the world [m], its rotatio
 import csv
 import io
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -40,3 +41,9 @@ def csv_text(motion: SampledMotion) -> str:
 
 def _cell(number: float) -> str:
     return f"{number:.6f}" if math.isfinite(number) else ""
+
+
+def frames_in_csv(path: Path) -> int:
+    """How many frames a file of ours holds."""
+    with path.open(encoding="utf-8") as file:
+        return sum(1 for _ in file) - 1

@@ -8,6 +8,7 @@ written here: pygltflib would bring four packages of older make along for them.
 import json
 import struct
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,9 @@ from mocapd.types import Floats
 _MAGIC, _VERSION = b"glTF", 2
 _JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
 _FLOAT32 = 5126
+_MOST_BYTES = 2**32 - 1  # of the whole file, whose header counts them in 32 bits
+_DOCUMENT_BYTES = 4096  # at most: what is not of a frame, of the file as a whole and of each joint
+_DISTINCT_TIMES = 2**23  # times must rise, which 32-bit floats of equal steps do up to here
 _TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
@@ -46,6 +50,29 @@ class _Buffer:
             accessor |= {"min": [float(rows.min())], "max": [float(rows.max())]}
         self.accessors.append(accessor)
         return len(self.accessors) - 1
+
+
+def most_glb_frames(joints: int) -> int:
+    """How many frames a file can hold."""
+    of_frame = 4 * (1 + joints * (4 + 3))
+    return min(_DISTINCT_TIMES, (_MOST_BYTES - _DOCUMENT_BYTES * (1 + joints)) // of_frame)
+
+
+def write_glb(motion: SampledMotion, path: Path) -> None:
+    """Write the file. Raises OSError."""
+    path.write_bytes(glb_bytes(motion))
+
+
+def frames_in_glb(path: Path) -> int:
+    """How many frames a file of ours holds; 0 where it is cut short."""
+    with path.open("rb") as file:
+        _, _, length, size, _ = struct.unpack("<4sIIII", file.read(20))
+        document = json.loads(file.read(size))
+        if file.seek(0, 2) < length:
+            return 0
+    times: int = document["animations"][0]["samplers"][0]["input"]
+    count: int = document["accessors"][times]["count"]
+    return count
 
 
 def glb_bytes(motion: SampledMotion) -> bytes:

@@ -4,20 +4,23 @@ Millimetres; axes as ours, +Y up, which OpenSim's are too. A joint of a gap is l
 a marker that was not seen.
 """
 
+from pathlib import Path
+
 from mocapd.exports.sampled_motion import SampledMotion
 
 MM = 1000.0
+_HEADER_LINES = 6
 
 
 def trc_text(motion: SampledMotion, name: str) -> str:
     """The whole file; `name`: of the file, which it repeats."""
     names = motion.skeleton.names
-    count, rate_hz = len(motion.joints_m), motion.rate_hz
+    count, rate = len(motion.joints_m), f"{motion.rate_hz:.10g}"
     empty = "\t" * (3 * len(names) - 1)
     lines = [
         f"PathFileType\t4\t(X/Y/Z)\t{name}",
         "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
-        f"{rate_hz:g}\t{rate_hz:g}\t{count}\t{len(names)}\tmm\t{rate_hz:g}\t1\t{count}",
+        f"{rate}\t{rate}\t{count}\t{len(names)}\tmm\t{rate}\t1\t{count}",
         "Frame#\tTime\t" + "\t\t\t".join(names) + "\t\t",
         "\t\t" + "\t".join(f"X{i}\tY{i}\tZ{i}" for i in range(1, len(names) + 1)),
         "",
@@ -29,3 +32,10 @@ def trc_text(motion: SampledMotion, name: str) -> str:
         places = empty if gap else "\t".join(f"{number_mm:.4f}" for number_mm in row)
         lines.append(f"{number}\t{time_s:.6f}\t{places}")
     return "\n".join([*lines, ""])
+
+
+def frames_in_trc(path: Path) -> int:
+    """How many frames a file of ours holds: as its header says, or fewer where lines are missing."""
+    with path.open(encoding="utf-8") as file:
+        header = [next(file) for _ in range(_HEADER_LINES)]
+        return min(int(header[2].split("\t")[2]), sum(1 for _ in file))

@@ -5,12 +5,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from mocapd.boundary.files import read_file
+from mocapd.boundary.files import is_file, read_file
+from mocapd.boundary.listing import shown_in
 from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, MOST_FILE_BYTES, decode_picture
 from mocapd.errors import InputError, MalformedError
 from mocapd.types import Bytes, Floats, LabelledPicture
 
 COLOURS = 10
+_STROKES = "_strokes"  # at the end of a file's name
 _SCRIBBLE_AGAIN = "scribble again: 0 where nothing is drawn, 1..10 the colour id"
 
 # A stroke is drawn on one patch, so most of its pixels show that patch. The centre is estimated
@@ -26,13 +28,31 @@ _PIXEL_NOISE_VARIANCE = 0.015**2
 def stroked_pictures(folder: Path) -> list[Path]:
     """The pictures of a folder in which strokes lie beside them, by name: every PNG but NAME_strokes.png,
     and NAME_labels.png, which is ground truth and none of a tracker's business."""
-    beside = ("_strokes", "_labels")
-    return sorted(path for path in folder.glob("*.png") if not path.stem.endswith(beside))
+    beside = (_STROKES, "_labels")
+    return [path for path in shown_in(folder) if _is_png(path) and not path.stem.endswith(beside)]
+
+
+def require_pictures(folder: Path) -> None:
+    """Raises InputError for strokes in a folder without the picture on which they were drawn."""
+    for strokes in shown_in(folder):
+        if not _is_png(strokes) or not strokes.stem.endswith(_STROKES):
+            continue
+        picture = strokes.with_name(f"{strokes.stem.removesuffix(_STROKES)}.png")
+        if not is_file(picture):
+            raise InputError(
+                "the picture of these strokes is missing",
+                str(strokes),
+                f"put {picture.name} beside them, or take them out",
+            )
+
+
+def _is_png(path: Path) -> bool:
+    return path.suffix == ".png"
 
 
 def strokes_beside(picture: Path) -> Path:
     """Where the strokes on a picture lie."""
-    return picture.with_name(f"{picture.stem}_strokes.png")
+    return picture.with_name(f"{picture.stem}{_STROKES}.png")
 
 
 def read_image(path: Path) -> Bytes:

@@ -12,7 +12,12 @@ from mocapd.calibrate.board.board_detection import (
     settle_variant,
 )
 from mocapd.calibrate.board.board_look import Look
-from mocapd.calibrate.board.detection_diagnostics import FIX, diagnose_detection
+from mocapd.calibrate.board.detection_diagnostics import (
+    FIX,
+    TELLING,
+    diagnose_detection,
+    most_telling,
+)
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import Problem
 from mocapd.types import Frame
@@ -22,11 +27,13 @@ from mocapd.wizard.step import Tell
 _BLIND_NS = 2_000_000_000  # without the board, before it is asked
 _PAUSE_NS = 1_500_000_000  # between two askings
 _FORGET_NS = 6_000_000_000  # an answer this old is not shown any more
+_REMEMBER_NS = 15_000_000_000  # one that names what is seen instead of the board
 _FORM = "set the board above as it was printed"
 _LIVE_FIX = {
     **FIX,
     Reason.OTHER_SIZE: f"{_FORM}: its numbers of columns and rows count squares",
     Reason.OTHER_DICTIONARY: f"{_FORM}: another dictionary of markers",
+    Reason.OTHER_KIND: f"{_FORM}: the kind of board",
     Reason.MIRRORED: "switch mirroring off in the camera, then go on; if it is the mirrored back of a board "
     "printed on both sides, say so in its form above",
     Reason.NOTHING: "show the board to this camera",
@@ -89,9 +96,18 @@ class BoardAdvice:
             if found != spec:
                 self._changed(found)
             elif told is not None:
-                self._told[name] = _Diagnosis(told, now_ns)
+                self._keep(name, _Diagnosis(told, now_ns))
 
         self._context.start_job(answer, done)
+
+    def _keep(self, name: str, diagnosis: _Diagnosis) -> None:
+        """In place of the answer before, unless that one said more and is not old yet."""
+        before = self._told.get(name)
+        if before is not None and diagnosis.t_ns - before.t_ns <= _longest_ns(before):
+            answers = (diagnosis.answer, before.answer)
+            if most_telling(answers) is before.answer and before.answer.reason in TELLING:
+                return
+        self._told[name] = diagnosis
 
     def problems(self, now_ns: int, wanted: Mapping[str, bool]) -> tuple[Problem, ...]:
         """Of cameras that are `wanted` to see the board and do not.
@@ -102,10 +118,15 @@ class BoardAdvice:
         problems = []
         for name, told in self._told.items():
             reason = told.answer.reason
-            if not wanted.get(name, False) or now_ns - told.t_ns > _FORGET_NS:
+            if not wanted.get(name, False) or now_ns - told.t_ns > _longest_ns(told):
                 continue
             if reason is Reason.NOTHING and anyone:
                 continue
             what = f"{reason}" + (f": {told.answer.detail}" if told.answer.detail else "")
             problems.append(Problem(what, name, _LIVE_FIX[reason]))
         return tuple(problems)
+
+
+def _longest_ns(diagnosis: _Diagnosis) -> int:
+    """How long an answer is shown where none follows."""
+    return _REMEMBER_NS if diagnosis.answer.reason in TELLING else _FORGET_NS

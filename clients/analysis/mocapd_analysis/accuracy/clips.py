@@ -55,7 +55,7 @@ class Course:
 
 def read_clips(folder: Path) -> list[Clip]:
     """Every clip of a folder, by name. Raises InputError."""
-    paths = sorted(folder.glob("*.npz")) if folder.is_dir() else []
+    paths = sorted(folder.glob("[!.]*.npz")) if folder.is_dir() else []
     if not paths:
         raise InputError("has no clips (*.npz)", str(folder), "give a folder of clips of motion")
     return [_read_clip(path) for path in paths]
