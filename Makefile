@@ -4,12 +4,14 @@ clients test-clients: VENV := .venv-clients
 BIN = $(VENV)/bin
 READY = $(VENV)/ready
 # The first Python that runs and that the locks are for, else one later; say PYTHON=... to choose another.
-PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
+PYTHON ?= $(shell for below in 15 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	"$$p" -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, $$below))" 2>/dev/null \
 	&& echo "$$p" && exit; done; done)
 # What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
-LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 14) and sys.platform == "linux" \
+LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 15) and sys.platform == "linux" \
 	and platform.machine() in ("x86_64", "aarch64")))
+# ezc3d, of the extra `export`, has no wheel for Linux on ARM.
+EXPORT := $(if $(filter x86_64,$(shell uname -m)),--requirement locks/export.txt)
 PIP_INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 BY_HASH := --require-hashes --only-binary :all:
 
@@ -26,15 +28,15 @@ help: ## say what can be made
 # its hashes, hatchling for the checkout itself included: nothing else is downloaded.
 env clients: STAMP = $(READY)
 env clients: STAMPS = $(READY)
-env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt
+env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt $(EXPORT)
 env: PROJECT := .
 env: QUICKLY := false
 env: ## make or renew the environment in .venv
 dev: STAMP = $(READY)-dev
 dev: STAMPS = $(READY) $(READY)-dev
-dev: LOCKS := --requirement locks/dev.txt
+dev: LOCKS := --requirement locks/dev.txt $(EXPORT)
 dev: PROJECT := .[dev]
-clients: LOCKS := --requirement locks/clients.txt
+clients: LOCKS := --requirement locks/clients.txt $(EXPORT)
 clients: PROJECT := .[dev,clients]
 # uv, itself from the lock, takes a fifth of pip's time; where it gets nowhere (an index of one's own), pip goes on.
 dev clients: QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
@@ -58,7 +60,7 @@ env dev clients:
 		{ $(QUICKLY) $(LOCKS) 2>/dev/null || $(PIP_INSTALL) $(BY_HASH) $(LOCKS); } && \
 		$(PIP_INSTALL) --no-deps --no-build-isolation --editable .; \
 	else \
-		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.13 on Linux," \
+		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.14 on Linux," \
 			"x86_64 or aarch64): pip chooses the versions" >&2; \
 		$(PIP_INSTALL) --editable '$(PROJECT)'; \
 	fi && \
@@ -118,6 +120,7 @@ vm-test: deb ## as root: install the package on a real kernel with two USB webca
 
 lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
 	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)
+	$(BIN)/python -m tests.supply.wheels
 	@$(MAKE) --no-print-directory dev
 	$(BIN)/python -m tests.supply.third_party_notices
 

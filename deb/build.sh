@@ -45,7 +45,10 @@ libraries=$(echo "$env"/lib/python3*/site-packages)
 if [ -n "$site" ]; then
     echo "$site" >"$libraries/dependencies.pth"
 else
-    "${install[@]}" --require-hashes --only-binary :all: --requirement "$root/locks/run.txt"
+    locks=(--requirement "$root/locks/run.txt")
+    # C3D files: their library has no wheel for other machines
+    [ "$architecture" != amd64 ] || locks+=(--requirement "$root/locks/export.txt")
+    "${install[@]}" --require-hashes --only-binary :all: "${locks[@]}"
 fi
 "${install[@]}" --no-deps --no-index "$wheel"
 # of the commands only ours; pip's note of where the wheel lay is of no use elsewhere, nor are its digests of both

@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from mocapd.errors import CannotCreateError
 from mocapd.exports.bvh.bvh_writer import bvh_text
+from mocapd.exports.c3d.c3d_library import c3d_library
 from mocapd.exports.c3d.c3d_writer import write_c3d
 from mocapd.exports.csv_table.csv_writer import csv_text
 from mocapd.exports.glb.glb_writer import glb_bytes
@@ -41,6 +42,12 @@ def _c3d(motion: SampledMotion, path: Path, _name: str) -> None:
 FORMATS: Mapping[str, Write] = MappingProxyType(
     {"bvh": _bvh, "glb": _glb, "csv": _csv, "trc": _trc, "c3d": _c3d}
 )
+
+
+def check_library(name: str) -> None:
+    """Raise UnavailableError where the format of this name needs a library that is not installed."""
+    if name == "c3d":
+        c3d_library()
 
 
 def write_export(motion: SampledMotion, name: str, path: Path) -> None:

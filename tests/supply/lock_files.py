@@ -10,13 +10,14 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = ROOT / "pyproject.toml"
-RUN, BUILD, DEV, CLIENTS = (
-    ROOT / "locks" / f"{name}.txt" for name in ("run", "build", "dev", "clients")
+RUN, EXPORT, BUILD, DEV, CLIENTS = (
+    ROOT / "locks" / f"{name}.txt" for name in ("run", "export", "build", "dev", "clients")
 )
 
 # what the lock is for; Makefile asks the same of the environment's Python
-PYTHONS = ("3.11", "3.12", "3.13")
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 MACHINES = ("x86_64", "aarch64")
+EXPORT_MACHINES = ("x86_64",)  # ezc3d has no wheel for Linux on ARM
 
 
 @dataclass(frozen=True)
@@ -69,3 +70,9 @@ def pins(lock: Path) -> dict[str, Pin]:
         hashes = frozenset(re.findall(r"--hash=(\S+)", line))
         found[name] = Pin(name, exact[1], requirement.marker, hashes)
     return found
+
+
+def runtime_pins() -> list[Pin]:
+    """What Linux installs for a user, the extra `export` included, by name."""
+    installed = {name: pin for name, pin in (pins(EXPORT) | pins(RUN)).items() if pin.on_linux}
+    return [installed[name] for name in sorted(installed)]

@@ -5,6 +5,7 @@ ask for is the newest, as a bound of theirs is theirs to test.
 """
 
 import os
+import platform
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,7 @@ from pathlib import Path
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from tests.supply.lock_files import DEV, PROJECT, PYTHONS, ROOT, pins
+from tests.supply.lock_files import DEV, EXPORT_MACHINES, PROJECT, PYTHONS, ROOT, pins
 
 UV = (sys.executable, "-m", "uv", "--no-config")
 TOOLS = (
@@ -50,11 +51,12 @@ def main() -> int:
     """The exit code of the tests."""
     with tempfile.TemporaryDirectory(prefix="mocapd-lowest-") as folder:
         place = Path(folder)
+        extra = ("--extra", "export") if platform.machine() in EXPORT_MACHINES else ()
         lowest, python = place / "lowest.txt", str(place / "venv" / "bin" / "python")
         _uv(
             *("pip", "compile", "--quiet", "--resolution", "lowest-direct", "--no-header"),
             *("--python-version", PYTHONS[0], "--only-binary", ":all:", "--no-annotate"),
-            *(str(PROJECT), "--output-file", str(lowest)),
+            *(str(PROJECT), *extra, "--output-file", str(lowest)),
         )
         _tell(versions(lowest.read_text()))
         tools = place / "tools.txt"
@@ -75,8 +77,10 @@ def main() -> int:
 
 def _tell(resolved: dict[str, str]) -> None:
     """Which versions are tried."""
-    for text in tomllib.loads(PROJECT.read_text())["project"]["dependencies"]:
-        print(f"{text:36}{resolved[canonicalize_name(Requirement(text).name)]}", flush=True)
+    project = tomllib.loads(PROJECT.read_text())["project"]
+    for text in (*project["dependencies"], *project["optional-dependencies"]["export"]):
+        version = resolved.get(canonicalize_name(Requirement(text).name), "not on this machine")
+        print(f"{text:36}{version}", flush=True)
 
 
 def _uv(*arguments: str) -> None:

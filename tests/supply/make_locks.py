@@ -12,7 +12,17 @@ import subprocess
 import sys
 import tomllib
 
-from tests.supply.lock_files import BUILD, CLIENTS, DEV, PROJECT, PYTHONS, ROOT, RUN, pins
+from tests.supply.lock_files import (
+    BUILD,
+    CLIENTS,
+    DEV,
+    EXPORT,
+    PROJECT,
+    PYTHONS,
+    ROOT,
+    RUN,
+    pins,
+)
 
 INDEX = "https://pypi.org/simple"
 COMPILE = (
@@ -44,14 +54,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--upgrade", action="store_true", help="to the newest versions allowed")
     upgrade = ["--upgrade"] if parser.parse_args().upgrade else []
-    project, run, build, dev, clients = (
-        str(p.relative_to(ROOT)) for p in (PROJECT, RUN, BUILD, DEV, CLIENTS)
+    project, run, export, build, dev, clients = (
+        str(p.relative_to(ROOT)) for p in (PROJECT, RUN, EXPORT, BUILD, DEV, CLIENTS)
     )
-    backend = "\n".join(tomllib.loads(PROJECT.read_text())["build-system"]["requires"])
+    asked = tomllib.loads(PROJECT.read_text())
+    backend = "\n".join(asked["build-system"]["requires"])
+    extra = "\n".join(asked["project"]["optional-dependencies"]["export"])
     # all of it at once first; the parts then take their versions from it
     compile_lock([project, "-", "--extra", "dev", "--output-file", dev, *upgrade], backend)
     compile_lock([project, "--constraints", dev, "--output-file", run, *upgrade])
     compile_lock(["-", "--constraints", dev, "--output-file", build, *upgrade], backend)
+    # apart, as a Linux for ARM has no wheel of it
+    compile_lock(["-", "--constraints", dev, "--output-file", export, *upgrade], extra)
     prefer_the_developers_versions()
     extras = ["--extra", "dev", "--extra", "clients"]
     compile_lock([project, "-", *extras, "--output-file", clients], backend)

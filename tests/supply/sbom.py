@@ -1,6 +1,6 @@
-"""The bill of materials, CycloneDX 1.6 in JSON: what the runtime lock installs, and the libraries inside its wheels.
+"""The bill of materials, CycloneDX 1.6 in JSON: what the runtime locks install, and the libraries inside its wheels.
 
-`make sbom` writes it to dist/, beside the wheel that it is for: it is made of locks/run.txt, of
+`make sbom` writes it to dist/, beside the wheel that it is for: it is made of locks/run.txt and locks/export.txt, of
 bundled_libraries.py and of the installed packages' metadata, and of nothing else, so the same
 checkout gives the same bytes. cyclonedx-bom would read the lock too, but knows neither licences nor what
 wheels carry, and brings two dozen packages.
@@ -17,15 +17,15 @@ from packaging.licenses import InvalidLicenseExpression, canonicalize_license_ex
 
 import mocapd
 from tests.supply.bundled_libraries import CARRIED, WORKS
-from tests.supply.lock_files import PROJECT, ROOT, RUN, Pin
-from tests.supply.third_party_notices import licence_of, runtime_pins
+from tests.supply.lock_files import EXPORT, PROJECT, ROOT, RUN, Pin, runtime_pins
+from tests.supply.third_party_notices import licence_of
 
 PLACE = ROOT / "dist" / f"mocapd-{mocapd.__version__}.cdx.json"
 
 
 def bill() -> dict[str, Any]:
     """The whole document."""
-    lock = f"mocapd {mocapd.__version__}\n{RUN.read_text()}"
+    lock = f"mocapd {mocapd.__version__}\n{EXPORT.read_text()}{RUN.read_text()}"
     product = {
         "type": "application",
         "bom-ref": f"pkg:pypi/mocapd@{mocapd.__version__}",

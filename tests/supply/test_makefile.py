@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -22,6 +23,9 @@ case "$1 $2" in
 -V*) echo "Python {version}" ;;
 esac
 """
+
+
+EXPORT = {"locks/export.txt"} if platform.machine() == "x86_64" else set()
 
 
 class Checkout:
@@ -69,7 +73,7 @@ def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_download
     (packages, project), _ = checkout.make("env")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
-    assert _locks_of(packages) == {"locks/run.txt", "locks/build.txt"}
+    assert _locks_of(packages) == {"locks/run.txt", "locks/build.txt"} | EXPORT
     assert "--no-deps" in project
     assert "--no-build-isolation" in project
     assert project.endswith("--editable .")
@@ -83,7 +87,7 @@ def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
     assert packages.startswith("uv ")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
-    assert _locks_of(packages) == {"locks/dev.txt"}
+    assert _locks_of(packages) == {"locks/dev.txt"} | EXPORT
     assert "--no-deps" in project
     assert checkout.make("dev") == ([], "")
     assert checkout.make("env") == ([], "")
@@ -93,7 +97,7 @@ def test_the_tests_of_clients_have_an_environment_of_their_own(checkout: Checkou
     checkout.make("dev")
     (_, packages, project), _ = checkout.make("clients")
     assert "--require-hashes" in packages
-    assert _locks_of(packages) == {"locks/clients.txt"}
+    assert _locks_of(packages) == {"locks/clients.txt"} | EXPORT
     assert "--no-deps" in project
     assert (checkout.folder / ".venv-clients" / "bin" / "python").exists()
     assert checkout.make("clients") == ([], "")
@@ -116,13 +120,20 @@ def test_where_uv_gets_nowhere_pip_installs_the_lock(checkout: Checkout) -> None
     assert packages.startswith("install ")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
-    assert _locks_of(packages) == {"locks/dev.txt"}
+    assert _locks_of(packages) == {"locks/dev.txt"} | EXPORT
     assert "--no-deps" in project
+
+
+def test_of_a_python_that_the_lock_is_for_the_latest_gets_it_too(checkout: Checkout) -> None:
+    checkout.set_version((3, 14, 0))
+    (packages, _), told = checkout.make("env")
+    assert "--require-hashes" in packages
+    assert "pip chooses" not in told
 
 
 def test_dev_adds_to_env(checkout: Checkout) -> None:
     checkout.make("env")
-    assert _locks_of(checkout.make("dev")[0][1]) == {"locks/dev.txt"}
+    assert _locks_of(checkout.make("dev")[0][1]) == {"locks/dev.txt"} | EXPORT
 
 
 @pytest.mark.parametrize("changed", ["pyproject.toml", "locks/run.txt", "locks/build.txt"])
@@ -140,13 +151,13 @@ def test_a_changed_lock_or_project_makes_the_environment_anew(
 
 
 def test_a_python_the_lock_is_not_for_gets_what_pip_chooses_and_is_told(checkout: Checkout) -> None:
-    checkout.set_version((3, 14, 0))
+    checkout.set_version((3, 15, 0))
     calls, said = checkout.make("env")
     assert [call.split("--")[-1] for call in calls] == ["editable ."]
     assert "locks/" not in calls[0]
     told = [line for line in said.splitlines() if "pip chooses" in line]
     assert len(told) == 1
-    assert "3.11 to 3.13" in told[0]
+    assert "3.11 to 3.14" in told[0]
     assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[dev]"]
 
 

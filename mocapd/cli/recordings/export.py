@@ -38,13 +38,14 @@ def export(
     """
     from mocapd.app.logs import set_up_logs
     from mocapd.app.recordings.exporting import motion_of
-    from mocapd.exports.formats import FORMATS, write_export
+    from mocapd.exports.formats import FORMATS, check_library, write_export
     from mocapd.outputs.mcap.recording_reader import RecordingReader
 
     if to not in FORMATS:
         raise ConfigError(
             f"there is no format {to[:40]!r}", "--to", f"one of: {', '.join(FORMATS)}"
         )
+    check_library(to)
     set_up_logs(effective_config(config, settings).config.log_level)
     path = out if out is not None else file.with_suffix(f".{to}")
     found = motion_of(RecordingReader(file), person, rate)

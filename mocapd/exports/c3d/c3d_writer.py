@@ -6,17 +6,17 @@ format's residual of -1.
 
 from pathlib import Path
 
-import ezc3d
 import numpy as np
 
+from mocapd.exports.c3d.c3d_library import c3d_library
 from mocapd.exports.sampled_motion import SampledMotion
 
 MM = 1000.0
 
 
 def write_c3d(motion: SampledMotion, path: Path) -> None:
-    """Write the file. Raises OSError."""
-    file = ezc3d.c3d()
+    """Write the file. Raises OSError, and UnavailableError without the extra."""
+    file = c3d_library().c3d()
     names = list(motion.skeleton.names)
     point = file["parameters"]["POINT"]
     point["RATE"]["value"] = [motion.rate_hz]
