@@ -13,7 +13,7 @@ const Feet := preload("mocapd_feet.gd")
 ## Rotation only: the avatar keeps its bone lengths. Full: it gets the person's.
 @export
 var bone_update: XRBodyModifier3D.BoneUpdate = XRBodyModifier3D.BONE_UPDATE_ROTATION_ONLY
-## With rotation only: hold the hips as high as the avatar's own legs and feet need, so that the feet stand on the floor.
+## With rotation only: hold the hips as high as the avatar's own legs and feet need to stand on the floor.
 @export var fit_legs: bool = true
 
 var _skeleton: Skeleton3D
