@@ -17,7 +17,7 @@ BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb vm-test lock sbom test-lowest clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb vm-test engines platforms lock sbom test-lowest clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
@@ -117,6 +117,12 @@ deb: dist ## make a Debian package of it, with all that it runs on, for this mac
 
 vm-test: deb ## as root: install the package on a real kernel with two USB webcams, pull, freeze, kill, remove (needs ../shared/vm)
 	tests/vm/vm_test.sh $(BIN)/python dist/mocapd_*.deb
+
+engines: dev ## as root: the Godot add-on, another's VMC receiver (VMC_ADDON=folder) and Blender on our output, in a Debian sid of their own
+	$(BIN)/python -m tests.engines $(if $(VMC_ADDON),--vmc-addon $(VMC_ADDON))
+
+platforms: dev ## as root: wheels for every Python and machine; mocapd on Python 3.13, 3.14 and emulated ARM (ONLY="3.13 3.14 aarch64")
+	$(BIN)/python -m tests.engines.platforms $(if $(ONLY),--only $(ONLY))
 
 lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
 	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)

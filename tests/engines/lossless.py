@@ -20,12 +20,12 @@ def write_lossless_capture(folder: Path, seconds: float) -> None:
     rig = json.loads(rig_file.read_text())
     for camera in rig["cameras"]:
         lossy = folder / camera["file"]
-        camera["file"] = _in_lossless(lossy, float(camera["fps"])).name
+        camera["file"] = lossless_copy(lossy, float(camera["fps"])).name
         lossy.unlink()
     rig_file.write_text(json.dumps(rig, indent=1) + "\n")
 
 
-def _in_lossless(video: Path, rate_hz: float) -> Path:
+def lossless_copy(video: Path, rate_hz: float) -> Path:
     """The same pictures, as this machine decodes them, beside the video in FFV1, which keeps RGB exactly."""
     path = video.with_suffix(".mkv")
     source = cv2.VideoCapture(str(video))

@@ -11,11 +11,11 @@ from tests.exports.exported import exported
 
 
 @pytest.fixture
-def _no_library(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_library(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ezc3d", None)  # importing it is an ImportError
 
 
-@pytest.mark.usefixtures("_no_library")
+@pytest.mark.usefixtures("no_library")
 def test_without_it_the_command_names_the_extra_before_it_reads_anything(tmp_path: Path) -> None:
     with pytest.raises(UnavailableError, match=r"--to c3d.*mocapd\[export\]") as refused:
         export(tmp_path / "none.mcap", "c3d")
@@ -23,7 +23,7 @@ def test_without_it_the_command_names_the_extra_before_it_reads_anything(tmp_pat
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.usefixtures("_no_library")
+@pytest.mark.usefixtures("no_library")
 @pytest.mark.parametrize("name", ["bvh", "glb", "csv", "trc"])
 def test_without_it_the_other_formats_are_written(name: str, tmp_path: Path) -> None:
     _, path = exported(tmp_path, name)

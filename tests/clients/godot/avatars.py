@@ -72,11 +72,13 @@ def heights_m(offsets_m: Mapping[str, Floats]) -> dict[str, float]:
 def as_given(offsets_m: Mapping[str, Floats]) -> dict[str, dict[str, Any]]:
     """By VRM 1.0 name: each bone's place in the axes of the bone above, and what of it is how high."""
     axes = reference_axes(offsets_m)
-    legs = [side + part for side in ("Left", "Right") for part in LEG]
+    above = {
+        side + part: PARENT_OF[side + part] or "" for side in ("Left", "Right") for part in LEG
+    }
     return {
         "rests_m": {
-            bone[0].lower() + bone[1:]: (axes[PARENT_OF[bone]].T @ offsets_m[bone]).tolist()
-            for bone in legs
+            bone[0].lower() + bone[1:]: (axes[parent].T @ offsets_m[bone]).tolist()
+            for bone, parent in above.items()
         },
         "heights_m": {b[0].lower() + b[1:]: at_m for b, at_m in heights_m(offsets_m).items()},
     }
