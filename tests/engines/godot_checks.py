@@ -31,6 +31,7 @@ PROBE_S = 90.0
 CM = 100.0
 FEET = ("LeftFoot", "LeftToes", "RightFoot", "RightToes")
 VMC_NAME = "VMC receiver"
+VMC_TRACKER = "/vmc/body"
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -49,12 +50,15 @@ def vmc_checks(chroot: Chroot, work: Path, logs: Path, addon: Path | None) -> li
     port = free_port(socket.SOCK_DGRAM)
     project = work / "vmc"
     plugin = "res://addons/godot_vmc_tracker/vmc_plugin.gd"
-    setting = f"[godot_vmc_tracker]\n\nnetwork/udp_listener_port={port}\n"
+    setting = (
+        f"[godot_vmc_tracker]\n\nnetwork/udp_listener_port={port}\n"
+        f'tracking/body_tracker_name="{VMC_TRACKER}"\n'
+    )
     placed = work / "godot_vmc_tracker"
     shutil.copytree(addon, placed)
     bare_project(project, "vmc_probe.gd", placed, {"Vmc": plugin}, setting)
     out = work / "vmc.jsonl"
-    env = {"PROBE_OUT": chroot.inside(out), "PROBE_TRACKER": "/vmc/body_tracker", "PROBE_S": "30"}
+    env = {"PROBE_OUT": chroot.inside(out), "PROBE_TRACKER": VMC_TRACKER, "PROBE_S": "30"}
     _import(chroot, project, logs / "vmc_import.log")
     log = logs / "vmc.log"
     with _running(chroot, project, log, env), Relay(port) as relay:

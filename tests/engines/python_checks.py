@@ -146,7 +146,7 @@ def part_of_the_tests(platform: Platform) -> Result:
     if not checkout.is_dir():
         _copy_checkout(checkout)
     log = platform.log("tests")
-    tests = ("-m", "pytest", "-q", "-p", "no:cacheprovider", *TESTS)
+    tests = ("-m", "pytest", "-q", *TESTS)
     command = ["sh", "-c", f'cd {platform.chroot.inside(checkout)} && exec "$@"', "sh"]
     code = platform.chroot.run([*command, *platform.command(*tests)], log, platform.env, TESTS_S)
     last = (log.read_text(errors="replace").strip().splitlines() or [f"code {code}"])[-1]

@@ -32,7 +32,8 @@ def export(
 ) -> None:
     """Export a recording's motion for other programs.
 
-    bvh [cm], glb [m], csv [m], trc [mm] or c3d [mm], at a constant rate; see docs/recording.md.
+    bvh [cm], glb [m], csv [m], trc [mm] or c3d [mm], at a constant rate; see docs/recording.md. c3d
+    needs the extra mocapd[export].
 
     Example: mocapd export training.mcap --to glb
     """
