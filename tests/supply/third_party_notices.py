@@ -72,7 +72,10 @@ was created with funding from NSF EIA-0196217."
 
 def licence_of(package: str) -> str:
     """What the installed package's metadata say: the SPDX expression, else the shortest that is there."""
-    told = metadata.metadata(package)
+    try:
+        told = metadata.metadata(package)
+    except metadata.PackageNotFoundError:  # of the extra, on ARM
+        return "not told"
     if told["License-Expression"]:
         return str(told["License-Expression"])
     classifiers = [
