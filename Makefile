@@ -4,18 +4,18 @@ clients test-clients: VENV := .venv-clients
 BIN = $(VENV)/bin
 READY = $(VENV)/ready
 # The first Python that runs and that the locks are for, else one later; say PYTHON=... to choose another.
-PYTHON ?= $(shell for below in 14 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
+PYTHON ?= $(shell for below in 15 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	"$$p" -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, $$below))" 2>/dev/null \
 	&& echo "$$p" && exit; done; done)
 # What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
-LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 14) and sys.platform == "linux" \
+LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 15) and sys.platform == "linux" \
 	and platform.machine() in ("x86_64", "aarch64")))
 PIP_INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 BY_HASH := --require-hashes --only-binary :all:
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL: # one environment, made by one
-.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb vm-test lock sbom test-lowest clean
+.PHONY: help env dev clients demo test test-clients check bench fuzz attack faults soak load dist deb vm-test engines platforms lock sbom test-lowest clean
 
 help: ## say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
@@ -58,7 +58,7 @@ env dev clients:
 		{ $(QUICKLY) $(LOCKS) 2>/dev/null || $(PIP_INSTALL) $(BY_HASH) $(LOCKS); } && \
 		$(PIP_INSTALL) --no-deps --no-build-isolation --editable .; \
 	else \
-		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.13 on Linux," \
+		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.14 on Linux," \
 			"x86_64 or aarch64): pip chooses the versions" >&2; \
 		$(PIP_INSTALL) --editable '$(PROJECT)'; \
 	fi && \
@@ -116,8 +116,15 @@ deb: dist ## make a Debian package of it, with all that it runs on, for this mac
 vm-test: deb ## as root: install the package on a real kernel with two USB webcams, pull, freeze, kill, remove (needs ../shared/vm)
 	tests/vm/vm_test.sh $(BIN)/python dist/mocapd_*.deb
 
+engines: dev ## as root: the Godot add-on, another's VMC receiver (VMC_ADDON=folder) and Blender on our output, in a Debian sid of their own
+	$(BIN)/python -m tests.engines $(if $(VMC_ADDON),--vmc-addon $(VMC_ADDON))
+
+platforms: dev ## as root: wheels for every Python and machine; mocapd on Python 3.13, 3.14 and emulated ARM (ONLY="3.13 3.14 aarch64")
+	$(BIN)/python -m tests.engines.platforms $(if $(ONLY),--only $(ONLY))
+
 lock: dev ## make locks/ and the notices from pyproject.toml; UPGRADE=1 takes newer versions
 	$(BIN)/python -m tests.supply.make_locks $(if $(UPGRADE),--upgrade)
+	$(BIN)/python -m tests.supply.wheels
 	@$(MAKE) --no-print-directory dev
 	$(BIN)/python -m tests.supply.third_party_notices
 

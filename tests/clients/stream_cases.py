@@ -182,6 +182,7 @@ def told_well() -> dict[str, Stream]:
         "added fields": at(0.0, [_added_fields()]),
         "after 2038": at(0.0, datagrams(msgspec.structs.replace(first, capture_unix_ns=AFTER_2038_NS))),
         "waving": [step for f in waving() for step in at(f.seq / RATE_HZ, datagrams(f))],
+        "on one leg": at(0.0, datagrams(waving()[0])),
         "two persons": at(0.0, [golden[0], *datagrams(moved(later(first, 0, person=1), 2.0)), golden[1]]),
     }  # fmt: skip
 

@@ -1,7 +1,7 @@
 """The Godot add-on's XRBodyTracker, and what Godot 4's own XRBodyModifier3D makes of it and of GodotXRVmcTracker's.
 
-Godot 4 itself is not run: the joints come from the add-on under Godot 3, the engine's part is re-implemented in
-`tests/outputs/receivers/godot_xr_body.py`.
+The joints come from the add-on under Godot 3, the engine's part is re-implemented in
+`tests/outputs/receivers/godot_xr_body.py`. `make engines` runs Godot 4 itself.
 """
 
 import json
@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 
 from mocapd.types import Floats
+from tests.clients.godot.avatars import AVATARS, godot_name, heights_m, wearer_offsets_m
 from tests.clients.played import Played
-from tests.golden import make_osc, make_vmc, stepping_left
+from tests.golden import make_osc, make_vmc
 from tests.outputs.receivers.godot_xr_body import ROOT, VALID, XrJoint, driven, reference_axes
 from tests.outputs.receivers.godot_xr_vmc_tracker import GodotXrVmcTracker
 
 TRACKED = 2 | 8
 MILLIMETRE_M = 0.001
+FLOOR_M = 0.002
 FACING_MINUS_Z = np.diag(
     [-1.0, 1.0, -1.0]
 )  # from mocapd's world, in which a person at rest faces +Z
@@ -29,19 +31,6 @@ Stream = Callable[[str], Played]
 @pytest.fixture(scope="module")
 def played(godot_told: dict[str, Any]) -> Stream:
     return lambda name: Played.read(godot_told[name])
-
-
-def godot_name(bone: str) -> str:
-    return bone[0].upper() + bone[1:]
-
-
-def wearer_offsets_m() -> dict[str, Floats]:
-    """An avatar of the wearer's own bones."""
-    rest = stepping_left.rest()
-    return {
-        godot_name(name): np.array(offset_m)
-        for name, offset_m in zip(rest.names, rest.offsets_m, strict=True)
-    }
 
 
 def truth() -> dict[str, Floats]:
@@ -91,6 +80,23 @@ def test_an_avatar_of_half_the_size_stands_on_the_floor_with_its_own_bones(playe
     under = joints[ROOT].origin_m
     for name, at_m in truth().items():
         assert placed[name] == pytest.approx(under + 0.5 * (at_m - under), abs=MILLIMETRE_M)
+
+
+@pytest.mark.parametrize("name", ["waving", "on one leg"])
+@pytest.mark.parametrize("avatar", list(AVATARS))
+def test_the_feet_of_any_avatar_stand_on_the_floor(played: Stream, avatar: str, name: str) -> None:
+    stream, offsets = played(name), AVATARS[avatar]
+    scale = stream.persons["0"]["motion_scale"][avatar]
+    placed = driven(xr_joints(stream), offsets, rotation_only=True, motion_scale=scale)
+    over_floor_m = {bone: placed[bone][1] - at_m for bone, at_m in heights_m(offsets).items()}
+    assert min(over_floor_m.values()) == pytest.approx(0.0, abs=FLOOR_M)
+    assert (over_floor_m["LeftFoot"] > 0.05) == (name == "on one leg")
+
+
+def test_an_avatar_of_the_wearers_own_bones_is_as_high_as_the_wearer(played: Stream) -> None:
+    for name in ("waving", "on one leg"):
+        scale = played(name).persons["0"]["motion_scale"]["the wearer"]
+        assert scale == pytest.approx(1.0, abs=0.005)
 
 
 def test_the_root_looks_to_where_the_person_faces_along_its_minus_z(played: Stream) -> None:

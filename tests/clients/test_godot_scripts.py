@@ -51,3 +51,10 @@ def test_scenes_count_their_resources_and_number_them_once() -> None:
         used = re.findall(r'(?:Ext|Sub)Resource\("(\w+)"\)', text)
         assert set(used) == set(ids)
         assert len(set(ids)) == len(ids)
+
+
+def test_no_joint_of_a_new_tracker_is_left_as_the_engine_made_it() -> None:
+    """Its flags are uninitialised memory; `make engines` counts them in Godot 4."""
+    receiver = (ADDON / "mocapd_receiver.gd").read_text()
+    reset = "for joint in XRBodyTracker.JOINT_MAX:\n\t\t\ttracker.set_joint_flags(joint, 0)\n"
+    assert 0 < receiver.find(reset) < receiver.find("XRServer.add_tracker(tracker)")

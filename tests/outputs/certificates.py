@@ -4,6 +4,22 @@ import shutil
 import subprocess
 from pathlib import Path
 
+_EXPIRED_CONF = """\
+[ca]
+default_ca = own
+[own]
+certificate = ca.pem
+private_key = ca.key
+database = issued.txt
+new_certs_dir = .
+rand_serial = yes
+unique_subject = no
+default_md = sha256
+policy = any_name
+[any_name]
+commonName = supplied
+"""
+
 
 def openssl(folder: Path, *arguments: str) -> None:
     subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
@@ -38,10 +54,16 @@ def make_certificates(folder: Path, *others: str) -> None:
 
 
 def make_expired(folder: Path, name: str, expired: str) -> None:
-    """Another certificate for the request of `name`, which was valid until yesterday."""
+    """Another certificate for the request of `name`, which was valid for a day in 2020.
+
+    XX
+    """
+    (folder / "expired.conf").write_text(_EXPIRED_CONF)
+    (folder / "issued.txt").write_text("")
     openssl(
         folder,
-        *("x509", "-req", "-in", f"{name}.csr", "-CA", "ca.pem", "-CAkey", "ca.key"),
-        *("-CAcreateserial", "-extfile", f"{name}.ext", "-out", f"{expired}.pem", "-days", "-1"),
+        *("ca", "-batch", "-notext", "-config", "expired.conf"),
+        *("-startdate", "20200101000000Z", "-enddate", "20200102000000Z"),
+        *("-extfile", f"{name}.ext", "-in", f"{name}.csr", "-out", f"{expired}.pem"),
     )
     shutil.copy(folder / f"{name}.key", folder / f"{expired}.key")

@@ -15,7 +15,7 @@ RUN, BUILD, DEV, CLIENTS = (
 )
 
 # what the lock is for; Makefile asks the same of the environment's Python
-PYTHONS = ("3.11", "3.12", "3.13")
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 MACHINES = ("x86_64", "aarch64")
 
 
@@ -74,3 +74,9 @@ def pins(lock: Path) -> dict[str, Pin]:
         hashes = frozenset(re.findall(r"--hash=(\S+)", line))
         found[name] = Pin(name, exact[1], requirement.marker, hashes)
     return found
+
+
+def runtime_pins() -> list[Pin]:
+    """What Linux installs for a user, by name."""
+    installed = {name: pin for name, pin in pins(RUN).items() if pin.on_linux}
+    return [installed[name] for name in sorted(installed)]

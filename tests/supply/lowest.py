@@ -75,8 +75,10 @@ def main() -> int:
 
 def _tell(resolved: dict[str, str]) -> None:
     """Which versions are tried."""
-    for text in tomllib.loads(PROJECT.read_text())["project"]["dependencies"]:
-        print(f"{text:36}{resolved[canonicalize_name(Requirement(text).name)]}", flush=True)
+    project = tomllib.loads(PROJECT.read_text())["project"]
+    for text in project["dependencies"]:
+        version = resolved.get(canonicalize_name(Requirement(text).name), "not on this machine")
+        print(f"{text:36}{version}", flush=True)
 
 
 def _uv(*arguments: str) -> None:

@@ -12,7 +12,16 @@ import subprocess
 import sys
 import tomllib
 
-from tests.supply.lock_files import BUILD, CLIENTS, DEV, PROJECT, PYTHONS, ROOT, RUN, pins
+from tests.supply.lock_files import (
+    BUILD,
+    CLIENTS,
+    DEV,
+    PROJECT,
+    PYTHONS,
+    ROOT,
+    RUN,
+    pins,
+)
 
 INDEX = "https://pypi.org/simple"
 COMPILE = (
@@ -47,7 +56,8 @@ def main() -> None:
     project, run, build, dev, clients = (
         str(p.relative_to(ROOT)) for p in (PROJECT, RUN, BUILD, DEV, CLIENTS)
     )
-    backend = "\n".join(tomllib.loads(PROJECT.read_text())["build-system"]["requires"])
+    asked = tomllib.loads(PROJECT.read_text())
+    backend = "\n".join(asked["build-system"]["requires"])
     # all of it at once first; the parts then take their versions from it
     compile_lock([project, "-", "--extra", "dev", "--output-file", dev, *upgrade], backend)
     compile_lock([project, "--constraints", dev, "--output-file", run, *upgrade])

@@ -17,8 +17,8 @@ from packaging.licenses import InvalidLicenseExpression, canonicalize_license_ex
 
 import mocapd
 from tests.supply.bundled_libraries import CARRIED, WORKS
-from tests.supply.lock_files import PROJECT, ROOT, RUN, Pin
-from tests.supply.third_party_notices import licence_of, runtime_pins
+from tests.supply.lock_files import PROJECT, ROOT, RUN, Pin, runtime_pins
+from tests.supply.third_party_notices import licence_of
 
 PLACE = ROOT / "dist" / f"mocapd-{mocapd.__version__}.cdx.json"
 

@@ -120,6 +120,13 @@ def test_where_uv_gets_nowhere_pip_installs_the_lock(checkout: Checkout) -> None
     assert "--no-deps" in project
 
 
+def test_of_a_python_that_the_lock_is_for_the_latest_gets_it_too(checkout: Checkout) -> None:
+    checkout.set_version((3, 14, 0))
+    (packages, _), told = checkout.make("env")
+    assert "--require-hashes" in packages
+    assert "pip chooses" not in told
+
+
 def test_dev_adds_to_env(checkout: Checkout) -> None:
     checkout.make("env")
     assert _locks_of(checkout.make("dev")[0][1]) == {"locks/dev.txt"}
@@ -140,13 +147,13 @@ def test_a_changed_lock_or_project_makes_the_environment_anew(
 
 
 def test_a_python_the_lock_is_not_for_gets_what_pip_chooses_and_is_told(checkout: Checkout) -> None:
-    checkout.set_version((3, 14, 0))
+    checkout.set_version((3, 15, 0))
     calls, said = checkout.make("env")
     assert [call.split("--")[-1] for call in calls] == ["editable ."]
     assert "locks/" not in calls[0]
     told = [line for line in said.splitlines() if "pip chooses" in line]
     assert len(told) == 1
-    assert "3.11 to 3.13" in told[0]
+    assert "3.11 to 3.14" in told[0]
     assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[dev]"]
 
 

@@ -1,4 +1,4 @@
-"""The bill of materials lists what the runtime lock lists, by hash, and what its wheels carry."""
+"""The bill of materials lists what the runtime locks list, by hash, and what its wheels carry."""
 
 import json
 from pathlib import Path
@@ -9,7 +9,7 @@ import pytest
 import mocapd
 from tests.supply import sbom
 from tests.supply.bundled_libraries import CARRIED, WORKS
-from tests.supply.lock_files import RUN, pins
+from tests.supply.lock_files import runtime_pins
 
 
 @pytest.fixture
@@ -21,7 +21,9 @@ def written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return found
 
 
-def test_it_lists_each_package_of_the_lock_with_version_and_hashes(written: dict[str, Any]) -> None:
+def test_it_lists_each_package_of_the_locks_with_version_and_hashes(
+    written: dict[str, Any],
+) -> None:
     listed = {
         (one["name"], one["version"]): {
             f"sha256:{digest['content']}"
@@ -30,9 +32,7 @@ def test_it_lists_each_package_of_the_lock_with_version_and_hashes(written: dict
         }
         for one in written["components"]
     }
-    locked = {
-        (pin.name, pin.version): set(pin.hashes) for pin in pins(RUN).values() if pin.on_linux
-    }
+    locked = {(pin.name, pin.version): set(pin.hashes) for pin in runtime_pins()}
     assert listed == locked
     assert len(written["components"]) == len(locked)
 

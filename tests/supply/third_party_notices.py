@@ -1,4 +1,4 @@
-"""THIRD_PARTY_NOTICES.md: what the runtime lock installs, from the installed packages' metadata.
+"""THIRD_PARTY_NOTICES.md: what the runtime locks install, from the installed packages' metadata.
 
 `python -m tests.supply.third_party_notices` writes it anew, in an environment made from the lock
 (`make dev`); tests compare.
@@ -7,7 +7,7 @@
 from importlib import metadata
 
 from tests.supply.bundled_libraries import table_rows
-from tests.supply.lock_files import ROOT, RUN, Pin, pins
+from tests.supply.lock_files import ROOT, Pin, runtime_pins
 
 PAGE = ROOT / "THIRD_PARTY_NOTICES.md"
 
@@ -61,9 +61,9 @@ _BESIDES = """
 
 ## Files in mocapd itself
 
-`calib/joint_heatmaps.onnx` was trained by mocapd's own authors on pictures of its simulator, in poses that are made up or
-of the CMU Graphics Lab Motion Capture Database: "The data used in this project was obtained from mocap.cs.cmu.edu. The
-database was created with funding from NSF EIA-0196217."
+`calib/joint_heatmaps.onnx` was trained by mocapd's own authors on pictures of its simulator, in poses that are made up or of
+the CMU Graphics Lab Motion Capture Database: "The data used in this project was obtained from mocap.cs.cmu.edu. The database
+was created with funding from NSF EIA-0196217."
 
 `mocapd/vision/face/lbpcascade_frontalface.xml` is OpenCV's cascade of frontal faces, unchanged but for a note at its head
 (Copyright OpenCV Foundation and contributors, Apache License 2.0).
@@ -72,7 +72,10 @@ database was created with funding from NSF EIA-0196217."
 
 def licence_of(package: str) -> str:
     """What the installed package's metadata say: the SPDX expression, else the shortest that is there."""
-    told = metadata.metadata(package)
+    try:
+        told = metadata.metadata(package)
+    except metadata.PackageNotFoundError:  # of the extra, on ARM
+        return "not told"
     if told["License-Expression"]:
         return str(told["License-Expression"])
     classifiers = [
@@ -84,11 +87,6 @@ def licence_of(package: str) -> str:
     if free_text and len(free_text) <= 20:
         return free_text
     return " OR ".join(classifiers) or "not told"
-
-
-def runtime_pins() -> list[Pin]:
-    """What Linux installs of the runtime lock, in the lock's order."""
-    return [pin for pin in pins(RUN).values() if pin.on_linux]
 
 
 def row(pin: Pin) -> str:

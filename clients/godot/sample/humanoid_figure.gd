@@ -30,18 +30,25 @@ func _ready() -> void:
 	_add_mesh(find_bone("Head"), _sphere(), Vector3(0.0, HEAD_RADIUS_M, 0.0), TRUNK_COLOUR)
 
 
-# A capsule from the joint above to this one: bones of this profile point along their Y.
+# A capsule from the joint above to this one: bones of this profile point along their Y. In the rest pose ankles and
+# toes are on the floor, so a foot lies above their line (its Z points up), and a shin ends at the ankle.
 func _add_limb(bone: int) -> void:
 	var length_m := get_bone_rest(bone).origin.length()
+	var at_m := Vector3(0.0, 0.5 * length_m, 0.0)
 	var capsule := CapsuleMesh.new()
 	capsule.radius = RADIUS_M
 	capsule.height = length_m + 2.0 * RADIUS_M
+	if get_bone_name(bone).ends_with("Toes"):
+		at_m.z = RADIUS_M
+	elif get_bone_name(bone).ends_with("Foot"):
+		capsule.height -= RADIUS_M
+		at_m.y -= 0.5 * RADIUS_M
 	var colour := TRUNK_COLOUR
 	if get_bone_name(bone).begins_with("Left"):
 		colour = LEFT_COLOUR
 	elif get_bone_name(bone).begins_with("Right"):
 		colour = RIGHT_COLOUR
-	_add_mesh(get_bone_parent(bone), capsule, Vector3(0.0, 0.5 * length_m, 0.0), colour)
+	_add_mesh(get_bone_parent(bone), capsule, at_m, colour)
 
 
 func _add_mesh(bone: int, mesh: PrimitiveMesh, at_m: Vector3, colour: Color) -> void:

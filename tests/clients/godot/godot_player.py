@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+from tests.clients.godot.avatars import AVATARS, as_given
 from tests.clients.stream_cases import Stream
 from tests.outputs.frames import free_port
 
@@ -15,7 +16,13 @@ ROOT = Path(__file__).resolve().parents[3]
 ADDON = ROOT / "clients" / "godot" / "addons" / "mocapd"
 SCRIPT = Path(__file__).with_name("play_streams.gd")
 # What the add-on decodes with, and all that it needs for it: Godot 3 runs nothing else of it.
-DECODER = ("mocapd_osc.gd", "mocapd_frames.gd", "mocapd_humanoid.gd", "mocapd_socket.gd")
+DECODER = (
+    "mocapd_osc.gd",
+    "mocapd_frames.gd",
+    "mocapd_humanoid.gd",
+    "mocapd_feet.gd",
+    "mocapd_socket.gd",
+)
 PROJECT = "config_version=4\n"
 
 
@@ -31,11 +38,15 @@ def play(streams: dict[str, Stream], folder: Path) -> dict[str, Any]:
         for name, stream in streams.items()
     }
     (folder / "streams.json").write_text(json.dumps(told))
+    (folder / "avatars.json").write_text(
+        json.dumps({name: as_given(avatar) for name, avatar in AVATARS.items()})
+    )
     env = {
         "PATH": os.environ["PATH"],
         "HOME": str(folder),
         "LANG": "en_US.UTF-8",
         "MOCAPD_STREAMS": str(folder / "streams.json"),
+        "MOCAPD_AVATARS": str(folder / "avatars.json"),
         "MOCAPD_PLAYED": str(folder / "played.json"),
         "MOCAPD_PORT": str(free_port(socket.SOCK_DGRAM)),
     }

@@ -2,20 +2,32 @@
 #
 # In the environment:
 #   MOCAPD_STREAMS  a JSON file: name of the stream: list of [time [s], datagram in hexadecimal or null]
+#   MOCAPD_AVATARS  a JSON file: name of the avatar: rests_m and heights_m as mocapd_feet.gd has them
 #   MOCAPD_PLAYED   the file to write: name: what was there after each step, and at the end
 #   MOCAPD_PORT     a free port, to which the first stream is sent over UDP as well
 extends SceneTree
 
 const Frames = preload("res://addons/mocapd/mocapd_frames.gd")
 const Humanoid = preload("res://addons/mocapd/mocapd_humanoid.gd")
+const Feet = preload("res://addons/mocapd/mocapd_feet.gd")
 const Socket = preload("res://addons/mocapd/mocapd_socket.gd")
 
 const PERSONS = [0, 1]
 const TRACKED_ABOVE = 0.5
 
 
+var avatars = {}
+
+
 func _init() -> void:
 	var file = File.new()
+	file.open(OS.get_environment("MOCAPD_AVATARS"), File.READ)
+	avatars = parse_json(file.get_as_text())
+	file.close()
+	for name in avatars:
+		var rests_m = avatars[name]["rests_m"]
+		for bone in rests_m:
+			rests_m[bone] = Vector3(rests_m[bone][0], rests_m[bone][1], rests_m[bone][2])
 	file.open(OS.get_environment("MOCAPD_STREAMS"), File.READ)
 	var streams = parse_json(file.get_as_text())
 	file.close()
@@ -89,8 +101,18 @@ func described(frame: Dictionary) -> Dictionary:
 	if joints.has("hips"):
 		var before = Basis(Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1))
 		var heading = Humanoid.heading(joints["hips"][1], before)
+		out["motion_scale"] = {}
+		for name in avatars:
+			out["motion_scale"][name] = scale_of(joints, avatars[name])
 		out["heading"] = {"x": numbers(heading.x), "y": numbers(heading.y), "z": numbers(heading.z)}
 	return out
+
+
+func scale_of(joints: Dictionary, avatar: Dictionary) -> float:
+	for bone in Feet.bones():
+		if not joints.has(bone):
+			return 0.0
+	return Feet.motion_scale(joints, avatar["rests_m"], avatar["heights_m"])
 
 
 func numbers(v: Vector3) -> Array:

@@ -6,18 +6,19 @@ extends XRNode3D
 ## [SkeletonProfileHumanoid] in the import dialogue (bone renamer and rest fixer). The posing is done by the
 ## engine's own [XRBodyModifier3D].
 
-const NOTICEABLE := 0.01  # a leg longer by this part of itself
+const Feet := preload("mocapd_feet.gd")
 
 ## Number of the person, as mocapd counts.
 @export_range(0, 15) var person: int = 0
 ## Rotation only: the avatar keeps its bone lengths. Full: it gets the person's.
 @export
 var bone_update: XRBodyModifier3D.BoneUpdate = XRBodyModifier3D.BONE_UPDATE_ROTATION_ONLY
-## With rotation only: scale how high the hips are by the legs' lengths, so that the feet stay on the floor.
+## With rotation only: hold the hips as high as the avatar's own legs and feet need to stand on the floor.
 @export var fit_legs: bool = true
 
 var _skeleton: Skeleton3D
-var _leg_m := 0.0  # the avatar's, from hip to ankle
+var _rests_m := {}  # of its legs, see mocapd_feet.gd
+var _heights_m := {}
 
 
 func _ready() -> void:
@@ -29,9 +30,7 @@ func _ready() -> void:
 		set_process(false)
 		return
 	_skeleton = skeletons[0]
-	_leg_m = _rest_length_m("LeftUpperLeg", "LeftLowerLeg") + _rest_length_m("LeftLowerLeg", "LeftFoot")
-	if _leg_m == 0.0:
-		push_error("mocapd: %s is not retargeted to SkeletonProfileHumanoid" % _skeleton.get_path())
+	_measure_legs()
 	var modifier := XRBodyModifier3D.new()
 	modifier.body_tracker = tracker
 	modifier.bone_update = bone_update
@@ -40,32 +39,32 @@ func _ready() -> void:
 
 func _process(_delta: float) -> void:
 	var body := XRServer.get_tracker(tracker) as XRBodyTracker
-	if body == null or not body.has_tracking_data or _leg_m == 0.0:
+	if body == null or not body.has_tracking_data or _rests_m.is_empty():
 		return
 	var scale_now := 1.0
 	if fit_legs and bone_update == XRBodyModifier3D.BONE_UPDATE_ROTATION_ONLY:
-		var person_leg_m := (
-			_length_m(body, XRBodyTracker.JOINT_LEFT_UPPER_LEG, XRBodyTracker.JOINT_LEFT_LOWER_LEG)
-			+ _length_m(body, XRBodyTracker.JOINT_LEFT_LOWER_LEG, XRBodyTracker.JOINT_LEFT_FOOT)
-		)
-		if body.get_joint_flags(XRBodyTracker.JOINT_LEFT_FOOT) == 0 or person_leg_m == 0.0:
-			return
-		scale_now = _leg_m / person_leg_m
-	if absf(scale_now - _skeleton.motion_scale) > NOTICEABLE * scale_now:
+		var joints := {}
+		for bone: String in Feet.bones():
+			var joint: XRBodyTracker.Joint = MocapdReceiver.JOINTS[bone]
+			if body.get_joint_flags(joint) == 0:
+				return
+			var placed := body.get_joint_transform(joint)
+			joints[bone] = [placed.origin, placed.basis]
+		scale_now = Feet.motion_scale(joints, _rests_m, _heights_m)
+	if scale_now > 0.0:
 		_skeleton.motion_scale = scale_now
 
 
-func _rest_length_m(from: String, to: String) -> float:
-	var first := _skeleton.find_bone(from)
-	var second := _skeleton.find_bone(to)
-	if first < 0 or second < 0:
-		return 0.0
-	var first_at := _skeleton.get_bone_global_rest(first).origin
-	return first_at.distance_to(_skeleton.get_bone_global_rest(second).origin)
-
-
-func _length_m(
-	body: XRBodyTracker, from: XRBodyTracker.Joint, to: XRBodyTracker.Joint
-) -> float:
-	var from_at := body.get_joint_transform(from).origin
-	return from_at.distance_to(body.get_joint_transform(to).origin)
+# What Feet needs of the avatar's legs in its rest pose; nothing where a bone of them is missing.
+func _measure_legs() -> void:
+	for bone: String in Feet.bones().slice(1):
+		var name_there := bone.left(1).to_upper() + bone.substr(1)
+		var place := _skeleton.find_bone(name_there)
+		if place >= 0:
+			_rests_m[bone] = _skeleton.get_bone_rest(place).origin
+			if bone.ends_with("Foot") or bone.ends_with("Toes"):
+				_heights_m[bone] = _skeleton.get_bone_global_rest(place).origin.y
+		elif not bone.ends_with("Toes"):
+			push_error("mocapd: %s is not retargeted to SkeletonProfileHumanoid" % _skeleton.get_path())
+			_rests_m.clear()
+			return

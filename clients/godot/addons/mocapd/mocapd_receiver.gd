@@ -82,6 +82,9 @@ func _enter_tree() -> void:
 		tracker.name = tracker_name(person)
 		tracker.description = "mocapd, person %d" % person
 		tracker.body_flags = BODY_FLAGS
+		# The engine leaves them uninitialised: joints that are never set here could read as valid.
+		for joint in XRBodyTracker.JOINT_MAX:
+			tracker.set_joint_flags(joint, 0)
 		XRServer.add_tracker(tracker)
 		_trackers.append(tracker)
 		_tracking.append("silent")
