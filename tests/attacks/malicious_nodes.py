@@ -4,8 +4,8 @@
 
 prints a table: the rate of the good camera as the daemon has it and as its node has sent it, the daemon's exit, the lines
 of its log, its peak of memory, and what it says of the other camera. The first row is with an honest second node: the
-machine may be busy. Exit code 1 when the good camera has less than 29 of 30 pictures of what was sent and of what it had in the
-first row, or the daemon ended, wrote more than 150 lines a minute, or took more than 300 MiB above the first row.
+machine may be busy. Exit code 1 when the good camera has less than 29 of 30 pictures of what was sent, and of what it
+had in the first row, or the daemon ended, wrote more than 150 lines a minute, or took more than 300 MiB above that row.
 """
 
 import argparse
