@@ -80,6 +80,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.daemon.session_change import SessionChange
     from mocapd.app.daemon.supervision import Supervision
+    from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.config.runtime_folder import runtime_folder
     from mocapd.control.daemon_control import DaemonControl
     from mocapd.control.last_trouble import LastTrouble
@@ -105,7 +106,10 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             page = DaemonPage(service) if config.web.enabled else None
             change = SessionChange(service, read, signals, page, notifier)
             control.attach(service, change.reloads)
-            code = run_daemon(service, signals, hint, (change, control, Supervision(notifier)))
+            with (
+                DecoderWarnings()
+            ):  # a thread, so not before whatever is forked for the first start
+                code = run_daemon(service, signals, hint, (change, control, Supervision(notifier)))
     except SystemExit as end:  # told to end while the first session was still prepared
         code = end.code if isinstance(end.code, int) else 0
     finally:

@@ -4,8 +4,8 @@
 
 prints a table: the rate of the good camera as the daemon has it and as its node has sent it, the daemon's exit, the lines
 of its log, its peak of memory, and what it says of the other camera. The first row is with an honest second node: the
-machine may be busy. Exit code 1 when the good camera lost more than a thirtieth of what was sent, or the daemon ended,
-wrote more than 150 lines a minute, or took more than 300 MiB above the first row.
+machine may be busy. Exit code 1 when the good camera has less than 29 of 30 pictures of what was sent, and of what it
+had in the first row, or the daemon ended, wrote more than 150 lines a minute, or took more than 300 MiB above that row.
 """
 
 import argparse
@@ -70,7 +70,8 @@ class Row:
         found = []
         if self.exit_code is not None:
             found.append("ended")
-        if self.good_hz < SHARE * min(self.sent_hz, 30.0):
+        possible_hz = min(30.0, self.sent_hz, honest.good_hz if honest is not None else 30.0)
+        if self.good_hz < SHARE * possible_hz:
             found.append("rate")
         if self.lines > MOST_LINES * max(1.0, self.seconds / PER_S):
             found.append("log")

@@ -195,7 +195,7 @@ def test_ordinary_progressive_pictures_are_read() -> None:
 
 
 def test_scans_of_a_thumbnail_and_of_what_follows_the_picture_do_not_count() -> None:
-    good = large_pictures.jpeg(np.zeros((480, 640, 3), np.uint8))
+    good = jpeg(np.zeros((480, 640, 3), np.uint8))
     thumbnail = b"\xff\xe1" + struct.pack(">H", 2 + 140) + b"\xff\xda" * 70
     data = good[:2] + thumbnail + good[2:] + b"\xff\xda" * 70
     assert decode_camera_picture(data, (640, 480)).shape == (480, 640, 3)

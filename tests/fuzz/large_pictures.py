@@ -1,5 +1,6 @@
 """Pictures that cost much: of the size they should have, and with more work, words or bytes in them than a picture has."""
 
+import math
 import struct
 import zlib
 from collections.abc import Callable
@@ -90,7 +91,7 @@ def large_picture(random: Random, size_px: tuple[int, int]) -> bytes:
     """One of these, of this size, but for some that claim a larger one."""
 
     def count_of(size: int) -> int:
-        return max(1, round((MOST_BYTES / size) ** random.random()))
+        return max(1, round(math.pow(MOST_BYTES / size, random.random())))
 
     segments = (
         _COMMENT,

@@ -1,5 +1,6 @@
 """Mutations of inputs: damaged bytes, nasty values in a text, one token repeated many times, messages out of order."""
 
+import math
 import re
 import struct
 from collections.abc import Callable, Sequence
@@ -111,7 +112,7 @@ def repeated(
     if not token:
         return data
     most = max(1, most_bytes // len(token))
-    count = max(1, round(most ** random.random()))
+    count = max(1, round(math.pow(most, random.random())))
     return data[:begin] + token * count + data[begin:]
 
 

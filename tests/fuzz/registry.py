@@ -41,6 +41,7 @@ ROWS = (
     Row("webcam-frames", 5042, recordings.webcam_frames),
     Row("videos", 9000, recordings.videos),
     Row("remote-pictures", 6000, remote_cameras.pictures),
+    Row("remote-sequences", 2000, remote_cameras.sequences),
     Row("remote-clock", 4000, remote_cameras.clocks),
     Row("remote-states", 4000, remote_cameras.states),
     Row("remote-orders", 4000, remote_cameras.orders),

@@ -1,10 +1,13 @@
-"""What a camera node and a daemon hear of each other: pictures with stamps, clocks, states, orders."""
+"""What a camera node and a daemon hear of each other: pictures with stamps, their sequences, clocks, states, orders."""
 
 import random as randoms
+from contextlib import suppress
 from random import Random
 
 import msgspec
 
+from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import (
     CameraState,
@@ -18,13 +21,22 @@ from mocapd.capture.remote.clock_fit import ClockLine
 from mocapd.capture.remote.clock_track import ClockTrack
 from mocapd.capture.remote.picture_reader import Arrived, PictureReader
 from mocapd.capture.webcam.camera_controls import Control
+from mocapd.clock import NS_PER_S
+from mocapd.errors import MalformedError
 from mocapd.node.node_controls import NodeControls
+from mocapd.outputs.zenoh.zenoh_state import ZenohState
+from mocapd.pipeline.bundler import Bundler
+from mocapd.pipeline.metrics import CameraMetrics
+from mocapd.service.health import camera_message
+from mocapd.session.camera_inputs import CameraInput
 from tests.fuzz.damaged_pictures import jpeg, sample
-from tests.fuzz.mutations import damaged
+from tests.fuzz.mutations import damaged, repeated, shuffled
 from tests.fuzz.row import Attempt, Place, WrongError, named
 from tests.wizard.fake_webcam import RANGES, FakeWebcam
 
 _SIZE_PX = (64, 48)
+_MOST_HZ = 1000  # that a camera could have
+_STEADY = Mounting.STEADY
 _NOW_NS = 10**12
 _CLOCK = ClockLine(_NOW_NS, 3 * 10**9, 5e-5, 1e4, 1e5)
 _TIMES = (
@@ -55,6 +67,8 @@ def pictures(place: Place) -> Attempt:
             data = damaged(random, data)
         if random.random() < 0.5:
             told = damaged(random, told)
+        if random.random() < 0.05:
+            told = repeated(random, told)
         arrived = Arrived(data, told, _NOW_NS)
         frame = PictureReader("a").read(arrived, _SIZE_PX, 7, _CLOCK)
         if frame.pixels.shape != (48, 64, 3) or not 0 <= _NOW_NS - frame.t_ns <= 10**9:
@@ -62,6 +76,45 @@ def pictures(place: Place) -> Attempt:
         return True
 
     return attempt
+
+
+def sequences(place: Place) -> Attempt:
+    """Pictures whose stamps follow each other in any way: what the daemon says of the camera afterwards can be sent, and
+    it counts no more lost pictures than there was time for."""
+    good = jpeg(sample(_SIZE_PX))
+    camera = CameraInput(FakeWebcam("a"), "zenoh://127.0.0.1/attic/cam0", _SIZE_PX)
+    period_ns = NS_PER_S // 30
+    honest = [PictureStamp(7, seq, 0) for seq in range(4)]
+
+    def attempt(random: Random, number: int) -> bool:
+        reader, bundler = PictureReader("a"), Bundler(("a",))
+        now_ns, taken = _NOW_NS, 0
+        for stamp in shuffled(random, honest, _with_any_seq, most=200):
+            now_ns += random.choice((0, 1, NS_PER_S // 300, period_ns, period_ns, NS_PER_S))
+            off_ns = random.choice((0, 0, 0, NS_PER_S // 2, random.randrange(3 * NS_PER_S)))
+            exposure_ns = _CLOCK.remote_from_local(now_ns - off_ns)
+            stamp = PictureStamp(stamp.run, stamp.seq, exposure_ns)
+            arrived = Arrived(good, camera_wire.encode(stamp), now_ns)
+            with suppress(MalformedError):
+                bundler.add(reader.read(arrived, _SIZE_PX, 7, _CLOCK), now_ns)
+                taken += 1
+        counts = bundler.counts()["a"]
+        gone_s = (now_ns - _NOW_NS) / NS_PER_S + 1.0  # the first may be exposed a second before
+        if counts.lost > _MOST_HZ * gone_s + taken:
+            raise WrongError(f"{counts.lost} pictures are lost in {gone_s:.1f} s")
+        torn = random.choice((0, 2**53, 2**64, 10**30))
+        status = CaptureStatus("a", CaptureState.LIVE, "", taken, torn, 0, 30.0, now_ns)
+        message = camera_message("pc", camera, status, CameraMetrics(30.0, 1.0, counts), _STEADY)
+        for message_format in ("json", "msgpack"):
+            ZenohState("pc", message_format).set(message)
+        return taken > 0
+
+    return attempt
+
+
+def _with_any_seq(random: Random, stamp: PictureStamp) -> PictureStamp:
+    seq = random.choice((0, 1, 10**6, 2**31, 2**53, random.randrange(2**53)))
+    return PictureStamp(random.choice((7, 7, 7, 8)), seq, stamp.exposure_ns)
 
 
 def clocks(place: Place) -> Attempt:

@@ -37,6 +37,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.app.terminal.status_line import StatusLine
+    from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
     from mocapd.node.imperfections import parse_imperfections
@@ -54,7 +55,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     threading.excepthook = lambda args: node.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(node)
     try:
-        with node, StatusLine() as shown:
+        with node, DecoderWarnings(), StatusLine() as shown:
             print("\n".join(_how_to(node)), flush=True)
             notifier.ready(_how_cameras_fare(node))
             while not node.wait(SHOW_EVERY_S):

@@ -3,6 +3,7 @@
 import json
 import threading
 from contextlib import ExitStack
+from functools import partial
 
 import msgspec
 import zenoh
@@ -74,9 +75,7 @@ class RemoteLink:
         try:
             with zenoh_call():
                 # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-                arrived = zenoh.handlers.Callback(
-                    lambda sample: self._arrived(sample, limit), indirect=False
-                )
+                arrived = zenoh.handlers.Callback(partial(self._arrived, limit), indirect=False)
                 self._opened.enter_context(self._session.declare_subscriber(pictures, arrived))
                 told = zenoh.handlers.Callback(self._told, indirect=False)
                 liveliness = self._session.liveliness()
@@ -183,7 +182,7 @@ class RemoteLink:
         if not was_closed:
             close_soon(self._opened, _CLOSE_S)
 
-    def _arrived(self, sample: zenoh.Sample, limit: ArrivalLimit) -> None:
+    def _arrived(self, limit: ArrivalLimit, sample: zenoh.Sample) -> None:
         came_ns = monotonic_ns()
         stamp = sample.attachment
         if (
