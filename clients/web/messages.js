@@ -3,6 +3,7 @@
 export const SKELETON = "mocapd.Skeleton.v1";
 export const REST = "mocapd.Skeleton.Rest.v1";
 const FAMILY = /^mocapd\.Skeleton(\.Rest)?\.v/;
+const LARGEST = 1e6; // of any number of a joint
 const LONGEST = 1 << 20; // characters of a message; a frame has 6,000
 
 // One of {rest}, {frame}, {ignored: why}, {version: the schema of another version}, {} for what is of no interest.
@@ -40,7 +41,7 @@ function readFrame(tree) {
 
 function isJoint(joint) {
   return isObject(joint) && areNumbers(joint.p, 3) && areNumbers(joint.r, 4) && areNumbers(joint.l, 4)
-    && Number.isFinite(joint.c);
+    && isNumber(joint.c);
 }
 
 function readRest(tree) {
@@ -54,7 +55,12 @@ function readRest(tree) {
 }
 
 function areNumbers(list, count) {
-  return Array.isArray(list) && list.length === count && list.every(Number.isFinite);
+  return Array.isArray(list) && list.length === count && list.every(isNumber);
+}
+
+// As docs/wire.md bounds it: beyond, WebGL's floats would be infinite.
+function isNumber(value) {
+  return Number.isFinite(value) && Math.abs(value) <= LARGEST;
 }
 
 function isObject(value) {

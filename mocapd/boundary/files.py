@@ -24,9 +24,13 @@ def read_file(path: Path, most_bytes: int) -> bytes:
     data = read_beginning(path, most_bytes + 1)
     if len(data) > most_bytes:
         raise InputError(
-            f"is larger than {most_bytes / 1e6:g} MB", str(path), "is it the file that was meant?"
+            f"is larger than {_size(most_bytes)}", str(path), "is it the file that was meant?"
         )
     return data
+
+
+def _size(number_bytes: int) -> str:
+    return f"{number_bytes / 1e6:g} MB" if number_bytes >= 1e6 else f"{number_bytes / 1e3:g} kB"
 
 
 def read_beginning(path: Path, most_bytes: int) -> bytes:

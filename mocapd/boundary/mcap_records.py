@@ -26,6 +26,8 @@ from mocapd.errors import InputError, MalformedError
 
 MOST_RECORD_BYTES = 32 << 20  # ours are some MB at most
 MOST_CHANNELS = 4096
+_MOST_CHANNEL_BYTES = 1 << 16
+_LONGEST_NAME = 1000  # characters
 
 # What the chunks may hold together, by the bytes of the file so far: pictures that repeat shrink to a 250th, frames without
 # a person to 11 bytes each.
@@ -80,7 +82,7 @@ class McapFile:
         self.ending = ""
         self.damaged = 0
         self._schemas: dict[int, str] = {}
-        self._channels: dict[int, Channel] = {}
+        self._channels: dict[int, tuple[str, str, int]] = {}  # topic, encoding, schema
         self._unpacked_bytes = self._unpacked_records = 0
 
     def items(self, wanted: Wanted) -> Iterator[Item]:
@@ -145,10 +147,13 @@ class McapFile:
     def _read_inner(self, opcode: int, body: memoryview, wanted: Wanted) -> Iterator[McapMessage]:
         if opcode == Opcode.SCHEMA:
             schema = _parsed(Schema.read, body)
-            _bounded(self._schemas)[schema.id] = schema.name
+            _bounded(self._schemas)[schema.id] = _name(schema.name)
         elif opcode == Opcode.CHANNEL:
+            if len(body) > _MOST_CHANNEL_BYTES:  # its table of remarks is parsed entry by entry
+                raise MalformedError("says too much of a channel")
             channel = _parsed(Channel.read, body)
-            _bounded(self._channels)[channel.id] = channel
+            kept = _name(channel.topic), _name(channel.message_encoding), channel.schema_id
+            _bounded(self._channels)[channel.id] = kept
         elif opcode == Opcode.MESSAGE:
             if len(body) < _MESSAGE.size:
                 raise MalformedError("a record is damaged")
@@ -158,13 +163,13 @@ class McapFile:
                 raise MalformedError("holds a message of no channel")
             if log_ns > _LATEST_NS:
                 raise MalformedError("holds a message of no possible time")
-            name = self._schemas.get(channel.schema_id, "")
-            if wanted(channel.topic, name):
+            topic, encoding, schema_id = channel
+            name = self._schemas.get(schema_id, "")
+            if wanted(topic, name):
                 data = bytes(body[_MESSAGE.size :])
                 if not data:
                     raise MalformedError("holds a message of nothing")
-                encoding = channel.message_encoding
-                yield McapMessage(channel.topic, name, encoding, log_ns, sequence, data)
+                yield McapMessage(topic, name, encoding, log_ns, sequence, data)
 
 
 _READ = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT})
@@ -186,6 +191,12 @@ def _parsed(read: Callable[[ReadDataStream], R], body: bytes | memoryview) -> R:
         return read(ReadDataStream(BytesIO(body)))
     except _BAD_RECORD as error:
         raise MalformedError(f"a record is damaged ({type(error).__name__})") from None
+
+
+def _name(text: str) -> str:
+    if len(text) > _LONGEST_NAME:
+        raise MalformedError("has a name that is too long")
+    return text
 
 
 def _bounded(table: dict[int, R]) -> dict[int, R]:

@@ -45,7 +45,7 @@ from mocapd.whole_file import tidy, whole_file
 FILE_NAME = "calibration.toml"
 COLOURS = "colours"
 
-_MOST_BYTES = 256 << 10  # a camera takes 1 kB
+_MOST_BYTES = 256_000  # a camera takes 1 kB
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.

@@ -21,7 +21,7 @@ from mocapd.whole_file import whole_file
 SECRETS = "cameras.secret.toml"
 SCHEMA = 1
 
-_MOST_BYTES = 256 << 10
+_MOST_BYTES = 256_000
 _HEADER = """\
 # The addresses of network cameras with their passwords, kept by `mocapd calibrate` for the
 # calibrations beside this file. Nobody else may read it, and nobody else needs it.

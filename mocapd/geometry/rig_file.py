@@ -13,7 +13,7 @@ from mocapd.types import Camera, Floats, Rig
 
 SCHEMA = "mocapd.Rig.v1"  # what says none, as the capture format, is of this one too
 _RECALIBRATE = "calibrate again, or restore the file"
-_MOST_BYTES = 1 << 20  # a camera takes 1 kB
+_MOST_BYTES = 1_000_000  # a camera takes 1 kB
 _LARGEST_PX = 16_384  # of a picture's side
 _LARGEST = 1e6  # of any other number, in its unit: pixels or metres
 

@@ -16,7 +16,7 @@ from mocapd.trackers.base import RoomLearner, Tracker
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
-# The archive's first member; in a capture's truth.npz that is another one.
+# By the archive's first member: other arrays, such as a capture's, are of other kinds.
 _TRACK = FileKind(
     "a track", lambda head: head.startswith(b"PK\x03\x04") and head[30:40] == b"schema.npy"
 )

@@ -40,7 +40,7 @@ from mocapd.sim.scenario_values import (
     Vec3,
 )
 
-_MOST_BYTES = 64 << 10  # ours have 5 kB at most
+_MOST_BYTES = 64_000  # ours have 5 kB at most
 
 
 class CameraSpec(Table, frozen=True, kw_only=True):

@@ -80,3 +80,14 @@ def test_many_messages_that_shrink_well_are_all_read(tmp_path: Path) -> None:
     parts = [chunk(b"".join(messages[k : k + 10_000])) for k in range(0, 40_000, 10_000)]
     found, file = read(tmp_path / "a.mcap", HEAD + b"".join(parts))
     assert (len(found), file.damaged) == (40_000, 0)
+
+
+def test_long_names_and_remarks_are_left_out(tmp_path: Path) -> None:
+    ids = range(2, 60)
+    schemas = [record(3, struct.pack("<H", n) + text(bytes(1 << 20)) + text(b"") * 2) for n in ids]
+    remarks = struct.pack("<I", 800_000) + text(b"") * 200_000
+    channel = record(4, struct.pack("<HH", 2, 1) + text(b"/b") + text(b"json") + remarks)
+    data = HEAD + b"".join(map(chunk, [*schemas, channel])) + chunk(GOOD)
+    found, file = read(tmp_path / "a.mcap", data)
+    assert found == [b"{}"]
+    assert file.damaged == len(ids) + 1

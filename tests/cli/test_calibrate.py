@@ -84,7 +84,8 @@ def test_a_refusal_is_one_line_and_leaves_the_old_rig(
     clean_env: dict[str, str], pictures: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "rig.json"
-    out.write_text("the one before")
+    before = '{"cameras": "the one before"}'
+    out.write_text(before)
     few = tmp_path / "few"
     for picture in sorted(pictures.glob("*/*"))[::3]:
         (few / picture.parent.name).mkdir(parents=True, exist_ok=True)
@@ -93,7 +94,19 @@ def test_a_refusal_is_one_line_and_leaves_the_old_rig(
     assert outcome.code == 78
     assert outcome.out == ""
     assert "rows of 5 squares, 6x5 was given" in outcome.err
-    assert out.read_text() == "the one before"
+    assert out.read_text() == before
+
+
+def test_what_is_no_rig_is_not_replaced_by_one(
+    clean_env: dict[str, str], pictures: Path, tmp_path: Path
+) -> None:
+    for name in ("rig.json", "calibration.toml"):
+        out = tmp_path / name
+        out.write_text("my notes")
+        outcome = calibrate(clean_env, pictures, out)
+        assert outcome.code == 73
+        assert "is there already, and is not a" in outcome.err
+        assert out.read_text() == "my notes"
 
 
 def test_what_cannot_be_is_refused_at_once(

@@ -51,8 +51,9 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     from mocapd.calibration.calibration_file import CALIBRATION_KIND
     from mocapd.output_file import OutputFile
 
+    read = (options.folder,) if options.strokes is None else (options.folder, options.strokes)
     kind = CALIBRATION_KIND if out.suffix == ".toml" else RIG
-    target = OutputFile(out, kind, options.force, inputs=(options.folder,))
+    target = OutputFile(out, kind, options.force, inputs=read)
     target.check()
     with ProgressBars() as progress:
         found = solve(options.folder, spec, progress, options.floor_frame)

@@ -29,7 +29,7 @@ _HEADER = """\
 _log = logging.getLogger(__name__)
 _FIX = "take the file away: lenses are measured anew"
 
-_MOST_BYTES = 256 << 10  # a lens takes 0.5 kB
+_MOST_BYTES = 256_000  # a lens takes 0.5 kB
 
 Finite = Annotated[float, msgspec.Meta(ge=-1e9, le=1e9)]  # NaN is in no range
 NotNegative = Annotated[float, msgspec.Meta(ge=0.0, le=1e9)]
