@@ -1,7 +1,7 @@
 """A folder in the capture format: rig.json, camN.mp4, subject.json, scribble/, model/."""
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,9 +10,9 @@ from typing import Any
 from mocapd.boundary.files import is_folder
 from mocapd.boundary.numbers import brief, finite_number
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
+from mocapd.capture.frame_groups import as_set, due_frames, half_period_ns
 from mocapd.capture.pace import Pace
 from mocapd.capture.video_times import video_times
-from mocapd.clock import NS_PER_S
 from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
 from mocapd.shirt.colour.strokes import stroked_pictures, strokes_beside
@@ -65,14 +65,6 @@ class CaptureFolder:
     def fps_hz(self) -> float:
         """The rate of the fastest camera."""
         return max(camera.fps_hz for camera in self.cameras)
-
-    def delayed(self, late_s: Mapping[str, float]) -> "CaptureFolder":
-        """The same with the times of some cameras' frames, by name, so much later [s]."""
-        cameras = tuple(
-            replace(one, time_offset_s=one.time_offset_s + late_s.get(one.name, 0.0))
-            for one in self.cameras
-        )
-        return replace(self, cameras=cameras)
 
 
 def load_folder(path: Path) -> CaptureFolder:
@@ -245,20 +237,6 @@ def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
                         _LOG.warning("%s", end)
             if not ahead:
                 return
-            # frames of one instant are no farther apart than half a period of the fastest camera
-            until_ns = min(frame.t_ns for frame in ahead.values()) + _half_period_ns(sources)
-            due = [
-                one.name for one in sources if one.name in ahead and ahead[one.name].t_ns < until_ns
-            ]
-            yield as_set({name: ahead.pop(name) for name in due})
-
-
-def _half_period_ns(sources: Sequence[FileSource]) -> int:
-    return round(0.5 * NS_PER_S / max(source.fps_hz for source in sources))
-
-
-def as_set(frames: dict[str, Frame]) -> FrameSet:
-    """Frames in the rig's order as a set: its time is that of the first camera that is present."""
-    t_ns = next(iter(frames.values())).t_ns
-    spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
-    return FrameSet(t_ns, frames, spread_ns)
+            present = {one.name: ahead[one.name] for one in sources if one.name in ahead}
+            apart_ns = half_period_ns(max(one.fps_hz for one in sources))
+            yield as_set({name: ahead.pop(name) for name in due_frames(present, apart_ns)})

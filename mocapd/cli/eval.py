@@ -160,7 +160,8 @@ def evaluate_captures(
         made = recorded_set.recorded(sessions, effective.cache_dir, progress)
         recorded_set.check_suits(name, sessions, made)
         folders += made
-        cases = [open_case(folder) for folder in folders]
+        given = set(captures or ())
+        cases = [open_case(folder, compare=folder in given) for folder in folders]
 
         def build(known: Calibration, method: str) -> ReadyTracker:
             tracker, section = (name, sections[name]) if method == FULL else rivals[method]

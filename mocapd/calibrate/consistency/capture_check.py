@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from mocapd.calibrate.consistency.findings import Finding, Mistake
-from mocapd.calibrate.consistency.motion_delay import CameraDelay, MotionMeter, camera_delays
+from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
     PersonFinder,
     PersonView,
@@ -21,6 +21,7 @@ from mocapd.calibrate.consistency.person_views import (
     shrink,
 )
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
+from mocapd.calibrate.consistency.time_judge import CameraTiming, late_findings
 from mocapd.calibrate.consistency.world_judge import judge_world, turned_views
 from mocapd.clock import seconds
 from mocapd.types import Bytes, Camera, Floats, Frame, Rig
@@ -32,10 +33,18 @@ _PEOPLE = 2  # looked at in each stretch
 _MOVES = 0.7  # of the logarithm of change, above the quietest tenth of the pictures
 _ENOUGH_S = 12.0  # of motion
 _MOST_KEPT = 240  # pictures of a camera
-# of a delay that is used: of agreement at least, of the next best agreement at most, and how sure
-_AGREEMENT, _RIVAL, _SD_S = 0.45, 0.85, 0.015
-_LEAST_DELAY_S = 0.018  # over half a frame at 30 Hz
-_SURE_SDS = 3.0
+# What a mistake that is not mended does to joints, at least, though views may still agree about them [m]
+_OFF_M = {
+    Mistake.DELAY: 0.1,
+    Mistake.EXCHANGED: 0.3,
+    Mistake.MIRRORED: 0.3,
+    Mistake.TURNED: 0.3,
+    Mistake.ZOOMED: 0.1,
+    Mistake.INVERTED: 0.3,
+    Mistake.AXES: 0.3,
+    Mistake.UNIT: 0.3,
+    Mistake.CONTRADICTION: 0.15,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,16 +86,19 @@ class CaptureCheck:
     def put(self, frame: Frame) -> None:
         """A picture of a camera of the rig; one of another size than its calibration is left out."""
         kept = self._kept.get(frame.camera)
-        if kept is None or frame.pixels.shape[1::-1] != kept.camera.size_px:
-            return
-        t_s = seconds(frame.t_ns)
-        kept.meter.put(t_s, frame.pixels)
+        if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
+            self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
+
+    def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
+        """The same of a picture that is smaller already, as by `shrink`."""
+        kept, t_s = self._kept[camera], seconds(t_ns)
+        kept.meter.put(t_s, small)
         kept.frames += 1
         kept.first_s = t_s if kept.frames == 1 else kept.first_s
         kept.last_s = t_s
         if kept.times_s and t_s - kept.times_s[-1] < _EVERY_S:
             return
-        small, kept.smaller = shrink(frame.pixels)
+        kept.smaller = smaller
         kept.times_s.append(t_s)
         kept.pictures.append(small)
         if len(kept.pictures) > _MOST_KEPT:
@@ -106,8 +118,7 @@ class CaptureCheck:
         if not there:
             return CheckResult()
         cameras = [one.camera for one in there]
-        delays = camera_delays([one.meter.signal() for one in there]) if len(there) > 1 else [None]
-        late = _late_findings(there, delays)
+        late = late_findings([_timing(one) for one in there]) if len(there) > 1 else ()
         late_s = {one.cameras[0]: one.late_s for one in late}
         stretches = self._stretches(there, [late_s.get(one.name, 0.0) for one in cameras])
         names = tuple(camera.name for camera in cameras)
@@ -116,7 +127,11 @@ class CaptureCheck:
             [[view for one in stretches for view in one[i][:1]] for i in range(len(cameras))],
         )
         if len(cameras) == 1:
-            return CheckResult(turned, 0.0, sum(1 for one in stretches if one[0]))
+            return CheckResult(
+                turned,
+                _OFF_M[Mistake.TURNED] if turned else 0.0,
+                sum(1 for one in stretches if one[0]),
+            )
         verdict = judge(cameras, stretches)
         findings = verdict.findings
         if not findings:
@@ -125,7 +140,13 @@ class CaptureCheck:
             one.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED) for one in findings
         ):
             findings = (*turned, *findings)
-        return CheckResult((*late, *findings), verdict.off_m, len(verdict.fits))
+        off_m = max(
+            (_OFF_M.get(one.mistake, 0.0) for one in (*late, *findings) if not one.is_mended),
+            default=0.0,
+        )
+        return CheckResult(
+            (*late, *findings), max(off_m, verdict.off_m if findings else 0.0), len(verdict.fits)
+        )
 
     def _stretches(self, there: Sequence[_Kept], late_s: Sequence[float]) -> list[Stretch]:
         """The people in the stretches of time in which most moves, with the times that they should have."""
@@ -148,7 +169,7 @@ class CaptureCheck:
         ]
         rooms = [room_of(one) for one in works]
         turns: list[Sequence[int]] = [range(4)] * len(there)
-        out = []
+        out: list[Stretch] = []
         for k in chosen:
             seen = []
             for i, (work, late) in enumerate(zip(works, late_s, strict=True)):
@@ -191,34 +212,6 @@ def _motion_between(meter: MotionMeter, low_s: float, high_s: float) -> float:
     return float(change.mean()) if len(change) else 0.0
 
 
-def _late_findings(
-    there: Sequence[_Kept], delays: Sequence[CameraDelay | None]
-) -> tuple[Finding, ...]:
-    out = []
-    for kept, delay in zip(there, delays, strict=True):
-        if delay is None or not _is_sure(delay):
-            continue
-        name = kept.camera.name
-        fps_hz = max(kept.frames - 1, 1) / max(kept.last_s - kept.first_s, 1e-3)
-        frames, late_ms = abs(delay.late_s) * fps_hz, 1e3 * delay.late_s
-        sense = "later" if delay.late_s > 0 else "earlier"
-        out.append(
-            Finding(
-                Mistake.DELAY,
-                (name,),
-                f"the pictures of {name!r} are {frames:.1f} frames ({abs(late_ms):.0f} ms) {sense} than their times say",
-                f"their times are corrected; add {delay.late_s:+.3f} to 'time_offset_s' of {name!r} in rig.json to state it",
-                delay.late_s,
-            )
-        )
-    return tuple(out)
-
-
-def _is_sure(delay: CameraDelay) -> bool:
-    return (
-        abs(delay.late_s) > max(_LEAST_DELAY_S, _SURE_SDS * delay.sd_s)
-        and delay.sd_s < _SD_S
-        and delay.agreement > _AGREEMENT
-        and delay.rival < _RIVAL * delay.agreement
-        and delay.agreement_undelayed < delay.agreement - 0.02
-    )
+def _timing(kept: _Kept) -> CameraTiming:
+    period_s = (kept.last_s - kept.first_s) / max(kept.frames - 1, 1)
+    return CameraTiming(kept.camera.name, kept.meter.signal(), max(period_s, 1e-3))

@@ -105,7 +105,7 @@ def _judged(curves: Floats, late: Floats, i: int, sd_s: float) -> CameraDelay:
 
 def _lags_s() -> Floats:
     n = round(_MOST_S / _GRID_S)
-    return np.arange(-n, n + 1) * _GRID_S
+    return np.arange(-n, n + 1, dtype=np.float64) * _GRID_S
 
 
 def _pair_blocks(signals: Sequence[MotionSignal]) -> Floats | None:
@@ -142,7 +142,7 @@ def _band(values: Floats) -> Floats:
     column = values[None].astype(np.float64)
     smooth = cv2.GaussianBlur(column, (0, 0), fast, borderType=cv2.BORDER_REPLICATE)
     drift = cv2.GaussianBlur(column, (0, 0), slow, borderType=cv2.BORDER_REPLICATE)
-    return np.asarray(smooth - drift, np.float64)[0]
+    return np.asarray(smooth - drift, np.float64).reshape(-1)
 
 
 def _solve(curves: Floats) -> Floats:
@@ -167,7 +167,7 @@ def _solve(curves: Floats) -> Floats:
         if best[0] <= 1e-3:
             break
         late[best[1]] = best[2]
-    return late - np.median(late) if count > 2 else late
+    return np.asarray(late - np.median(late) if count > 2 else late, np.float64)
 
 
 def _peak(lags_s: Floats, curve: Floats, k: int) -> float:

@@ -217,8 +217,8 @@ def candidates(work: WorkPictures, room: Room) -> list[Ints]:
 
 def _differs(picture: Bytes, room: Room) -> Bytes:
     """Where (h,w) a picture is not the room."""
-    off = cv2.absdiff(picture, room.picture).max(axis=-1)
-    return ((off > _DIFFERS) | (room.known == 0)).astype(np.uint8)
+    off = np.asarray(cv2.absdiff(picture, room.picture)).max(axis=-1)
+    return np.asarray((off > _DIFFERS) | (room.known == 0), np.uint8)
 
 
 def _relit(room: Room, picture: Bytes) -> Room:

@@ -134,7 +134,7 @@ def _gain(
     least: float,
 ) -> float:
     """What an explanation brings, summed over pairs of views; 0 where that is not enough, or not often enough."""
-    gains, costs, against = [], [], 0
+    gains, costs, against, when = [], [], 0, set()
     for key, before in given.items():
         after = fits.get(key)
         if after is None or not {key[0], key[1]} & set(hypothesis.affected):
@@ -142,9 +142,10 @@ def _gain(
         if min(before.cost, after.cost) < _FITS:
             gains.append(before.cost - after.cost)
             costs.append(after.cost)
+            when.add(key[2])
             # who agrees well as given, once, has no mistake that lasts
             against += before.cost < _AGREES and gains[-1] < 0.5 * least
-    if not gains or against > _AGAINST * len(gains):
+    if len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
         return 0.0
     enough = np.mean(gains) >= least and np.mean(np.array(gains) > 0.0) >= _OFTEN
     return float(np.sum(gains)) if enough and np.median(costs) < _FITS else 0.0
