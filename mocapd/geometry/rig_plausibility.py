@@ -9,7 +9,6 @@ from mocapd.geometry.camera_model import centre
 from mocapd.types import Rig
 
 _FARTHEST_M = 60.0  # of cameras from each other, and from the middle of the floor: a large hall
-_NEAREST_M = 0.02  # of two cameras: lenses are no nearer
 _USUAL_M = (0.3, 20.0)  # of a camera from the middle of the floor
 # metres per unit that other programs write
 _UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "feet": 0.3048}
@@ -27,12 +26,6 @@ def require_plausible(rig: Rig, where: str) -> None:
                 f"cameras {one!r} and {other!r} would be {_length(apart_m)} apart",
                 where,
                 _mend(away_m),
-            )
-        if apart_m < _NEAREST_M:
-            raise ConfigError(
-                f"cameras {one!r} and {other!r} would be in one place ({1e3 * apart_m:.1f} mm apart)",
-                where,
-                "see that 't' is in metres, and each camera has its own R and t",
             )
     if away_m > _FARTHEST_M:
         raise ConfigError(

@@ -1,7 +1,7 @@
 """Whether a rig fits what its cameras show of people; and where not, which known mistake makes the views agree."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -15,7 +15,7 @@ from mocapd.calibrate.consistency.hypotheses import (
     zooms,
 )
 from mocapd.calibrate.consistency.person_views import PersonView
-from mocapd.calibrate.consistency.view_agreement import PairFit, fit_pair
+from mocapd.calibrate.consistency.view_agreement import PairFit, fit_pair, thinned
 from mocapd.types import Camera
 
 Stretch = Sequence[Sequence[PersonView]]  # by camera, the people that it saw in a few seconds
@@ -27,6 +27,7 @@ _GAIN = 0.3  # mean of costs that an explanation must bring
 _ZOOM_GAIN = 0.2
 _AGREES = 1.0  # cost of two views that agree, whatever may be better
 _AGAINST = 0.2  # share of views that agree well as given, for a mistake to be one
+_RIVAL = 0.75  # of what the best zoom brings, another camera's that may be meant as well
 _OFTEN = 0.65  # share of stretches that an explanation must improve
 _CONTRADICT_DEG = 2.2
 _LEAST_STRETCHES = 2
@@ -44,7 +45,7 @@ class Verdict:
 
 def judge(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> Verdict:
     """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common."""
-    table = _Table(stretches)
+    table = _Table([[[thinned(one) for one in views] for views in seen] for seen in stretches])
     given = table.fits(as_given(cameras))
     if not given:
         return Verdict((), ())
@@ -101,19 +102,42 @@ def _best_explanation(
         return None
     best, most = None, 0.0
     for one in hypotheses(cameras):
+        if _cost_about(given, one.affected) < _WELL:
+            continue
         gain = _gain(one, table.fits(one, given), given, _GAIN)
         if gain > most:
             best, most = one, gain
-    for i in range(count):
-        zoom, brought = _best_of(zooms(cameras, i), table, given)
-        if zoom is not None:
-            factor = float(zoom.mends[i].keywords["factor"])  # type: ignore[attr-defined]
-            finer, more = _best_of(shifted(cameras, i, 1.0 / factor), table, given)
-            zoom, brought = (finer, more) if more > brought else (zoom, brought)
-        # a zoom and its middle are free numbers, which a mistake of another kind has not
-        if zoom is not None and brought > 1.15 * most + 0.05:
-            best, most = zoom, brought
+    # a zoom and its middle are free numbers, which a mistake of another kind has not
+    zoomed = _best_zoom(cameras, table, given)
+    if zoomed is not None and zoomed[1] > 1.15 * most + 0.05:
+        return zoomed[0]
     return best
+
+
+def _best_zoom(
+    cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
+) -> tuple[Hypothesis, float] | None:
+    """The zoom of one camera that brings most, and what it brings; it names all cameras of which one may be zoomed."""
+    found: list[tuple[Hypothesis, float]] = []
+    for i in range(len(cameras)):
+        if _cost_about(given, (i,)) < _WELL:
+            continue
+        zoom, brought = _best_of(zooms(cameras, i), table, given)
+        if zoom is None:
+            continue
+        factor = float(zoom.mends[i].keywords["factor"])  # type: ignore[attr-defined]
+        finer, more = _best_of(shifted(cameras, i, 1.0 / factor), table, given)
+        found.append((finer, more) if finer is not None and more > brought else (zoom, brought))
+    if not found:
+        return None
+    best, most = max(found, key=lambda one: one[1])
+    rivals = [one for one, brought in found if brought > _RIVAL * most and one is not best]
+    if not rivals:
+        return best, most
+    affected = tuple(sorted({best.affected[0], *(one.affected[0] for one in rivals)}))
+    return replace(
+        best, affected=affected, what="; or ".join(one.what for one in (best, *rivals))
+    ), most
 
 
 def _best_of(
@@ -147,6 +171,8 @@ def _gain(
             against += before.cost < _AGREES and gains[-1] < 0.5 * least
     if len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
         return 0.0
+    if np.mean([fit.up[1] for fit in fits.values() if np.isfinite(fit.up[1])] or [1.0]) < 0.0:
+        return 0.0  # what stands everybody on the head explains nothing
     enough = np.mean(gains) >= least and np.mean(np.array(gains) > 0.0) >= _OFTEN
     return float(np.sum(gains)) if enough and np.median(costs) < _FITS else 0.0
 
@@ -155,6 +181,12 @@ def _cost(fits: Mapping[_Pair, PairFit], i: int, j: int) -> float:
     """Of two cameras, the median of their stretches; 0 where they saw nothing in common."""
     costs = [fit.cost for key, fit in fits.items() if key[:2] == (i, j)]
     return float(np.median(costs)) if costs else 0.0
+
+
+def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float:
+    """Mean cost of the pairs that some cameras are of."""
+    costs = [fit.cost for key, fit in fits.items() if {key[0], key[1]} & set(affected)]
+    return float(np.mean(costs)) if costs else 0.0
 
 
 def _contradicting(

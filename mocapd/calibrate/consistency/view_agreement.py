@@ -11,15 +11,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.calibrate.consistency.person_views import PersonView
-from mocapd.geometry.camera_model import centre, rays
+from mocapd.geometry.camera_model import centre, undistort
 from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.joint_network import JOINTS
 
 CAP_DEG = 5.0  # what is farther off counts as so far
 _SURE_CELLS = 1.5
-_NEAR_S = 0.1  # between two of a view's pictures, to interpolate
+_NEAR_S = 0.15  # between two of a view's pictures, to interpolate
 _BETWEEN_M = (0.3, 25.0)  # from each camera, where rays may meet
-_LEAST = 60  # joints in common, to say anything
+_LEAST = 40  # joints in common, to say anything
+_ITERATIONS = 4  # of undistortion
 _TORSO_M = 0.50  # as in person_views
 _LEAST_PARALLAX_DEG, _NO_DEPTH = 8.0, 0.5
 _HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
@@ -75,8 +76,8 @@ def fit_pair(
     if count < _LEAST:
         return None
     keep = both[..., None]
-    at_a, ray_a = rays(first, np.where(keep, a.px, 0.0))
-    at_b, ray_b = rays(second, np.where(keep, b.px, 0.0))
+    at_a, ray_a = centre(first), _rays(first, np.where(keep, a.px, 0.0))
+    at_b, ray_b = centre(second), _rays(second, np.where(keep, b.px, 0.0))
     apart = at_b - at_a
     cosine = np.einsum("fjk,fjk->fj", ray_a, ray_b)
     sine2 = np.maximum(1.0 - cosine**2, 1e-9)
@@ -110,6 +111,14 @@ def fit_pair(
     )  # fmt: skip
 
 
+def _rays(camera: Camera, px: Floats) -> Floats:
+    """Unit directions (...,3) of pixels (...,2), in the world, to a tenth of a pixel."""
+    distorted = (px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
+    xy = undistort(camera.dist, distorted, _ITERATIONS)
+    ray = np.concatenate([xy, np.ones_like(xy[..., :1])], axis=-1) @ camera.R
+    return np.asarray(ray / np.linalg.norm(ray, axis=-1, keepdims=True))
+
+
 def _depth(camera: Camera, view: PersonView, points_m: Floats, size: float) -> float:
     """Correlation of how much farther than the hips joints are, as triangulated and as guessed from one picture."""
     depth_m = (points_m - centre(camera)) @ camera.R[2]
@@ -139,6 +148,13 @@ def resampled(view: PersonView, times_s: Floats) -> PersonView:
     spread = np.where(near[:, None], spread, np.inf)
     farther = (1 - w) * view.farther_m[before] + w * view.farther_m[after]
     return replace(view, times_s=times_s, px=px, spread=spread, farther_m=farther)
+
+
+def thinned(view: PersonView) -> PersonView:
+    """Every second picture of a view."""
+    return PersonView(
+        view.times_s[::2], view.px[::2], view.spread[::2], view.farther_m[::2], view.quarter_turns
+    )
 
 
 def mirrored(view: PersonView, width_px: int) -> PersonView:
