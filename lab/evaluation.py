@@ -90,7 +90,8 @@ def evaluation(
             made = recorded(sessions, effective.cache_dir, progress)
             check_suits(name, sessions, made)
             folders += made
-        cases = [open_case(folder) for folder in folders]
+        given = set(captures or ())
+        cases = [open_case(folder, compare=folder in given) for folder in folders]
         resources = cached(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
             lambda known: ready_tracker(name, known, resources),

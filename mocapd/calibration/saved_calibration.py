@@ -9,6 +9,7 @@ from mocapd.body.shape import FACTORS
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.capture.webcam.controls import Controls
 from mocapd.geometry.rig_file import camera_from_dict
+from mocapd.geometry.rig_plausibility import require_plausible
 from mocapd.types import Rig
 
 SCHEMA = 1
@@ -141,7 +142,9 @@ class SavedCalibration(_Table, frozen=True, kw_only=True):
 
     def rig(self, where: str) -> Rig:
         """The cameras of one that is placed. Raises ConfigError naming camera and field; `where`: the file."""
-        return Rig(tuple(camera_from_dict(_entry(one), where) for one in self.camera))
+        rig = Rig(tuple(camera_from_dict(_entry(one), where) for one in self.camera))
+        require_plausible(rig, where)
+        return rig
 
 
 def _entry(camera: SavedCamera) -> dict[str, object]:

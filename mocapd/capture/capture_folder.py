@@ -3,8 +3,7 @@
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
-from itertools import count
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,9 @@ from mocapd.boundary.files import is_absent, is_file, is_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.numbers import brief, finite_number
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
+from mocapd.capture.frame_groups import as_set, due_frames, half_period_ns
 from mocapd.capture.pace import Pace
+from mocapd.capture.video_times import video_times
 from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
 from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_beside
@@ -20,12 +21,15 @@ from mocapd.types import Frame, FrameSet, Rig
 
 _LOG = logging.getLogger(__name__)
 _MOST_OFFSET_S = 86_400.0  # of a camera's clock from the others'
+_TIMED_FRAMES = 900  # by whose stamps a file's rate is known
+_SAME_RATE = 0.005  # of a rate: 29.97 and 30 are one to people
 STATURES_M = (0.5, 2.6)
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedCamera:
-    """Frame f is exposed at f / fps_hz + time_offset_s [s]. `scribble`: an image with strokes beside
+    """Frame f is exposed at f / fps_hz + time_offset_s [s], or, where the rate varies (`stamped`), at the file's stamp since
+    its first frame, + time_offset_s. start_s: the file's stamp of its first frame. `scribble`: an image with strokes beside
     it; None when there is none. lost: first and last frame, exclusive, of each time it was unplugged, which its
     video only fills."""
 
@@ -37,6 +41,8 @@ class RecordedCamera:
     frames: int
     scribble: Path | None
     lost: tuple[tuple[int, int], ...] = ()
+    stamped: bool = False
+    start_s: float = 0.0
 
     def has(self, frame: int) -> bool:
         """Whether the camera was there for a frame."""
@@ -58,8 +64,8 @@ class CaptureFolder:
 
     @property
     def fps_hz(self) -> float:
-        """The common rate of the cameras."""
-        return self.cameras[0].fps_hz
+        """The rate of the fastest camera."""
+        return max(camera.fps_hz for camera in self.cameras)
 
 
 def load_folder(path: Path) -> CaptureFolder:
@@ -79,13 +85,7 @@ def load_folder(path: Path) -> CaptureFolder:
         _camera(path, entry, camera.size_px)
         for entry, camera in zip(entries, rig.cameras, strict=True)
     )
-    rates = sorted({camera.fps_hz for camera in cameras})
-    if len(rates) > 1:
-        raise ConfigError(
-            f"the cameras run at different rates ({rates} Hz)",
-            str(rig_path),
-            "frames of one index must belong together: convert the videos to one rate",
-        )
+    cameras = _begun(cameras)
     return CaptureFolder(
         path, rig, cameras, _stature_m(path / "subject.json"), _model(path / "model")
     )
@@ -123,6 +123,18 @@ def _video_name(folder: Path, entry: dict[str, Any]) -> str:
     return file
 
 
+def _begun(cameras: tuple[RecordedCamera, ...]) -> tuple[RecordedCamera, ...]:
+    """With the files' own times of their first frames: where an audio track begins earlier, or a file was cut at a
+    common instant, the first frames are not of one moment."""
+    first_s = min(camera.start_s for camera in cameras)
+    return tuple(
+        replace(one, time_offset_s=one.time_offset_s + one.start_s - first_s)
+        if one.start_s > first_s
+        else one
+        for one in cameras
+    )
+
+
 def _number(value: object, key: str, low: float, high: float, where: str) -> float:
     try:
         return finite_number(value, low, high)
@@ -139,15 +151,29 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
     if info.size_px != size_px:
         raise size_error(str(video), name, info.size_px, size_px)
     offset_s = entry.get("time_offset_s", 0.0)
+    stated_hz = _number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where)
+    times = video_times(video, _TIMED_FRAMES)
+    if not times.unknown and abs(times.rate_hz / stated_hz - 1.0) > _SAME_RATE:
+        _LOG.warning(
+            "%s: 'fps' is %g, but the frames of %s are stamped at %.4g Hz: the stamps are used -- correct 'fps'",
+            *(where, stated_hz, file, times.rate_hz),
+        )
+    if len(times.gaps):
+        _LOG.warning(
+            "%s: %d frames are missing in %d places; the others keep the times of their stamps",
+            *(video, int(times.gaps[:, 1].sum()), len(times.gaps)),
+        )
     return RecordedCamera(
         name=name,
         video=video,
         size_px=size_px,
-        fps_hz=_number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where),
+        fps_hz=stated_hz if times.unknown else times.rate_hz,
         time_offset_s=_number(offset_s, "time_offset_s", -_MOST_OFFSET_S, _MOST_OFFSET_S, where),
         frames=info.frames,
         scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
         lost=_lost(entry.get("lost_frames", []), info.frames, where),
+        stamped=not times.is_constant,
+        start_s=times.start_s,
     )
 
 
@@ -203,14 +229,14 @@ def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -
         camera.time_offset_s,
         pace=pace,
         size_px=camera.size_px,
+        stamped=camera.stamped,
     )
 
 
 def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
-    """Frame f of every camera, for f = 0, 1, ...: every frame, from time 0, as fast as they decode.
+    """The frames of every camera that are nearest in time, from time 0, as fast as they decode.
 
-    Each frame carries its own time f / fps + time_offset_s; a camera that ended early, or was unplugged then,
-    is absent.
+    Each frame carries its own time; a camera that ended early, was unplugged then, or has no frame so near, is absent.
     """
     pace = Pace(live=False)
     cameras = {camera.name: camera for camera in folder.cameras}
@@ -223,7 +249,7 @@ def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
 def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
     """The same for any offline video sources, as videos without a rig; closes them at the end.
 
-    A frame that does not decode is absent from its set; the frames after it keep their index.
+    A frame that does not decode is absent from its set; the frames after it keep their index and time.
     """
     with ExitStack() as opened:
         for source in sources:
@@ -231,7 +257,7 @@ def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
             source.open()
         running = list(sources)
         ahead: dict[str, Frame] = {}  # per camera its next whole frame, not yet due
-        for index in count():
+        while True:
             for source in tuple(running):
                 if source.name in ahead:
                     continue
@@ -243,13 +269,6 @@ def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
                         _LOG.warning("%s", end)
             if not ahead:
                 return
-            due = [s.name for s in sources if s.name in ahead and ahead[s.name].seq == index]
-            if due:
-                yield as_set({name: ahead.pop(name) for name in due})
-
-
-def as_set(frames: dict[str, Frame]) -> FrameSet:
-    """Frames in the rig's order as a set: its time is that of the first camera that is present."""
-    t_ns = next(iter(frames.values())).t_ns
-    spread_ns = max(abs(frame.t_ns - t_ns) for frame in frames.values())
-    return FrameSet(t_ns, frames, spread_ns)
+            present = {one.name: ahead[one.name] for one in sources if one.name in ahead}
+            apart_ns = half_period_ns(max(one.fps_hz for one in sources))
+            yield as_set({name: ahead.pop(name) for name in due_frames(present, apart_ns)})

@@ -96,7 +96,8 @@ def _info(capture: cv2.VideoCapture) -> VideoInfo:
 
 
 class FileSource:
-    """Frame f of the file has time start + f / fps + offset, whatever the file's own stamps say.
+    """Frame f of the file has time start + f / fps + offset; where the file's rate varies (`stamped`), its own stamp
+    since the first frame in place of f / fps.
 
     `fps_hz` None takes the file's rate. `size_px` (width, height), when given, must be the
     video's. `pace` is shared by files that belong together; None reads offline, from time 0. Live,
@@ -114,20 +115,28 @@ class FileSource:
         time_offset_s: float = 0.0,
         pace: Pace | None = None,
         size_px: tuple[int, int] | None = None,
+        stamped: bool = False,
     ) -> None:
         self.name = name
         self.path = path
-        self._asked_fps_hz = fps_hz
+        self._asked_fps_hz, self._stamped = fps_hz, stamped
         self._offset_ns = round(time_offset_s * NS_PER_S)
         self._pace = pace if pace is not None else Pace(live=False)
         self._size_px = size_px
         self._fps_hz = self._file_fps_hz = fps_hz or 30.0
         self._frames = 0  # as the file announces them; 0 where it does not
         self._index = -1  # of the newest frame
-        self._file_ms = 0.0  # its time by the file's own stamp
+        self._file_ms = self._first_ms = (
+            0.0  # its time by the file's own stamp, and the first one's
+        )
         self.torn = 0
         self._capture: GuardedCapture | None = None
         self._closed = threading.Event()
+
+    @property
+    def fps_hz(self) -> float:
+        """The rate by which frames are timed; once it is open."""
+        return self._fps_hz
 
     def open(self) -> None:
         """Raises InputError (missing, damaged) or ConfigError (another size than its calibration)."""
@@ -172,7 +181,13 @@ class FileSource:
             self._capture.close()
 
     def _due_ns(self, index: int) -> int:
-        return self._pace.start_ns() + round(index * NS_PER_S / self._fps_hz) + self._offset_ns
+        """The time of the newest frame, or of one after it."""
+        if self._stamped and self._index >= 0:
+            after_ns = round((index - self._index) * NS_PER_S / self._fps_hz)
+            own_ns = round((self._file_ms - self._first_ms) * 1e6) + after_ns
+        else:
+            own_ns = round(index * NS_PER_S / self._fps_hz)
+        return self._pace.start_ns() + own_ns + self._offset_ns
 
     def _grab(self, capture: cv2.VideoCapture) -> None:
         """Step to the next frame that decodes. Damaged ones show as a gap in the file's own time."""
@@ -181,10 +196,13 @@ class FileSource:
                 file_ms = capture.get(cv2.CAP_PROP_POS_MSEC)
                 gap_s = (file_ms - self._file_ms) * 1e-3
                 believed = self._index >= 0 and math.isfinite(gap_s) and gap_s < _LONGEST_GAP_S
+                believed = believed and not self._stamped  # there a gap is no damage
                 step = max(1, round(gap_s * self._file_fps_hz)) if believed else 1
                 self.torn += step - 1
                 self._index += step
                 self._file_ms = file_ms
+                if self._index == 0:
+                    self._first_ms = file_ms
                 return
             if self._index + 1 >= self._frames:
                 break

@@ -86,7 +86,7 @@ def evaluate_captures(
     from mocapd.session.tracker_setup import cached, ready_tracker
 
     with ProgressBars() as progress:
-        cases = [open_case(folder) for folder in captures]
+        cases = [open_case(folder, compare=True) for folder in captures]
         resources = cached(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
             lambda known: ready_tracker(name, known, resources),

@@ -77,6 +77,7 @@ def track(
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
+    from mocapd.session.capture_checks import check_capture
     from mocapd.session.offline import learn_room, track_all, track_file, write_track
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
@@ -91,18 +92,20 @@ def track(
             known = from_origin(origin)
         else:
             known = known_of_recording(load_saved(calibration), origin)
+        checked = check_capture(origin, known.rig, known.wearer.stature_m)
         ready = ready_tracker(
             own.name,
             known.assuming(own.stature_m),
             cached(effective.cache_dir, progress, own.tracking),
         )
         if room is RoomSeen.WHOLE:
-            learn_room(ready.tracker, origin.frame_sets(), origin.count)
+            learn_room(ready.tracker, checked.frame_sets(), origin.count)
         result = track_all(
             ready.tracker,
             ready.shape,
-            origin.frame_sets(),
+            checked.frame_sets(),
             lambda done: progress(f"tracking {capture.name}", done, origin.count),
+            checked.result.off_m,
         )
     write_track(target, result)
     typer.echo(f"{out}: {len(result.times_s)} of {origin.count} frames with a person", err=True)

@@ -11,9 +11,11 @@ from mocapd.body.shape import BodyShape
 from mocapd.calibration.from_origin import from_capture
 from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
+from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import Score, score
 from mocapd.evaluate.truth import Truth, load_truth
+from mocapd.session.capture_checks import CheckedCapture, check_capture
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.trackers.base import Probe, Track, Tracker, unprobed
@@ -32,10 +34,11 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """A capture that is there, with its ground truth read."""
+    """A capture that is there, with its ground truth read. checked: where it was compared with what it shows."""
 
     folder: CaptureFolder
     truth: Truth
+    checked: CheckedCapture | None = None
 
     @property
     def name(self) -> str:
@@ -84,9 +87,11 @@ class _TimedTracker:
         return track
 
 
-def open_case(capture: Path) -> Case:
-    """Check a capture and read its truth. Raises InputError or ConfigError naming the file."""
-    return Case(load_folder(capture), load_truth(capture))
+def open_case(capture: Path, compare: bool = False) -> Case:
+    """Read a capture and its truth; `compare`: its rig and times with what it shows, too. Raises InputError or ConfigError
+    naming the file."""
+    folder, truth = load_folder(capture), load_truth(capture)
+    return Case(folder, truth, check_capture(FolderOrigin(folder)) if compare else None)
 
 
 def evaluate(
@@ -105,7 +110,10 @@ def evaluate(
     """
     ready = build(from_capture(case.folder).assuming(stature_m))
     watched = _TimedTracker(ready.tracker, keep_evidence)
-    track = track_all(watched, ready.shape, frame_sets(case.folder), on_frame)
+    checked = case.checked
+    frames = checked.frame_sets() if checked else frame_sets(case.folder)
+    off_m = checked.result.off_m if checked else 0.0
+    track = track_all(watched, ready.shape, frames, on_frame, off_m)
     return CaptureResult(
         case=case,
         track=track,

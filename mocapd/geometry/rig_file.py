@@ -9,6 +9,7 @@ from mocapd.boundary.files import read_text
 from mocapd.boundary.messages import parse_json
 from mocapd.boundary.numbers import brief
 from mocapd.errors import ConfigError, MalformedError, NewerFileError
+from mocapd.geometry.rig_plausibility import require_plausible
 from mocapd.types import Camera, Floats, Rig
 
 SCHEMA = "mocapd.Rig.v1"  # what says none, as the capture format, is of this one too
@@ -34,6 +35,14 @@ def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) 
     return value
 
 
+def _distortion(entry: dict[str, Any], where: str) -> Floats:
+    """k1 k2 p1 p2 k3 (5,); where four are given, as OpenCV takes them too, k3 is 0."""
+    given = entry.get("dist")
+    if isinstance(given, list) and len(given) == 4:
+        return np.append(_array(entry, "dist", (4,), where), 0.0)
+    return _array(entry, "dist", (5,), where)
+
+
 def camera_from_dict(entry: Any, where: str) -> Camera:
     """One camera of a rig file. Raises ConfigError naming the field."""
     name = entry.get("name") if isinstance(entry, dict) else None
@@ -51,13 +60,19 @@ def camera_from_dict(entry: Any, where: str) -> Camera:
         raise ConfigError("'size' is not width and height in whole pixels", where, _RECALIBRATE)
     if K[0, 1] != 0 or K[1, 0] != 0 or not np.array_equal(K[2], (0, 0, 1)):
         raise ConfigError("'K' is not [fx 0 cx, 0 fy cy, 0 0 1]", where, _RECALIBRATE)
-    if np.abs(R @ R.T - np.eye(3)).max() > 1e-3 or np.linalg.det(R) < 0:
+    if np.abs(R @ R.T - np.eye(3)).max() > 1e-3:
         raise ConfigError("'R' is not a rotation matrix", where, _RECALIBRATE)
+    if np.linalg.det(R) < 0:
+        raise ConfigError(
+            "'R' mirrors (its determinant is -1): the rig is of a left-handed world",
+            where,
+            "turn the sign of one column of R in all cameras, so that x is to the left of who faces +z, and y up",
+        )
     return Camera(
         name=name,
         size_px=(int(size[0]), int(size[1])),
         K=K,
-        dist=_array(entry, "dist", (5,), where),
+        dist=_distortion(entry, where),
         R=R,
         t_m=_array(entry, "t", (3,), where),
     )
@@ -88,6 +103,7 @@ def load_rig(path: Path) -> Rig:
     rig = Rig(tuple(camera_from_dict(entry, str(path)) for entry in entries))
     if len(set(rig.names)) != len(rig.names):
         raise ConfigError("two cameras have one name", str(path), "rename one of them")
+    require_plausible(rig, str(path))
     return rig
 
 

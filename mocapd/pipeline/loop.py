@@ -13,6 +13,7 @@ from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.base import Track, Tracker
+from mocapd.trackers.doubt import doubted
 from mocapd.types import FrameSet
 
 OnDeath = Callable[[BaseException], None]
@@ -24,7 +25,8 @@ class PipelineLoop:
     """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape.
 
     `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; with an
-    empty frame set what `absence` tells while no frames come, which it says when given.
+    empty frame set what `absence` tells while no frames come, which it says when given. `off_m`: by how much the cameras'
+    views contradict each other for good, asked at each frame set.
     `on_death` is called in that thread with whatever ends it unexpectedly, which is then
     raised again; being stopped is no death.
     """
@@ -38,6 +40,7 @@ class PipelineLoop:
         bodies: TakesBodies,
         on_death: OnDeath,
         absence: Absence | None = None,
+        off_m: Callable[[], float] = lambda: 0.0,
     ) -> None:
         self._collector = collector
         self._tracker = tracker
@@ -46,7 +49,7 @@ class PipelineLoop:
         self._smoother = smoother
         self._bodies = bodies
         self._on_death = on_death
-        self._absence = absence
+        self._absence, self._off_m = absence, off_m
         self._stopping = threading.Event()
         self._began_ns: int | None = None  # the step that runs
         self._recorder = MetricsRecorder()
@@ -107,7 +110,7 @@ class PipelineLoop:
         if track.shape is not self._shape:
             self._shape = track.shape
             self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)
-        body = self._smoother.step(track.body)
+        body = doubted(self._smoother.step(track.body), self._off_m())
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))

@@ -23,6 +23,7 @@ from mocapd.service.mountings import Mountings
 from mocapd.service.room_memory import RoomMemory
 from mocapd.service.step_watch import StepWatch
 from mocapd.service.twins import Twins
+from mocapd.service.view_watch import ViewWatch
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
 
@@ -50,8 +51,9 @@ class RunningSession:
         guard = SizeGuard(sizes_px, collector)
         sources = [camera.source for camera in session.cameras]
         self._twins = Twins(sources, session.rig, guard, RoomMemory(config.state_dir))
+        self._views = ViewWatch(session.rig, session.known.wearer.stature_m)
         # who looks at the pictures joins it
-        self.hub = FrameHub(self.inputs, self._twins, bundler=bundler)
+        self.hub = FrameHub(self.inputs, self._twins, self._views, bundler=bundler)
         self._mountings = Mountings(session.rig, self.hub)
         self._captures = [
             CaptureThread(
@@ -76,11 +78,13 @@ class RunningSession:
             bodies,
             died,
             _absence(config, session),
+            lambda: self._views.off_m,
         )
 
     def start(self) -> None:
         """Begin; returns at once."""
         self._loop.start()
+        self._views.start()
         self._plugs.start()
         for capture in self._captures:
             capture.start()
@@ -88,6 +92,7 @@ class RunningSession:
     def stop(self) -> None:
         """First everything lets go, then everything ends, within STOP_S."""
         self._plugs.stop()
+        self._views.stop()
         self._loop.let_go()
         for capture in self._captures:
             capture.let_go()
@@ -112,7 +117,7 @@ class RunningSession:
         }
 
     def _noticed(self, status: CaptureStatus) -> CaptureStatus:
-        notice = self._twins.notice(status.camera)
+        notice = self._twins.notice(status.camera) or self._views.notice(status.camera)
         return replace(status, notice=notice) if notice else status
 
     def metrics(self) -> Metrics:
@@ -121,7 +126,10 @@ class RunningSession:
 
     def mountings(self) -> Mapping[str, Mounting]:
         """How each camera is mounted, as last seen."""
-        return {name: self._mountings.of(name) for name in self.inputs}
+        return {
+            name: Mounting.SWAPPED if self._views.is_exchanged(name) else self._mountings.of(name)
+            for name in self.inputs
+        }
 
     @property
     def detail(self) -> str:

@@ -13,6 +13,7 @@ from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.output_file import FileKind, OutputFile
 from mocapd.trackers.base import RoomLearner, Tracker
+from mocapd.trackers.doubt import doubted
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
@@ -56,14 +57,19 @@ def learn_room(tracker: Tracker, frames: Iterable[FrameSet], count: int) -> None
 
 
 def track_all(
-    tracker: Tracker, shape: BodyShape, frames: Iterable[FrameSet], on_frame: Callable[[int], None]
+    tracker: Tracker,
+    shape: BodyShape,
+    frames: Iterable[FrameSet],
+    on_frame: Callable[[int], None],
+    off_m: float = 0.0,
 ) -> RecordedTrack:
-    """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done."""
+    """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done. off_m: by
+    how much the cameras' views contradict each other for good."""
     names = skeleton_of(shape).names
     times, joints, quats, confidence, by, uncertainty = [], [], [], [], [], []
     for done, one in enumerate(frames, start=1):
         track = tracker.step(one, shape)
-        body, shape = track.body, track.shape
+        body, shape = doubted(track.body, off_m), track.shape
         if body.pose is not None and body.joints_m is not None:
             times.append(seconds(body.t_ns))
             joints.append(body.joints_m)

@@ -66,13 +66,13 @@ NAN = float("nan")
     [
         ("K", [[600, 0, 320], [0, NAN, 240], [0, 0, 1]], "NaN or infinity"),
         ("dist", [0, 0, 0, 0, float("inf")], "NaN or infinity"),
-        ("dist", [0, 0, 0, 0], r"shape \(4,\), wanted \(5,\)"),
+        ("dist", [0, 0, 0], r"shape \(3,\), wanted \(5,\)"),
         ("dist", [0, 0, 0, 0, 10**400], "not a list of numbers"),
         ("t", [0, 0, "far"], "not a list of numbers"),
         ("t", [0, 0, None], "NaN or infinity|not a list of numbers"),
         ("t", [[0, 0, 0], [0]], "not a list of numbers"),
         ("t", {"x": 1}, "not a list of numbers"),
-        ("R", REFLECTION, "not a rotation"),
+        ("R", REFLECTION, "left-handed"),
         ("R", (2.0 * np.eye(3)).tolist(), "not a rotation"),
         ("R", np.zeros((3, 3)).tolist(), "not a rotation"),
         ("K", [[-600, 0, 320], [0, 600, 240], [0, 0, 1]], "must be positive"),
@@ -150,3 +150,26 @@ def test_no_value_of_any_field_ends_in_another_error(field: str, value: Any) -> 
 def test_no_entry_ends_in_another_error(entry: Any) -> None:
     with pytest.raises(ConfigError):
         camera_from_dict(entry, "rig.json")
+
+
+def test_four_coefficients_of_distortion_are_k1_k2_p1_p2(tmp_path: Path) -> None:
+    rig = load_rig(write(tmp_path / "rig.json", damaged("dist", [0.1, -0.2, 0.003, -0.004])))
+    assert any(camera.dist.tolist() == [0.1, -0.2, 0.003, -0.004, 0.0] for camera in rig.cameras)
+
+
+@pytest.mark.parametrize(
+    ("per_metre", "said"),
+    [
+        (1000.0, r"km (apart|from).*millimetres: multiply it by 0\.001"),
+        (100.0, r" m (apart|from).*centimetres: multiply it by 0\.01"),
+        (1 / 0.0254, r" m (apart|from).*inches: multiply it by 0\.0254"),
+    ],
+)
+def test_a_rig_that_stands_in_no_room_is_refused_with_its_likely_unit(
+    tmp_path: Path, per_metre: float, said: str
+) -> None:
+    cameras = [camera_to_dict(camera) for camera in ring(3)]
+    for one in cameras:
+        one["t"] = [per_metre * value for value in one["t"]]
+    with pytest.raises(ConfigError, match=said):
+        load_rig(write(tmp_path / "rig.json", {"cameras": cameras}))

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from mocapd.boundary.mcap_records import McapAttachment, McapFile
 from mocapd.capture.base import Source
-from mocapd.capture.capture_folder import as_set
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, check_size
+from mocapd.capture.frame_groups import as_set
 from mocapd.capture.origin import split_address
 from mocapd.capture.recording.mcap_source import McapSource, is_picture, pictures
 from mocapd.capture.recording.recorded_known import RecordedKnown, known_of

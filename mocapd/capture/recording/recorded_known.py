@@ -18,6 +18,7 @@ from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
+from mocapd.geometry.rig_plausibility import require_plausible
 from mocapd.types import Bytes, LabelledPicture, Rig
 
 RIG, WEARER = "rig.json", "wearer.json"
@@ -87,6 +88,7 @@ def _rig(data: bytes, where: str) -> Rig:
     rig = Rig(tuple(camera_from_dict(entry, f"{where}, {RIG}") for entry in entries))
     if not rig.cameras or len(set(rig.names)) != len(rig.names):
         raise ConfigError("has no cameras, or two of one name", f"{where}, {RIG}", "record again")
+    require_plausible(rig, f"{where}, {RIG}")
     return rig
 
 

@@ -1,0 +1,217 @@
+"""Shown the first pictures of some cameras, tells what does not agree with their calibration and their times.
+
+The same for recordings and for live cameras. What is kept is small: pictures of 320 px, 15 a second, while somebody
+moves. With one camera only what people look like in its pictures can be checked: whether they stand upright.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.motion_delay import MotionMeter
+from mocapd.calibrate.consistency.person_views import (
+    PersonFinder,
+    PersonView,
+    Room,
+    WorkPictures,
+    room_of,
+    shrink,
+)
+from mocapd.calibrate.consistency.rig_judge import Stretch, judge
+from mocapd.calibrate.consistency.time_judge import CameraTiming, late_findings
+from mocapd.calibrate.consistency.world_judge import judge_world, turned_views
+from mocapd.clock import seconds
+from mocapd.types import Bytes, Camera, Floats, Frame, Rig
+
+_EVERY_S = 1.0 / 15.0 - 0.005  # from one kept picture to the next
+_STRETCH_S = 2.0
+_STRETCHES = 5
+_PEOPLE = 2  # looked at in each stretch
+_MOVES = 0.7  # of the logarithm of change, above the quietest tenth of the pictures
+_ENOUGH_S = 12.0  # of motion
+_MOST_KEPT = 240  # pictures of a camera
+# What a mistake that is not mended does to joints, at least, though views may still agree about them [m]
+_OFF_M = {
+    Mistake.DELAY: 0.1,
+    Mistake.EXCHANGED: 0.3,
+    Mistake.MIRRORED: 0.3,
+    Mistake.TURNED: 0.3,
+    Mistake.ZOOMED: 0.1,
+    Mistake.INVERTED: 0.3,
+    Mistake.AXES: 0.3,
+    Mistake.UNIT: 0.3,
+    Mistake.CONTRADICTION: 0.15,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class CheckResult:
+    """findings: what does not agree; off_m: by how much views contradict each other for good [m], 0 where they agree or
+    all is mended; looked: stretches of time in which people were seen by two cameras, or by the only one."""
+
+    findings: tuple[Finding, ...] = ()
+    off_m: float = 0.0
+    looked: int = 0
+
+    @property
+    def late_s(self) -> dict[str, float]:
+        """By camera, how much later its times are than given [s], of those that are surely wrong."""
+        return {one.cameras[0]: one.late_s for one in self.findings if one.is_mended}
+
+
+@dataclass(slots=True, eq=False)
+class _Kept:
+    """Of one camera. fps_hz: of its frames."""
+
+    camera: Camera
+    meter: MotionMeter = field(default_factory=MotionMeter)
+    times_s: list[float] = field(default_factory=list)
+    pictures: list[Bytes] = field(default_factory=list)
+    smaller: float = 1.0
+    frames: int = 0
+    first_s: float = 0.0
+    last_s: float = 0.0
+
+
+class CaptureCheck:
+    """Collects pictures and judges them; for one thread."""
+
+    def __init__(self, rig: Rig, stature_m: float | None = None) -> None:
+        self._kept = {camera.name: _Kept(camera) for camera in rig.cameras}
+        self._stature_m = stature_m
+
+    def put(self, frame: Frame) -> None:
+        """A picture of a camera of the rig; one of another size than its calibration is left out."""
+        kept = self._kept.get(frame.camera)
+        if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
+            self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
+
+    def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
+        """The same of a picture that is smaller already, as by `shrink`."""
+        kept, t_s = self._kept[camera], seconds(t_ns)
+        kept.meter.put(t_s, small)
+        kept.frames += 1
+        kept.first_s = t_s if kept.frames == 1 else kept.first_s
+        kept.last_s = t_s
+        if kept.times_s and t_s - kept.times_s[-1] < _EVERY_S:
+            return
+        kept.smaller = smaller
+        kept.times_s.append(t_s)
+        kept.pictures.append(small)
+        if len(kept.pictures) > _MOST_KEPT:
+            del kept.times_s[0], kept.pictures[0]
+
+    @property
+    def has_enough(self) -> bool:
+        """Whether more pictures would tell little more."""
+        there = [one for one in self._kept.values() if one.frames > 1]
+        if not there:
+            return False
+        return min(_moving_s(one.meter) for one in there) >= _ENOUGH_S
+
+    def result(self) -> CheckResult:
+        """What is found in the pictures so far: takes a second or two."""
+        there = [one for one in self._kept.values() if len(one.pictures) > 10]
+        if not there:
+            return CheckResult()
+        cameras = [one.camera for one in there]
+        late = late_findings([_timing(one) for one in there]) if len(there) > 1 else ()
+        late_s = {one.cameras[0]: one.late_s for one in late}
+        stretches = self._stretches(there, [late_s.get(one.name, 0.0) for one in cameras])
+        names = tuple(camera.name for camera in cameras)
+        turned = turned_views(
+            cameras,
+            [[view for one in stretches for view in one[i][:1]] for i in range(len(cameras))],
+        )
+        if len(cameras) == 1:
+            return CheckResult(
+                turned,
+                _OFF_M[Mistake.TURNED] if turned else 0.0,
+                sum(1 for one in stretches if one[0]),
+            )
+        verdict = judge(cameras, stretches)
+        findings = verdict.findings
+        if not findings:
+            findings = judge_world(names, verdict.fits, self._stature_m)
+        if turned and not any(
+            one.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED) for one in findings
+        ):
+            findings = (*turned, *findings)
+        off_m = max(
+            (_OFF_M.get(one.mistake, 0.0) for one in (*late, *findings) if not one.is_mended),
+            default=0.0,
+        )
+        return CheckResult(
+            (*late, *findings), max(off_m, verdict.off_m if findings else 0.0), len(verdict.fits)
+        )
+
+    def _stretches(self, there: Sequence[_Kept], late_s: Sequence[float]) -> list[Stretch]:
+        """The people in the stretches of time in which most moves, with the times that they should have."""
+        begin = max(one.times_s[0] + late for one, late in zip(there, late_s, strict=True))
+        end = min(one.times_s[-1] + late for one, late in zip(there, late_s, strict=True))
+        count = max(1, int((end - begin) / _STRETCH_S))
+        edges = end - _STRETCH_S * np.arange(count, -1, -1)
+        moved = [
+            sum(
+                _motion_between(one.meter, low - late, high - late)
+                for one, late in zip(there, late_s, strict=True)
+            )
+            for low, high in pairwise(edges)
+        ]
+        chosen = sorted(np.argsort(moved)[::-1][:_STRETCHES])
+        finder = PersonFinder()
+        works = [
+            WorkPictures(np.array(one.times_s), np.stack(one.pictures), one.smaller)
+            for one in there
+        ]
+        rooms = [room_of(one) for one in works]
+        turns: list[Sequence[int]] = [range(4)] * len(there)
+        out: list[Stretch] = []
+        for k in chosen:
+            seen = []
+            for i, (work, late) in enumerate(zip(works, late_s, strict=True)):
+                low, high = edges[k] - late, edges[k + 1] - late
+                views = _people(finder, work, rooms[i], (low, high), turns[i])
+                if views:
+                    turns[i] = tuple({0, views[0].quarter_turns})
+                seen.append([replace(one, times_s=one.times_s + late) for one in views])
+            out.append(seen)
+        return out
+
+
+def _people(
+    finder: PersonFinder,
+    work: WorkPictures,
+    room: Room,
+    between_s: tuple[float, float],
+    turns: Sequence[int],
+) -> list[PersonView]:
+    ids = np.flatnonzero((work.times_s >= between_s[0]) & (work.times_s < between_s[1]))
+    if len(ids) < 8:
+        return []
+    part = WorkPictures(work.times_s[ids], work.pictures[ids], work.smaller)
+    return finder.people(part, room, _PEOPLE, turns)
+
+
+def _moving_s(meter: MotionMeter) -> float:
+    """For how long something moved."""
+    signal = meter.signal()
+    if len(signal.times_s) < 2:
+        return 0.0
+    moves = signal.change > float(np.percentile(signal.change, 10)) + _MOVES
+    return float(moves.mean() * (signal.times_s[-1] - signal.times_s[0]))
+
+
+def _motion_between(meter: MotionMeter, low_s: float, high_s: float) -> float:
+    signal = meter.signal()
+    inside = (signal.times_s >= low_s) & (signal.times_s < high_s)
+    change: Floats = signal.change[inside]
+    return float(change.mean()) if len(change) else 0.0
+
+
+def _timing(kept: _Kept) -> CameraTiming:
+    period_s = (kept.last_s - kept.first_s) / max(kept.frames - 1, 1)
+    return CameraTiming(kept.camera.name, kept.meter.signal(), max(period_s, 1e-3))

@@ -1,0 +1,179 @@
+"""By how much cameras' pictures are late, from how much moves in each of them at every instant.
+
+Whatever one camera sees begin and end to move, or a lamp change, the others see at the same instant, from wherever
+they look. The signals are correlated over trial delays; parts of the recording that are left out in turn say how
+sure the best one is (jackknife).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.types import Bytes, Floats, Singles
+
+_WIDTH_PX = 160
+_NOISE = 4.0  # of a smoothed grey value, 0..255
+_QUIET = 200.0  # added before the logarithm: below it motion is noise
+_GRID_S = 1.0 / 120.0
+_MOST_S = 0.75
+_FAST_S, _SLOW_S = 0.04, 0.27  # the band of motion that is compared
+_BLOCKS = 8
+_LEAST_S = 3.0  # of a common recording
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MotionSignal:
+    """How much moves in one camera's pictures: at times_s (N,) [s], log of the change (N,)."""
+
+    times_s: Floats
+    change: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class CameraDelay:
+    """late_s: the camera's times are too early by so much (its pictures show what the others show at later stamps when
+    it is negative); sd_s: of it, by the jackknife; agreement: correlation with the others at this delay, and at none;
+    rival: the highest correlation at any delay farther off."""
+
+    late_s: float
+    sd_s: float
+    agreement: float
+    agreement_undelayed: float
+    rival: float
+
+
+class MotionMeter:
+    """Takes one camera's pictures in order."""
+
+    def __init__(self) -> None:
+        self._before: tuple[float, Singles] | None = None
+        self._times_s: list[float] = []
+        self._change: list[float] = []
+
+    def put(self, t_s: float, picture: Bytes) -> None:
+        """A picture (h,w,3) of a time [s]."""
+        h, w = picture.shape[:2]
+        small = cv2.resize(
+            picture, (_WIDTH_PX, max(1, h * _WIDTH_PX // w)), interpolation=cv2.INTER_AREA
+        )
+        grey = cv2.GaussianBlur(
+            cv2.cvtColor(small, cv2.COLOR_BGR2GRAY).astype(np.float32), (0, 0), 1.0
+        )
+        if self._before is not None and t_s > self._before[0]:
+            before_s, before = self._before
+            off = np.abs(grey - before)
+            off[off < _NOISE] = 0.0
+            self._times_s.append(0.5 * (t_s + before_s))
+            self._change.append(float(np.log(off.sum() + _QUIET)))
+        self._before = (t_s, np.asarray(grey, np.float32))
+
+    def signal(self) -> MotionSignal:
+        """Of all pictures so far."""
+        return MotionSignal(np.array(self._times_s), np.array(self._change))
+
+
+def camera_delays(signals: Sequence[MotionSignal]) -> list[CameraDelay | None]:
+    """Of each camera, its delay against the others, whose median is none. None where nothing can be said."""
+    count = len(signals)
+    blocks = _pair_blocks(signals)
+    if blocks is None:
+        return [None] * count
+    late = _solve(blocks.sum(axis=-1))
+    others = np.array([_solve(np.delete(blocks, k, axis=-1).sum(axis=-1)) for k in range(_BLOCKS)])
+    sd = np.sqrt((_BLOCKS - 1) / _BLOCKS * ((others - others.mean(axis=0)) ** 2).sum(axis=0))
+    curves = blocks.sum(axis=-1)
+    return [_judged(curves, late, i, float(sd[i])) for i in range(count)]
+
+
+def _judged(curves: Floats, late: Floats, i: int, sd_s: float) -> CameraDelay:
+    lags_s = _lags_s()
+    mine = np.mean(
+        [np.interp(lags_s, lags_s + late[j], curves[i, j]) for j in range(len(late)) if j != i],
+        axis=0,
+    )
+    off = np.abs(lags_s - late[i]) > 0.1
+    return CameraDelay(
+        float(late[i]),
+        sd_s,
+        float(np.interp(late[i], lags_s, mine)),
+        float(np.interp(0.0, lags_s, mine)),
+        float(mine[off].max()),
+    )
+
+
+def _lags_s() -> Floats:
+    n = round(_MOST_S / _GRID_S)
+    return np.arange(-n, n + 1, dtype=np.float64) * _GRID_S
+
+
+def _pair_blocks(signals: Sequence[MotionSignal]) -> Floats | None:
+    """(N,N,L,B): of camera i late by each lag against camera j, what each block of time adds to the correlation."""
+    if len(signals) < 2 or any(len(one.times_s) < 10 for one in signals):
+        return None
+    begin = max(float(one.times_s[0]) for one in signals) + _MOST_S
+    end = min(float(one.times_s[-1]) for one in signals) - _MOST_S
+    if end - begin < _LEAST_S:
+        return None
+    grid_s = np.arange(begin - _MOST_S, end + _MOST_S, _GRID_S)
+    banded = [_band(np.interp(grid_s, one.times_s, one.change)) for one in signals]
+    n = round(_MOST_S / _GRID_S)
+    inner = len(grid_s) - 2 * n
+    cuts = np.linspace(0, inner, _BLOCKS + 1).astype(int)
+    out = np.zeros((len(signals), len(signals), 2 * n + 1, _BLOCKS))
+    for i, a in enumerate(banded):
+        for j, b in enumerate(banded):
+            if i == j:
+                continue
+            still = b[n : n + inner]
+            for k in range(2 * n + 1):
+                # late by lag: what it shows at t - lag the other one shows at t
+                lag = k - n
+                moved = a[n - lag : n - lag + inner]
+                scale = max(float(np.sqrt((still**2).sum() * (moved**2).sum())), 1e-9)
+                out[i, j, k] = np.add.reduceat(still * moved, cuts[:-1]) / scale
+    return out
+
+
+def _band(values: Floats) -> Floats:
+    """Without what changes slowly, and without noise."""
+    fast, slow = _FAST_S / _GRID_S, _SLOW_S / _GRID_S
+    column = values[None].astype(np.float64)
+    smooth = cv2.GaussianBlur(column, (0, 0), fast, borderType=cv2.BORDER_REPLICATE)
+    drift = cv2.GaussianBlur(column, (0, 0), slow, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(smooth - drift, np.float64).reshape(-1)
+
+
+def _solve(curves: Floats) -> Floats:
+    """The delays (N,) [s] at which all pairs (N,N,L) correlate most: one camera after the other, from no delay on."""
+    lags_s, count = _lags_s(), len(curves)
+    late = np.zeros(count)
+    for _ in range(2 * count):
+        best = (1e-6, 0, 0.0)
+        for i in range(1 if count == 2 else 0, count):
+            mine = np.mean(
+                [
+                    np.interp(lags_s, lags_s + late[j], curves[i, j], left=0.0, right=0.0)
+                    for j in range(count)
+                    if j != i
+                ],
+                axis=0,
+            )
+            k = int(mine.argmax())
+            gain = float(mine[k] - np.interp(late[i], lags_s, mine))
+            if gain > best[0]:
+                best = (gain, i, _peak(lags_s, mine, k))
+        if best[0] <= 1e-3:
+            break
+        late[best[1]] = best[2]
+    return np.asarray(late - np.median(late) if count > 2 else late, np.float64)
+
+
+def _peak(lags_s: Floats, curve: Floats, k: int) -> float:
+    """Between the points of a curve, by a parabola over the highest and its neighbours."""
+    if not 0 < k < len(curve) - 1:
+        return float(lags_s[k])
+    a, b, c = curve[k - 1 : k + 2]
+    bend = a - 2 * b + c
+    return float(lags_s[k] + (0.5 * (a - c) / bend if bend < 0 else 0.0) * _GRID_S)

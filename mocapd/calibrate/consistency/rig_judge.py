@@ -1,0 +1,222 @@
+"""Whether a rig fits what its cameras show of people; and where not, which known mistake makes the views agree."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.hypotheses import (
+    Hypothesis,
+    as_given,
+    hypotheses,
+    shifted,
+    zooms,
+)
+from mocapd.calibrate.consistency.person_views import PersonView
+from mocapd.calibrate.consistency.view_agreement import PairFit, fit_pair, thinned
+from mocapd.types import Camera
+
+Stretch = Sequence[Sequence[PersonView]]  # by camera, the people that it saw in a few seconds
+_Pair = tuple[int, int, int]  # of cameras, in a stretch
+
+_WELL = 0.6  # cost of two views that nothing could make agree better
+_FITS = 1.5  # cost of two views above which they are of no use, or do not agree
+_GAIN = 0.3  # mean of costs that an explanation must bring
+_ZOOM_GAIN = 0.2
+_AGREES = 1.0  # cost of two views that agree, whatever may be better
+_AGAINST = 0.2  # share of views that agree well as given, for a mistake to be one
+_RIVAL = 0.75  # of what the best zoom brings, another camera's that may be meant as well
+_OFTEN = 0.65  # share of stretches that an explanation must improve
+_CONTRADICT_DEG = 2.2
+_LEAST_STRETCHES = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Verdict:
+    """findings: what does not agree; fits: of the views, as they are mended by the best explanation; off_m: how far views are
+    apart where nothing explains it [m]."""
+
+    findings: tuple[Finding, ...]
+    fits: tuple[PairFit, ...]
+    off_m: float = 0.0
+
+
+def judge(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> Verdict:
+    """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common."""
+    table = _Table([[[thinned(one) for one in views] for views in seen] for seen in stretches])
+    given = table.fits(as_given(cameras))
+    if not given:
+        return Verdict((), ())
+    best = _best_explanation(cameras, table, given)
+    if best is not None:
+        names = tuple(cameras[i].name for i in best.affected)
+        assert best.mistake is not None
+        finding = Finding(best.mistake, names, best.what, best.fix)
+        return Verdict((finding,), tuple(table.fits(best).values()), _off_m(given.values()))
+    lone = _contradicting(cameras, given)
+    return Verdict(lone, tuple(given.values()), _off_m(given.values()) if lone else 0.0)
+
+
+class _Table:
+    """Fits of pairs of views under hypotheses."""
+
+    def __init__(self, stretches: Sequence[Stretch]) -> None:
+        self._stretches = stretches
+
+    def fits(
+        self, hypothesis: Hypothesis, known: Mapping[_Pair, PairFit] | None = None
+    ) -> dict[_Pair, PairFit]:
+        """Of each two cameras in each stretch the two people that agree best; `known`: of cameras that it does not affect."""
+        out: dict[_Pair, PairFit] = {}
+        for k, seen in enumerate(self._stretches):
+            mended = [
+                [mend(one) for one in views]
+                for mend, views in zip(hypothesis.mends, seen, strict=True)
+            ]
+            for i, j in combinations(range(len(seen)), 2):
+                key = (i, j, k)
+                if (
+                    known is not None
+                    and i not in hypothesis.affected
+                    and j not in hypothesis.affected
+                ):
+                    if key in known:
+                        out[key] = known[key]
+                    continue
+                cameras = hypothesis.cameras[i], hypothesis.cameras[j]
+                found = [fit_pair(cameras, (a, b)) for a in mended[i] for b in mended[j]]
+                there = [one for one in found if one is not None]
+                if there:
+                    out[key] = min(there, key=lambda one: one.cost)
+        return out
+
+
+def _best_explanation(
+    cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
+) -> Hypothesis | None:
+    """The mistake whose mending brings most, if it brings enough; None where all is well, or nothing helps."""
+    count = len(cameras)
+    if all(_cost(given, i, j) < _WELL for i, j in combinations(range(count), 2)):
+        return None
+    best, most = None, 0.0
+    for one in hypotheses(cameras):
+        if _cost_about(given, one.affected) < _WELL:
+            continue
+        gain = _gain(one, table.fits(one, given), given, _GAIN)
+        if gain > most:
+            best, most = one, gain
+    # a zoom and its middle are free numbers, which a mistake of another kind has not
+    zoomed = _best_zoom(cameras, table, given)
+    if zoomed is not None and zoomed[1] > 1.15 * most + 0.05:
+        return zoomed[0]
+    return best
+
+
+def _best_zoom(
+    cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
+) -> tuple[Hypothesis, float] | None:
+    """The zoom of one camera that brings most, and what it brings; it names all cameras of which one may be zoomed."""
+    found: list[tuple[Hypothesis, float]] = []
+    for i in range(len(cameras)):
+        if _cost_about(given, (i,)) < _WELL:
+            continue
+        zoom, brought = _best_of(zooms(cameras, i), table, given)
+        if zoom is None:
+            continue
+        factor = float(zoom.mends[i].keywords["factor"])  # type: ignore[attr-defined]
+        finer, more = _best_of(shifted(cameras, i, 1.0 / factor), table, given)
+        found.append((finer, more) if finer is not None and more > brought else (zoom, brought))
+    if not found:
+        return None
+    best, most = max(found, key=lambda one: one[1])
+    rivals = [one for one, brought in found if brought > _RIVAL * most and one is not best]
+    if not rivals:
+        return best, most
+    affected = tuple(sorted({best.affected[0], *(one.affected[0] for one in rivals)}))
+    return replace(
+        best, affected=affected, what="; or ".join(one.what for one in (best, *rivals))
+    ), most
+
+
+def _best_of(
+    some: Iterable[Hypothesis], table: _Table, given: Mapping[_Pair, PairFit]
+) -> tuple[Hypothesis | None, float]:
+    best, most = None, 0.0
+    for one in some:
+        gain = _gain(one, table.fits(one, given), given, _ZOOM_GAIN)
+        if gain > most:
+            best, most = one, gain
+    return best, most
+
+
+def _gain(
+    hypothesis: Hypothesis,
+    fits: Mapping[_Pair, PairFit],
+    given: Mapping[_Pair, PairFit],
+    least: float,
+) -> float:
+    """What an explanation brings, summed over pairs of views; 0 where that is not enough, or not often enough."""
+    gains, costs, against, when = [], [], 0, set()
+    for key, before in given.items():
+        after = fits.get(key)
+        if after is None or not {key[0], key[1]} & set(hypothesis.affected):
+            continue
+        if min(before.cost, after.cost) < _FITS:
+            gains.append(before.cost - after.cost)
+            costs.append(after.cost)
+            when.add(key[2])
+            # who agrees well as given, once, has no mistake that lasts
+            against += before.cost < _AGREES and gains[-1] < 0.5 * least
+    if len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
+        return 0.0
+    if np.mean([fit.up[1] for fit in fits.values() if np.isfinite(fit.up[1])] or [1.0]) < 0.0:
+        return 0.0  # what stands everybody on the head explains nothing
+    enough = np.mean(gains) >= least and np.mean(np.array(gains) > 0.0) >= _OFTEN
+    return float(np.sum(gains)) if enough and np.median(costs) < _FITS else 0.0
+
+
+def _cost(fits: Mapping[_Pair, PairFit], i: int, j: int) -> float:
+    """Of two cameras, the median of their stretches; 0 where they saw nothing in common."""
+    costs = [fit.cost for key, fit in fits.items() if key[:2] == (i, j)]
+    return float(np.median(costs)) if costs else 0.0
+
+
+def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float:
+    """Mean cost of the pairs that some cameras are of."""
+    costs = [fit.cost for key, fit in fits.items() if {key[0], key[1]} & set(affected)]
+    return float(np.mean(costs)) if costs else 0.0
+
+
+def _contradicting(
+    cameras: Sequence[Camera], given: Mapping[_Pair, PairFit]
+) -> tuple[Finding, ...]:
+    """A camera that agrees with none of the others at any time."""
+    out = []
+    for i, camera in enumerate(cameras):
+        mine = [fit for key, fit in given.items() if i in key[:2]]
+        off_deg = np.array([fit.angle_deg for fit in mine])
+        if len({key[2] for key in given if i in key[:2]}) < _LEAST_STRETCHES:
+            continue
+        if np.percentile(off_deg, 25) > _CONTRADICT_DEG:
+            out.append((i, camera.name, float(np.median(off_deg))))
+    if not out:
+        return ()
+    names = tuple(name for _, name, _ in out)
+    off = max(off for _, _, off in out)
+    others = "each other" if len(names) == len(cameras) else "the other cameras"
+    return (
+        Finding(
+            Mistake.CONTRADICTION,
+            names,
+            f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees and more",
+            "are these the videos of this rig, of one room and one time? Calibrate again where a camera was moved",
+        ),
+    )
+
+
+def _off_m(fits: Iterable[PairFit]) -> float:
+    """How far rays pass each other at the body, median."""
+    off = [np.radians(fit.angle_deg) * fit.away_m for fit in fits if np.isfinite(fit.away_m)]
+    return float(np.median(off)) if off else 1.0

@@ -1,0 +1,106 @@
+"""Whether cameras' pictures are of the times that they are said to be of, by what moves in all of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.motion_delay import CameraDelay, MotionSignal, camera_delays
+
+# of a delay that is believed: of agreement at least, of the next best agreement at most, and how sure
+_AGREEMENT, _RIVAL, _SD_S = 0.45, 0.85, 0.034
+_GAIN = 0.02  # in agreement, of a delay
+_LEAST_S = 0.018  # over half a frame at 30 Hz
+_SURE_SDS = 3.0
+_PART_S = 5.0  # of a recording, whose delay is found by itself
+_JUMP_S = 0.05  # by which a delay changes where frames were dropped
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraTiming:
+    """A camera's motion, and the mean period of its frames [s]."""
+
+    name: str
+    signal: MotionSignal
+    period_s: float
+
+
+def late_findings(cameras: Sequence[CameraTiming]) -> tuple[Finding, ...]:
+    """Of each camera whose pictures are surely late or early; or, where that changes, that it does."""
+    jumps = _jumps(cameras)
+    out = []
+    for camera, delay, jump in zip(
+        cameras, camera_delays([one.signal for one in cameras]), jumps, strict=True
+    ):
+        if jump is not None:
+            out.append(_dropped(camera, *jump))
+        elif delay is not None and _is_known(delay) and _is_late(delay):
+            out.append(_late(camera, delay))
+    return tuple(out)
+
+
+def _is_known(delay: CameraDelay) -> bool:
+    return (
+        delay.sd_s < _SD_S
+        and delay.agreement > _AGREEMENT
+        and delay.rival < _RIVAL * delay.agreement
+    )
+
+
+def _is_late(delay: CameraDelay) -> bool:
+    return (
+        abs(delay.late_s) > max(_LEAST_S, _SURE_SDS * delay.sd_s)
+        and delay.agreement_undelayed < delay.agreement - _GAIN
+    )
+
+
+def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:
+    """Of each camera, the delays of the first and the last part of the recording that are known, where they differ."""
+    begin = max(
+        float(one.signal.times_s[0]) if len(one.signal.times_s) else np.inf for one in cameras
+    )
+    end = min(
+        float(one.signal.times_s[-1]) if len(one.signal.times_s) else -np.inf for one in cameras
+    )
+    if end - begin < 1.5 * _PART_S:
+        return [None] * len(cameras)
+    parts = [
+        camera_delays([_between(one.signal, low, low + _PART_S) for one in cameras])
+        for low in np.arange(begin, end - _PART_S + 1e-6, 0.25 * _PART_S)
+    ]
+    out: list[tuple[float, float] | None] = []
+    for i in range(len(cameras)):
+        there = [one for part in parts if (one := part[i]) is not None]
+        late_s = [one.late_s for one in there if _is_known(one)]
+        changed = len(late_s) > 1 and abs(late_s[-1] - late_s[0]) > _JUMP_S
+        out.append((late_s[0], late_s[-1]) if changed else None)
+    return out
+
+
+def _between(signal: MotionSignal, low_s: float, high_s: float) -> MotionSignal:
+    inside = (signal.times_s >= low_s) & (signal.times_s < high_s)
+    return MotionSignal(signal.times_s[inside], signal.change[inside])
+
+
+def _late(camera: CameraTiming, delay: CameraDelay) -> Finding:
+    frames, sense = abs(delay.late_s) / camera.period_s, "later" if delay.late_s > 0 else "earlier"
+    return Finding(
+        Mistake.DELAY,
+        (camera.name,),
+        f"the pictures of {camera.name!r} are {frames:.1f} frames ({1e3 * abs(delay.late_s):.0f} ms) {sense} than their "
+        "times say, by what moves in all cameras",
+        f"add {delay.late_s:+.3f} to its 'time_offset_s' in rig.json",
+        delay.late_s,
+    )
+
+
+def _dropped(camera: CameraTiming, first_s: float, last_s: float) -> Finding:
+    frames = abs(last_s - first_s) / camera.period_s
+    return Finding(
+        Mistake.DELAY,
+        (camera.name,),
+        f"the pictures of {camera.name!r} go out of step by {frames:.0f} frames ({1e3 * abs(last_s - first_s):.0f} ms) "
+        "during the recording: frames were dropped, or its rate is another one",
+        "record it with its frames' own times, or cut the videos where they are out of step",
+    )

@@ -1,0 +1,145 @@
+"""Whether people stand upright on the floor of a rig's world, and are as large as people."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.person_views import PersonView
+from mocapd.calibrate.consistency.view_agreement import PairFit
+from mocapd.geometry.camera_model import normalised
+from mocapd.types import Camera, Floats
+from mocapd.vision.heatmaps.joint_network import JOINTS, STATURE_M
+
+_HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
+_UPRIGHT_DEG = 45.0  # people bend; not all the time
+_TURNED_DEG = 60.0
+_SIZES = (0.62, 1.5)  # of people against their stature, as the network's joints measure them
+_FLOOR_M = (-0.3, 0.5)  # where feet are, on the floor y = 0
+_AGREES = 1.3  # cost of views from which the world is judged
+_LEAST = 2  # such views
+_PARALLAX_DEG = 10.0  # between rays, to measure sizes by them
+_KNOWN_FACTORS = {
+    "feet": 1 / 0.3048,
+    "inches": 1 / 0.0254,
+    "centimetres": 100.0,
+    "millimetres": 1000.0,
+}
+_NEAR = 1.25  # a factor, to be taken for a known one
+_COLUMNS = {  # of R, for the axis that is up in the given world: y up is wanted
+    "+z": "(r_x, r_z, -r_y)",
+    "-z": "(r_x, -r_z, r_y)",
+    "-y": "(r_x, -r_y, -r_z)",
+    "+x": "(-r_y, r_x, r_z)",
+    "-x": "(r_y, -r_x, r_z)",
+}
+
+
+def judge_world(
+    names: tuple[str, ...], fits: Sequence[PairFit], stature_m: float | None
+) -> tuple[Finding, ...]:
+    """Of views that agree, what is implausible about the people that they show."""
+    wide = [
+        one
+        for one in fits
+        if one.parallax_deg > _PARALLAX_DEG and np.isfinite(one.size) and one.cost < _AGREES
+    ]
+    if len(wide) < _LEAST:
+        return ()
+    up = np.sum([one.count * one.up for one in wide], axis=0)
+    up /= max(float(np.linalg.norm(up)), 1e-9)
+    if up[1] < np.cos(np.radians(_UPRIGHT_DEG)):
+        return (_tilted(names, up),)
+    size = float(np.median([one.size for one in wide])) * STATURE_M / (stature_m or STATURE_M)
+    if not _SIZES[0] < size < _SIZES[1]:
+        return (_sized(names, size, stature_m),)
+    floors = [one.floor_m for one in wide if np.isfinite(one.floor_m)]
+    if len(floors) > 1 and not _FLOOR_M[0] < float(np.median(floors)) < _FLOOR_M[1]:
+        return (
+            Finding(
+                Mistake.AXES,
+                names,
+                f"feet are {float(np.median(floors)):+.1f} m from the rig's floor",
+                "the floor is where y = 0: move the rig's origin there, or calibrate the room again",
+            ),
+        )
+    return ()
+
+
+def _tilted(names: tuple[str, ...], up: Floats) -> Finding:
+    k = int(np.abs(up).argmax())
+    axis = ("+" if up[k] > 0 else "-") + "xyz"[k]
+    if abs(up[k]) > 0.8 and axis in _COLUMNS:
+        return Finding(
+            Mistake.AXES,
+            names,
+            f"people stand along the {axis} axis of the rig's world",
+            f"mocapd takes +y up: write the columns of each R as {_COLUMNS[axis]}",
+        )
+    lean_deg = float(np.degrees(np.arccos(np.clip(up[1], -1.0, 1.0))))
+    return Finding(
+        Mistake.AXES,
+        names,
+        f"people lean by {lean_deg:.0f} degrees in the rig's world",
+        "mocapd takes +y up, with the floor at y = 0: turn the rig's world, or calibrate the room again",
+    )
+
+
+def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> Finding:
+    unit = min(_KNOWN_FACTORS, key=lambda name: abs(np.log(size / _KNOWN_FACTORS[name])))
+    tall = f"people are about {size * (stature_m or STATURE_M):.2g} m tall in the rig's world"
+    if abs(np.log(size / _KNOWN_FACTORS[unit])) < np.log(_NEAR):
+        return Finding(
+            Mistake.UNIT,
+            names,
+            f"{tall}: 't' looks like {unit}",
+            f"'t' is in metres: multiply it by {1.0 / _KNOWN_FACTORS[unit]:.4g}",
+        )
+    return Finding(
+        Mistake.UNIT,
+        names,
+        tall,
+        f"'t' is in metres: is its unit another one, or were all pictures cut or zoomed? 't' times {1 / size:.2g} would fit",
+    )
+
+
+def turned_views(
+    cameras: Sequence[Camera], people: Sequence[Sequence[PersonView]]
+) -> tuple[Finding, ...]:
+    """Cameras in whose pictures people do not stand as the rig's vertical is seen there; people: of each camera."""
+    out = []
+    for camera, views in zip(cameras, people, strict=True):
+        turns = [angle for view in views for angle in _lean_deg(camera, view)]
+        if len(turns) < 20:
+            continue
+        radians = np.radians(turns)
+        turn_deg = float(
+            np.degrees(np.arctan2(np.median(np.sin(radians)), np.median(np.cos(radians))))
+        )
+        if abs(turn_deg) < _TURNED_DEG:
+            continue
+        quarters = round(turn_deg / 90.0) * 90
+        out.append(
+            Finding(
+                Mistake.TURNED,
+                (camera.name,),
+                f"people in the pictures of {camera.name!r} are turned by {quarters} degrees against the rig's vertical",
+                "turn the video back, or calibrate it so; if all are turned: is +y up in rig.json, and R world-to-camera?",
+            )
+        )
+    return tuple(out)
+
+
+def _lean_deg(camera: Camera, view: PersonView) -> list[float]:
+    """Of each picture, the angle from the world's vertical, as the camera sees it, to the trunk."""
+    sure = (view.spread[:, _HIPS] < 2.0) & (view.spread[:, _NECK] < 2.0)
+    hips, neck = view.px[sure, _HIPS], view.px[sure, _NECK]
+    xy = normalised(camera, hips)
+    up = camera.R[:, 1]
+    # where a point goes that moves up, at whatever distance
+    way = up[:2] - xy * up[2]
+    trunk = neck - hips
+    long = np.linalg.norm(way, axis=1) > 0.3
+    angle = np.arctan2(trunk[:, 1], trunk[:, 0]) - np.arctan2(way[:, 1], way[:, 0])
+    wrapped = (np.degrees(angle) + 180.0) % 360.0 - 180.0
+    return [float(one) for one in wrapped[long]]

@@ -1,0 +1,117 @@
+"""Compares now and then what live cameras show with their calibration and their times, by the checks of recordings.
+
+While it collects, half a minute or so, each frame costs its capture thread a copy of a small picture. The rest is done
+in a thread that gives way to all others. Then it rests for minutes.
+"""
+
+import logging
+import os
+import threading
+from collections import deque
+from contextlib import suppress
+
+import numpy as np
+
+from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
+from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.person_views import WORK_PX
+from mocapd.clock import seconds
+from mocapd.types import Bytes, Frame, Rig
+
+_log = logging.getLogger(__name__)
+
+_LONGEST_S = 120.0  # of collecting, when little moves
+_REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
+_MOST_WAITING = 400  # small pictures: the thread is behind
+_PAUSE_S = 0.25
+_NICE = 15
+
+
+class ViewWatch:
+    """Joins a frame hub. `put` is called by capture threads, `start`, `stop` by the owner, the rest by anybody."""
+
+    def __init__(self, rig: Rig | None, stature_m: float | None = None) -> None:
+        """No rig, or one without two cameras and more: whatever its pictures show is checked all the same."""
+        self._rig, self._stature_m = rig, stature_m
+        self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
+        self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
+        self._is_collecting = bool(self._sizes)
+        self._stopping = threading.Event()
+        self._result = CheckResult()
+        self._thread = threading.Thread(target=self._run, name="views", daemon=True)
+
+    def start(self) -> None:
+        """Begin to collect; returns at once."""
+        if self._is_collecting:
+            self._thread.start()
+
+    def stop(self) -> None:
+        """It ends by itself soon; never blocks."""
+        self._stopping.set()
+        self._is_collecting = False
+
+    def put(self, frame: Frame) -> None:
+        """Hand in a frame; a small picture of it is kept while it collects."""
+        if not self._is_collecting or frame.pixels.shape[1::-1] != self._sizes.get(frame.camera):
+            return
+        step = max(1, max(self._sizes[frame.camera]) // WORK_PX)
+        small = np.ascontiguousarray(frame.pixels[step // 2 :: step, step // 2 :: step])
+        self._waiting.append((frame.camera, frame.t_ns, small, float(step)))
+
+    @property
+    def off_m(self) -> float:
+        """By how much views contradict each other for good, as last compared [m]."""
+        return self._result.off_m
+
+    def notice(self, camera: str) -> str:
+        """What people must do about a camera; empty when nothing."""
+        return "; ".join(str(one) for one in self._result.findings if camera in one.cameras)
+
+    def is_exchanged(self, camera: str) -> bool:
+        """Whether it shows what another camera should."""
+        return any(
+            one.mistake is Mistake.EXCHANGED and camera in one.cameras
+            for one in self._result.findings
+        )
+
+    def _run(self) -> None:
+        with suppress(OSError, AttributeError):  # of this thread alone, where the system knows that
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
+        while not self._stopping.is_set():
+            result = self._compared()
+            if result is None:
+                return
+            self._tell(result)
+            self._result = result
+            self._stopping.wait(_REST_WARNED_S if result.findings else _REST_S)
+            self._waiting.clear()
+            self._is_collecting = not self._stopping.is_set()
+
+    def _compared(self) -> CheckResult | None:
+        """What the next half minute shows; None when it is to stop."""
+        assert self._rig is not None
+        check = CaptureCheck(self._rig, self._stature_m)
+        first_s: float | None = None
+        while not self._stopping.wait(_PAUSE_S):
+            t_s = 0.0
+            while self._waiting:
+                camera, t_ns, small, smaller = self._waiting.popleft()
+                check.put_small(camera, t_ns, small, smaller)
+                t_s = seconds(t_ns)
+                first_s = t_s if first_s is None else first_s
+            if first_s is not None and (check.has_enough or t_s - first_s > _LONGEST_S):
+                self._is_collecting = False
+                return check.result()
+        return None
+
+    def _tell(self, result: CheckResult) -> None:
+        before = {_key(one) for one in self._result.findings}
+        for one in result.findings:
+            if _key(one) not in before:
+                _log.warning("%s", one)
+        if self._result.findings and not result.findings and result.looked:
+            _log.info("what the cameras show agrees with their calibration again")
+
+
+def _key(finding: Finding) -> tuple[Mistake, tuple[str, ...]]:
+    return finding.mistake, finding.cameras
