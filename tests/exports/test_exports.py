@@ -142,7 +142,7 @@ def test_gaps_are_empty_where_the_format_can(tmp_path: Path) -> None:
     from mocapd.exports.formats import write_export
 
     motion = _with_gap(exported(tmp_path, "trc")[0])
-    for name in ("trc", "csv"):
+    for name in ("trc", "csv", "c3d"):
         write_export(motion, name, tmp_path / f"gap.{name}")
     line = (tmp_path / "gap.trc").read_text().split("\n")[6 + 40].split("\t")
     assert set(line[2:]) == {""}
