@@ -122,6 +122,20 @@ def calibrate_folder(
             notes.append(f"{recording.name}: the board is {_difference(found)}, unlike given")
             spec = found
         sightings.append(sighting)
+    return calibrate_sightings(sightings, clocks, spec, progress, floor_frame, params, notes)
+
+
+def calibrate_sightings(
+    sightings: Sequence[BoardSighting],
+    clocks: Mapping[str, RecordingTimes],
+    spec: BoardSpec,
+    progress: Progress,
+    floor_frame: int | None = None,
+    params: FolderParams | None = None,
+    notes: Sequence[str] = (),
+) -> FolderCalibration:
+    """The rig of cameras whose boards are found; `clocks[camera]`: when their frames were taken. Raises ConfigError."""
+    params = params or FolderParams()
     _refuse_blind(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}
@@ -129,7 +143,9 @@ def calibrate_folder(
         progress("lenses", done, len(sightings))
         intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
     progress("lenses", len(sightings), len(sightings))
-    return _solve_rig(sightings, intrinsics_of, clocks, spec, floor_frame, params, notes, progress)
+    return _solve_rig(
+        sightings, intrinsics_of, clocks, spec, floor_frame, params, list(notes), progress
+    )
 
 
 def _stride(
