@@ -58,7 +58,9 @@ def rig_of(cameras: int, width_m: float, hd: bool = False) -> tuple[Camera, ...]
     for i in range(cameras):
         eye_m = np.array([x[i], 1.3 + 0.15 * (i % 2), np.sqrt(max(2.2**2 - x[i] ** 2, 0.5))])
         K = camera_matrix(
-            np.array([focal_px + 7.0 * i, focal_px + 7.0 * i, size_px[0] / 2 - 3, size_px[1] / 2 + 4])
+            np.array(
+                [focal_px + 7.0 * i, focal_px + 7.0 * i, size_px[0] / 2 - 3, size_px[1] / 2 + 4]
+            )
         )
         out.append(replace(looking_at(f"cam{i}", eye_m, target_m), size_px=size_px, K=K))
     return tuple(out)

@@ -141,7 +141,9 @@ def main() -> int:
             else:
                 late += 1
                 late_good += one.good
-    print(f"out of step: {late_good} of {late} told within a factor of 2, or refused with the offset")
+    print(
+        f"out of step: {late_good} of {late} told within a factor of 2, or refused with the offset"
+    )
     print(f"in step: {step_quiet} of {step} neither refused nor warned of")
     return 0 if (late_good, step_quiet) == (late, step) else 1
 

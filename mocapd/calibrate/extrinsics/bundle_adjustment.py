@@ -21,15 +21,17 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     residuals_px,
     with_steps,
 )
-from mocapd.calibrate.extrinsics.corner_noise import corner_deviations_px
+from mocapd.calibrate.extrinsics.corner_noise import corner_deviations_px, usual_deviations_px
 from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Floats, Ints
 
 # of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
 _RIDGES = (1e-9, 1e-6, 1e-3)
+_FOLLOWED = 2.0  # longest gap [frames] from which on the board's motion is followed
+_HELD_FOCAL, _HELD_MIDDLE, _HELD_DIST = 0.02, 0.006, (0.05, 0.1, 0.002, 0.002, 0.1)
 _STRETCH = 5  # positions next to each other, whose errors may be of one cause
 
 
@@ -43,7 +45,9 @@ class BundleParams:
     outlier_sigmas: float = 5.0  # a corner is dropped above so many robust deviations,
     least_outlier_px: float = 1.5  # but never below this
     delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
-    rounds: int = 2  # of the board's motion, taken from the solution before
+    rounds: int = 2  # of the board's motion, taken from the solution before, at least,
+    most_rounds: int = 4  # until the delays are settled
+    settled_frames: float = 0.01
     longest_gap: float = 1.5  # between positions that the motion is taken from [frames]
     evaluations: int = 15
     priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
@@ -167,10 +171,20 @@ def adjust_bundle(
     """
     params = params or BundleParams()
     corner_px = np.full(len(seen.camera), params.corner_px)
-    scene = _solve(_Problem(scene, seen, corner_px, size_px, params), robust=True)
-    for _ in range(params.rounds):
+    gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
+    scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+    for done in range(params.most_rounds):
+        before = scene.delay
         scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
-        corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
+        # one deviation for all: as long as delays are not settled, what moves is off for that reason
+        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
+        scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+        settled = np.abs(scene.delay - before).max(initial=0.0) < params.settled_frames
+        if done + 1 >= params.rounds and settled:
+            break
+    if gentle is not params:
+        scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
+        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
         scene = _solve(_Problem(scene, seen, corner_px, size_px, params), robust=True)
     corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
@@ -178,6 +192,21 @@ def adjust_bundle(
     problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
     scene = _solve(problem, robust=False)
     return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
+
+
+def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundleParams) -> BundleParams:
+    """Lenses near those that were solved alone, as long as the motion is not known: pictures out of time would bend
+    them, and the way back is long."""
+    if params.longest_gap < _FOLLOWED:
+        return params
+    known = scene.intrinsics
+    deviation = np.empty_like(known)
+    deviation[:, :2] = _HELD_FOCAL * known[:, :2]
+    deviation[:, 2:4] = _HELD_MIDDLE * size_px[:, :1]
+    deviation[:, 4:] = _HELD_DIST
+    return replace(
+        params, priors=replace(params.priors, known=KnownIntrinsics(known.copy(), deviation))
+    )
 
 
 def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:

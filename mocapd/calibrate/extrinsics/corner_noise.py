@@ -16,6 +16,14 @@ _TAIL = 4.0  # degrees of freedom: outliers count little
 _GAIN = 10.0  # of log likelihood, in pictures, before time is called uneven
 
 
+def usual_deviations_px(scene: ReprojectionProblem, seen: Observations, least_px: float) -> Floats:
+    """(N,): standard deviation of each corner's x or y, the same for all, not minding outliers."""
+    error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
+    # of a Rayleigh distribution the median is 1.18 deviations
+    usual_px = max(float(np.median(error_px)) / 1.18, least_px) if len(error_px) else least_px
+    return np.full(len(error_px), usual_px)
+
+
 def corner_deviations_px(scene: ReprojectionProblem, seen: Observations, least_px: float) -> Floats:
     """(N,): standard deviation of each corner's x or y, not minding outliers.
 
@@ -23,10 +31,9 @@ def corner_deviations_px(scene: ReprojectionProblem, seen: Observations, least_p
     times, if that explains the errors far better. Student's t distribution, over a grid.
     """
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
-    # of a Rayleigh distribution the median is 1.18 deviations
-    usual_px = max(float(np.median(error_px)) / 1.18, least_px) if len(error_px) else least_px
+    out = usual_deviations_px(scene, seen, least_px)
+    usual_px = float(out[0]) if len(out) else least_px
     speed_px = corner_speeds_px(scene, seen)
-    out = np.full(len(error_px), usual_px)
     moving = speed_px > 0.0
     for camera in np.unique(seen.camera[moving]):
         own = (seen.camera == camera) & moving

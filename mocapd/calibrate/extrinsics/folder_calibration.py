@@ -253,7 +253,8 @@ def _solve_rig(
         refuse_contradicted_lenses(made.rig, intrinsics_of)
     except ConfigError as error:
         raise _out_of_time(error, aligned.times) from None
-    notes += [f"{said}: mended" for said in aligned.times.troubles]
+    later_s = {name: fit.delay_frames * instants.period_s for name, fit in made.cameras.items()}
+    notes += [f"{said}: mended" for said in aligned.times.troubles(later_s)]
     notes += [made.note] if made.note else []
     if made.gluing is not None:
         notes += [trouble] if (trouble := gluing_trouble(made.gluing)) else []
@@ -284,9 +285,9 @@ def _solve_rig(
 
 def _out_of_time(error: ConfigError, times: AlignedTimes) -> ConfigError:
     """The same, with the trouble in the cameras' times that may be its cause."""
-    if not times.troubles:
+    said = "; ".join(times.troubles())
+    if not said:
         return error
-    said = "; ".join(times.troubles)
     return ConfigError(
         f"{said}; mended, the cameras still do not fit: {error}", "the room", TIME_FIX
     )

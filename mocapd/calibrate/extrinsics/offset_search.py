@@ -6,9 +6,10 @@ transform explains all pictures. A camera that loses frames without a trace in i
 another: the offsets over time are the cheapest path through the trials (Viterbi), in which each jump has its price.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.calibrate.extrinsics.board_alignment import Affine, aligned
 from mocapd.calibrate.extrinsics.board_track import BoardTrack
@@ -218,6 +219,7 @@ def _refined(trials: _Trials, path: _Path) -> _Path:
 def _judged(trials: _Trials, path: _Path) -> PairOffsets:
     costs = trials.costs(path.a_from_b, path.scale_px)
     rows = np.arange(len(path.trials))
+    path = replace(path, trials=_supported(path.trials, costs, trials.known))
     jumps = np.flatnonzero(np.diff(path.trials)) + 1
     error = trials.error_px(path.a_from_b)[rows, path.trials]
     good = np.isfinite(error) & (error < _LOOSE * np.sqrt(_WRONG) * path.scale_px)
@@ -265,3 +267,25 @@ def _between_trials_s(trials: _Trials, path: _Path) -> float:
     if bend <= 0.0:
         return 0.0
     return float(np.clip((before - after) / bend, -1.0, 1.0) * trials.step_s)
+
+
+def _supported(states: Ints, costs: Floats, known: NDArray[np.bool_]) -> Ints:
+    """The path without jumps for which only pictures speak that have no partner before or after.
+
+    Of two stretches next to each other, the one that loses least takes the other's offset.
+    """
+    states = states.copy()
+    while True:
+        edges = np.concatenate([[0], np.flatnonzero(np.diff(states)) + 1, [len(states)]]).tolist()
+        worth = []
+        for k in range(1, len(edges) - 1):
+            for own, other in ((k - 1, k), (k, k - 1)):
+                rows = np.arange(edges[own], edges[own + 1])
+                here, there = states[edges[own]], states[edges[other]]
+                both = rows[known[rows, here] & known[rows, there]]
+                loss = float((costs[both, there] - costs[both, here]).sum())
+                worth.append((loss, edges[own], edges[own + 1], int(there)))
+        if not worth or min(worth)[0] >= _JUMP:
+            return states
+        _, start, end, there = min(worth)
+        states[start:end] = there

@@ -15,6 +15,7 @@ from mocapd.types import Floats
 MENDED = (
     0.9  # periods, from which on an offset is mended here; the joint solution finds smaller ones
 )
+_WORTH_SAYING = 0.5  # periods
 _MOST_JUMPS_PER_MINUTE = 30.0
 TIME_FIX = (
     "record all cameras with one program that stamps their frames, or clap the board shut in sight of all and cut the "
@@ -34,14 +35,17 @@ class AlignedTimes:
     maps: Mapping[str, ClockMap]
     period_s: Mapping[str, float]
 
-    @property
-    def troubles(self) -> tuple[str, ...]:
-        """What the stamps do not say, camera by camera."""
-        return tuple(
-            f"{name} {described(self.maps[name], self.period_s[name], self.reference)}"
-            for name in self.times_s
-            if _is_mended(self.maps[name])
-        )
+    def troubles(self, later_s: Mapping[str, float] | None = None) -> tuple[str, ...]:
+        """What the stamps do not say, camera by camera. later_s: how much later [s] each exposes than was found here."""
+        later_s = later_s or {}
+        out = []
+        for name, clock in self.maps.items():
+            if not _is_mended(clock):
+                continue
+            more_s = later_s.get(name, 0.0) - later_s.get(self.reference, 0.0)
+            clock = ClockMap(clock.jump_s, clock.offset_s - more_s)
+            out.append(f"{name} {described(clock, self.period_s[name], self.reference)}")
+        return tuple(out)
 
 
 def align_times(
@@ -70,7 +74,7 @@ def align_times(
         else:
             maps[name] = (own,)
     times, merged = {}, {}
-    for name, track in tracks.items():
+    for name in tracks:
         indices = sorted(stamps_s[name])
         stamps = np.array([stamps_s[name][index] for index in indices])
         at_s, known = stamps, np.ones(len(stamps), bool)
@@ -90,7 +94,7 @@ def described(clock: ClockMap, period_s: float, other: str) -> str:
     """What the offset and the jumps of a camera are, as against another."""
     parts = []
     offset_s = float(clock.offset_s[0])
-    if abs(offset_s) >= MENDED * period_s:
+    if abs(offset_s) >= _WORTH_SAYING * period_s:
         # what was recorded from later on has lower stamps
         side = f"behind {other} (it began later)" if offset_s < 0.0 else f"ahead of {other}"
         parts.append(
