@@ -18,7 +18,8 @@ _UNEVEN = 0.5  # error of the board's interpolated place, as a part of its motio
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardTrack:
     """T pictures with the board: times_s (T,) rising, points_m (T,4,3) its outer corners in the camera's frame,
-    speed_mps (T,4,3) of them, indices (T,) of the pictures; focal_px; period_s of the camera's frames, step_s between those that were looked at.
+    speed_mps (T,4,3) of them, indices (T,) of the pictures; focal_px; period_s of the camera's frames, step_s between
+    those that were looked at.
 
     `followed`: the pictures are near enough in time that the board's way between them is known.
     """
