@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from mocapd.config.sections import Config
 
 
+_WORTH_SAYING = 0.1  # frames that a camera exposes later than the first
+
+
 @dataclass(frozen=True, slots=True)
 class FolderOptions:
     """What was said on the command line; None or "" where it was not."""
@@ -145,6 +148,7 @@ def _as_dict(found: "FolderCalibration") -> dict[str, object]:
                 "covered": round(one.covered, 3),
                 "delay_frames": round(one.delay_frames, 3),
                 "focal_deviation": round(one.focal_deviation, 5),
+                "place_cm": round(one.place_cm, 3),
             }
             for name, one in found.cameras.items()
         },
@@ -175,6 +179,11 @@ def _as_text(found: "FolderCalibration", out: Path) -> str:
     lines += [
         f"{name}  {one.rms_px:.2f} px, {one.held_out_px:.2f} px held out, "
         f"{one.views} of {one.pictures} pictures"
+        + (
+            f", {one.delay_frames:+.2f} frames late"
+            if abs(one.delay_frames) >= _WORTH_SAYING
+            else ""
+        )
         + (f", {one.backs} of the board's back" if one.backs else "")
         for name, one in found.cameras.items()
     ]

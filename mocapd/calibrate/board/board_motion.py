@@ -8,21 +8,32 @@ from mocapd.calibrate.extrinsics.board_reprojection import ReprojectionProblem
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
+_REACH = 2  # positions to either side
 
-def board_paths(scene: ReprojectionProblem, indices: Sequence[int]) -> Floats:
+
+def board_paths(scene: ReprojectionProblem, indices: Sequence[int], longest_gap: float) -> Floats:
     """(V,2,6): velocity [per frame] and half the acceleration [per frame^2] of turn [rad] and shift [m].
 
-    The parabola through the positions one frame before and after; where one of them is unknown the
-    board is taken to stand still, and a delay shows nothing there.
+    Of the polynomial through a position and up to two before and two after it, each within `longest_gap` [frames]
+    of the next. With fewer than two of them the board is taken to stand still, and a delay shows nothing there.
     """
     out = np.zeros((len(indices), 2, 6))
-    place = {index: v for v, index in enumerate(indices)}
-    for v, index in enumerate(indices):
-        before, after = place.get(index - 1), place.get(index + 1)
-        if before is None or after is None:
+    order = np.argsort(indices)
+    at = np.asarray(indices, dtype=float)[order]
+    near = np.diff(at) <= longest_gap
+    for row, v in enumerate(order.tolist()):
+        first = last = row
+        while first > max(0, row - _REACH) and near[first - 1]:
+            first -= 1
+        while last < min(len(at) - 1, row + _REACH) and near[last]:
+            last += 1
+        if last - first < 2:
             continue
-        back, on = _step(scene, v, before), _step(scene, v, after)
-        out[v, 0], out[v, 1] = 0.5 * (on - back), 0.5 * (on + back)
+        others = [k for k in range(first, last + 1) if k != row]
+        steps = np.stack([_step(scene, v, int(order[k])) for k in others])
+        since = at[others] - at[row]
+        powers = since[:, None] ** np.arange(1, len(others) + 1)
+        out[v] = np.linalg.solve(powers, steps)[:2]
     return out
 
 

@@ -1,7 +1,8 @@
 """A folder of recordings of the board: a video or a folder of pictures per camera, named by its stem."""
 
+import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from mocapd.boundary.files import read_file
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
 from mocapd.capture.file import FileSource, probe_video
+from mocapd.capture.video_times import video_times
 from mocapd.errors import EndOfStream, InputError, MalformedError
 from mocapd.types import Bytes
 
@@ -23,7 +25,17 @@ _VIDEOS = {
 }
 _PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 # How those begin whose headers are OpenCV's to measure, against the limit that `environment` sets.
+_USUAL_HZ = 30.0  # of numbered pictures
 _OTHERS = (b"BM", b"II*\0", b"MM\0*", b"RIFF")
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingTimes:
+    """stamps_s[index] [s] from the start of the file, and the usual time between frames. Of pictures with numbers in
+    their names the time is that number at a usual rate."""
+
+    stamps_s: Mapping[int, float]
+    period_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +47,17 @@ class Recording:
     frames: int
     size_px: tuple[int, int]
 
+    def stamps(self) -> RecordingTimes:
+        """When its frames were taken, by the file's own stamps. Raises InputError."""
+        if self.path.is_dir():
+            indices = [index for index, _ in numbered(self.path)]
+            return RecordingTimes({i: i / _USUAL_HZ for i in indices}, 1.0 / _USUAL_HZ)
+        times = video_times(self.path)
+        stamps_s = dict(enumerate((times.start_s + times.times_s).tolist()))
+        return RecordingTimes(stamps_s, 1.0 / times.rate_hz)
+
     def pictures(self, stride: int = 1) -> Iterator[tuple[int, Bytes]]:
-        """Index and pixels of every `stride`-th index. Pictures carry their index in their name.
+        """Index and pixels of every `stride`-th index: frames as they come, pictures by the number in their name.
 
         Raises InputError for a picture that is damaged or of another size.
         """
@@ -48,10 +69,10 @@ class Recording:
         source = FileSource(self.name, self.path)
         source.open()
         try:
-            while True:
+            for index in itertools.count():
                 frame = source.read()
-                if frame.seq % stride == 0:
-                    yield frame.seq, frame.pixels
+                if index % stride == 0:
+                    yield index, frame.pixels
         except EndOfStream:
             return
         finally:

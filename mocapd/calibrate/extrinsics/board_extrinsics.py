@@ -39,6 +39,8 @@ from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_r
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
 from mocapd.types import Floats, Rig
 
+_NINE_IN_TEN = 1.645  # standard deviations, of one direction, which mostly outweighs the others
+
 
 @dataclass(frozen=True, slots=True)
 class BoardExtrinsicsParams:
@@ -47,6 +49,7 @@ class BoardExtrinsicsParams:
     bundle: BundleParams = field(default_factory=BundleParams)
     rms_px: float = 2.5
     play_area_cm: float = 2.0
+    place_cm: float = 10.0
     focal_deviation: float = 0.02
 
 
@@ -64,12 +67,14 @@ class SceneExtrinsics:
 
 @dataclass(frozen=True, slots=True)
 class CameraFit:
-    """One camera in the joint solution: error, pictures that it has, delay to the first camera."""
+    """One camera in the joint solution: error, pictures that it has, delay to the first camera; `place_cm`: how near it
+    is to where it is said to be, seen from the first, in nine of ten cases."""
 
     rms_px: float
     views: int
     delay_frames: float
     focal_deviation: float
+    place_cm: float
     refused_corners: int
 
 
@@ -94,8 +99,10 @@ def solve_extrinsics(
     views: Mapping[str, Mapping[int, BoardView]],
     spec: BoardSpec,
     params: BoardExtrinsicsParams,
+    lags: Mapping[str, Mapping[int, float]] | None = None,
 ) -> SceneExtrinsics:
-    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one instant.
+    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one instant, or
+    `lags[camera][index]` [frames] after it.
 
     Raises ConfigError naming the cameras that share no positions with the others, MirroredError naming
     what is mirrored.
@@ -114,7 +121,7 @@ def solve_extrinsics(
         if suspicion is not None:
             raise mirrored(suspicion)
     scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
-    seen = observations(names, trusted, indices, board_m)
+    seen = observations(names, trusted, indices, board_m, lags)
     bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
     return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
 
@@ -132,8 +139,12 @@ def lone_camera(
         np.zeros((0, 2, POSE)),
         usual_back(corners_m(spec)),
     )
-    seen = Observations(none, none, np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0, bool))
-    bundle = Bundle(scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]), None)
+    seen = Observations(
+        none, none, np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0, bool), np.zeros(0)
+    )
+    bundle = Bundle(
+        scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]), np.zeros(1), None
+    )
     return SceneExtrinsics((name,), (size_px,), spec, (), seen, bundle)
 
 
@@ -172,6 +183,7 @@ def with_board(
         np.concatenate([extrinsics.seen.point_m, seen.point_m]),
         np.concatenate([extrinsics.seen.pixels, seen.pixels]),
         np.concatenate([extrinsics.seen.on_back, seen.on_back]),
+        np.concatenate([extrinsics.seen.lag, seen.lag]),
     )
     used = np.concatenate([extrinsics.bundle.used, np.ones(len(seen.camera), bool)])
     bundle = replace(extrinsics.bundle, scene=scene, used=used)
@@ -227,16 +239,19 @@ def place_in_world(
     rig = rig_in_world(world, scene, extrinsics.names, extrinsics.sizes_px)
     kept = seen.of(extrinsics.bundle.used)
     deviation = extrinsics.bundle.back_deviation
+    cameras = {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)}
+    area = play_area_error(rig, _as_placed(scene, kept))
+    place_cm = max(fit.place_cm for fit in cameras.values())
     made = WorldExtrinsics(
         rig,
         _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
-        {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)},
+        cameras,
         len(extrinsics.indices),
-        play_area_error(rig, _as_placed(scene, kept)),
+        None if area is None else area.with_places(place_cm),
         world.note,
         None if deviation is None else gluing_of(scene.back, deviation),
     )
-    _refuse_bad(made, params, extrinsics.spec)
+    _refuse_bad(made, area, params, extrinsics.spec)
     return made
 
 
@@ -260,18 +275,31 @@ def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
         len(np.unique(seen.view[kept])),
         float(bundle.scene.delay[i]),
         float(bundle.focal_deviation[i]),
+        100.0 * _NINE_IN_TEN * float(bundle.place_deviation_m[i]),
         int((own & ~bundle.used).sum()),
     )
 
 
-def _refuse_bad(made: WorldExtrinsics, params: BoardExtrinsicsParams, spec: BoardSpec) -> None:
-    far = made.play_area is not None and made.play_area.median_cm > params.play_area_cm
+def _refuse_bad(
+    made: WorldExtrinsics,
+    area: PlayAreaError | None,
+    params: BoardExtrinsicsParams,
+    spec: BoardSpec,
+) -> None:
+    """`area`: without what the places are known to."""
+    far = area is not None and area.median_cm > params.play_area_cm
     if made.rms_px > params.rms_px or far:
-        raise contradiction(made.rms_px, made.play_area, spec.two_sided)
+        raise contradiction(made.rms_px, area, spec.two_sided)
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:
             raise ConfigError(
                 f"the focal length is known to {100 * fit.focal_deviation:.1f} % only",
                 name,
                 "show the board nearer to this camera, and tilted by 30 degrees and more",
+            )
+        if fit.place_cm > params.place_cm:
+            raise ConfigError(
+                f"where it stands is known to {fit.place_cm:.0f} cm only",
+                name,
+                "show the board at more places where this camera and others see it, and hold it still there",
             )

@@ -21,13 +21,15 @@ POSE = 6  # a step of a pose: left rotation vector [rad], shift [m]
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
     """N corners seen: camera (N,), view (N,), point_m (N,3) on the board's front, in its frame, pixels (N,2);
-    on_back (N,): on the back instead, behind that point."""
+    on_back (N,): on the back instead, behind that point. lag (N,): time from the view's instant to this picture, by
+    the camera's clock [frames]."""
 
     camera: Ints
     view: Ints
     point_m: Floats
     pixels: Floats
     on_back: NDArray[np.bool_]
+    lag: Floats
 
     def of(self, keep: NDArray[np.bool_]) -> "Observations":
         """Those of a mask (N,)."""
@@ -37,6 +39,7 @@ class Observations:
             self.point_m[keep],
             self.pixels[keep],
             self.on_back[keep],
+            self.lag[keep],
         )
 
 
@@ -45,7 +48,7 @@ class ReprojectionProblem:
     """C cameras and V board positions.
 
     intrinsics (C,9); camera_from_scene (C,); scene_from_board (V,); delay (C,): how much later a camera
-    exposes than the first, in frames; path (V,2,6): how the board moves on from each position, see
+    exposes than its clock says, against the first, in frames; path (V,2,6): how the board moves on from each position, see
     `board_motion.board_paths`; back: the print on the board's back, if it has one.
     """
 
@@ -102,7 +105,7 @@ def _on_its_way(scene: ReprojectionProblem, seen: Observations) -> tuple[Floats,
     From the board's origin to the corner (N,3) [m], that origin (N,3) [m], and the rotation (N,3,3)
     since the position's own instant; in the scene.
     """
-    delay = scene.delay[seen.camera, None]
+    delay = (scene.delay[seen.camera] + seen.lag)[:, None]
     path = scene.path[seen.view]
     way = delay * path[:, 0] + delay**2 * path[:, 1]
     since = exp_matrices(way[:, :3])
@@ -137,13 +140,30 @@ def jacobians(
     at_rest_m = scene_from_board.rotate(placed_m(scene, seen))
     by_turn = -by_scene @ since @ cross_matrices(at_rest_m) @ spin
     by_board = np.concatenate([by_turn, by_scene], axis=2)
-    path, delay = scene.path[seen.view], scene.delay[seen.camera, None]
-    speed = path[:, 0] + 2.0 * delay * path[:, 1]
-    way = delay * path[:, 0] + delay**2 * path[:, 1]
-    turning = np.einsum("nij,nj->ni", left_jacobians(way[:, :3]), speed[:, :3])
-    velocity = np.cross(turning, arm_m) + speed[:, 3:]
+    velocity = _velocity(scene, seen, arm_m)
     by_back, back = np.zeros((len(arm_m), 2, OFFSET)), seen.on_back
     if back.any():
         turned = by_scene[back] @ since[back] @ scene_from_board.R[back]
         by_back[back] = turned @ scene.back.slopes(seen.point_m[back])
     return by_intrinsics, by_camera, by_board, by_scene @ velocity[..., None], by_back
+
+
+def _velocity(scene: ReprojectionProblem, seen: Observations, arm_m: Floats) -> Floats:
+    """(N,3) [m per frame] of the corners in the scene, `arm_m` from the board's origin."""
+    path, delay = scene.path[seen.view], (scene.delay[seen.camera] + seen.lag)[:, None]
+    speed = path[:, 0] + 2.0 * delay * path[:, 1]
+    way = delay * path[:, 0] + delay**2 * path[:, 1]
+    turning = np.einsum("nij,nj->ni", left_jacobians(way[:, :3]), speed[:, :3])
+    velocity: Floats = np.cross(turning, arm_m) + speed[:, 3:]
+    return velocity
+
+
+def corner_speeds_px(scene: ReprojectionProblem, seen: Observations) -> Floats:
+    """(N,) [px per frame]: of the corners in the pictures."""
+    arm_m, origin_m, _ = _on_its_way(scene, seen)
+    camera_from_scene = scene.camera_from_scene[seen.camera]
+    points_m = camera_from_scene.apply(arm_m + origin_m)
+    _, by_point = projection_jacobians(scene.intrinsics[seen.camera], points_m)
+    moving_m = camera_from_scene.rotate(_velocity(scene, seen, arm_m))
+    speed: Floats = np.linalg.norm(np.einsum("nij,nj->ni", by_point, moving_m), axis=1)
+    return speed

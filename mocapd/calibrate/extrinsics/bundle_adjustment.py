@@ -21,12 +21,18 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     residuals_px,
     with_steps,
 )
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors
+from mocapd.calibrate.extrinsics.corner_noise import corner_deviations_px, usual_deviations_px
+from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
+from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Floats, Ints
 
 # of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
 _RIDGES = (1e-9, 1e-6, 1e-3)
+_FOLLOWED = 2.0  # longest gap [frames] from which on the board's motion is followed
+_HELD_FOCAL, _HELD_MIDDLE, _HELD_DIST = 0.02, 0.006, (0.05, 0.1, 0.002, 0.002, 0.1)
+_STRETCH = 5  # positions next to each other, whose errors may be of one cause
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +45,10 @@ class BundleParams:
     outlier_sigmas: float = 5.0  # a corner is dropped above so many robust deviations,
     least_outlier_px: float = 1.5  # but never below this
     delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
-    rounds: int = 2  # of the board's motion, taken from the solution before
+    rounds: int = 2  # of the board's motion, taken from the solution before, at least,
+    most_rounds: int = 4  # until the delays are settled
+    settled_frames: float = 0.01
+    longest_gap: float = 1.5  # between positions that the motion is taken from [frames]
     evaluations: int = 15
     priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
     gluing: GluingPrior = field(default_factory=GluingPrior)
@@ -49,13 +58,15 @@ class BundleParams:
 class Bundle:
     """The solution, and which of the observations (N,) it is computed from.
 
-    `focal_deviation` (C,): standard deviation of each focal length, as a part of it; `back_deviation`
-    (4,): of how the back of the board lies, None where nobody saw it.
+    `focal_deviation` (C,): standard deviation of each focal length, as a part of it; `place_deviation_m` (C,): of
+    where each camera is, seen from the first; `back_deviation` (4,): of how the back of the board lies, None where
+    nobody saw it.
     """
 
     scene: ReprojectionProblem
     used: NDArray[np.bool_]
     focal_deviation: Floats
+    place_deviation_m: Floats
     back_deviation: Floats | None
 
 
@@ -65,6 +76,7 @@ class _Problem:
 
     scene: ReprojectionProblem
     seen: Observations
+    corner_px: Floats  # (N,): standard deviations
     size_px: Floats
     params: BundleParams
 
@@ -100,7 +112,7 @@ class _Problem:
         gluing = self.params.gluing
         return np.concatenate(
             [
-                residuals_px(scene, self.seen).ravel() / self.params.corner_px,
+                (residuals_px(scene, self.seen) / self.corner_px[:, None]).ravel(),
                 priors.ravel(),
                 scene.delay[1:] / self.params.delay_frames,
                 ((scene.back.offset - gluing.mean) / gluing.deviation)[: self.of_back],
@@ -112,6 +124,7 @@ class _Problem:
         intrinsics, cameras, boards, delay, back = self.steps(x)
         scene = with_steps(self.scene, intrinsics, cameras, boards, delay, back)
         values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
+        values /= self.corner_px[:, None, None]
         columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
         rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
         rows = np.broadcast_to(rows, values.shape)
@@ -129,7 +142,7 @@ class _Problem:
                 scipy.sparse.csr_matrix(np.diag(tight)),
             ]
         )
-        return scipy.sparse.vstack([corners / self.params.corner_px, own]).tocsr()
+        return scipy.sparse.vstack([corners, own]).tocsr()
 
     def _columns(self) -> Ints:
         """(N, 9+6+6+1+4): what each observation depends on; -1: stays as it is."""
@@ -157,24 +170,43 @@ def adjust_bundle(
     outliers.
     """
     params = params or BundleParams()
-    scene = _solve(_Problem(scene, seen, size_px, params), robust=True)
-    for _ in range(params.rounds):
-        scene = replace(scene, path=board_paths(scene, indices))
-        params = replace(params, corner_px=_deviation_px(scene, seen, params))
-        scene = _solve(_Problem(scene, seen, size_px, params), robust=True)
+    corner_px = np.full(len(seen.camera), params.corner_px)
+    gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
+    scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+    for done in range(params.most_rounds):
+        before = scene.delay
+        scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
+        # one deviation for all: as long as delays are not settled, what moves is off for that reason
+        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
+        scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+        settled = np.abs(scene.delay - before).max(initial=0.0) < params.settled_frames
+        if done + 1 >= params.rounds and settled:
+            break
+    if gentle is not params:
+        scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
+        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
+        scene = _solve(_Problem(scene, seen, corner_px, size_px, params), robust=True)
+    corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
-    limit_px = params.outlier_sigmas * _deviation_px(scene, seen, params)
-    used = error_px <= max(limit_px, params.least_outlier_px)
-    problem = _Problem(scene, seen.of(used), size_px, params)
+    used = error_px <= np.maximum(params.outlier_sigmas * corner_px, params.least_outlier_px)
+    problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
     scene = _solve(problem, robust=False)
     return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
 
 
-def _deviation_px(scene: ReprojectionProblem, seen: Observations, params: BundleParams) -> float:
-    """Of a corner's x or y, not minding outliers."""
-    error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
-    # of a Rayleigh distribution the median is 1.18 deviations
-    return max(float(np.median(error_px)) / 1.18, params.least_corner_px)
+def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundleParams) -> BundleParams:
+    """Lenses near those that were solved alone, as long as the motion is not known: pictures out of time would bend
+    them, and the way back is long."""
+    if params.longest_gap < _FOLLOWED:
+        return params
+    known = scene.intrinsics
+    deviation = np.empty_like(known)
+    deviation[:, :2] = _HELD_FOCAL * known[:, :2]
+    deviation[:, 2:4] = _HELD_MIDDLE * size_px[:, :1]
+    deviation[:, 4:] = _HELD_DIST
+    return replace(
+        params, priors=replace(params.priors, known=KnownIntrinsics(known.copy(), deviation))
+    )
 
 
 def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
@@ -241,19 +273,31 @@ def _lower(normal: Floats) -> Floats:
     return scales
 
 
-def _deviations(problem: _Problem) -> tuple[Floats, Floats | None]:
-    """Of the focal lengths (C,), as parts of them, and of the back (4,), from the curvature of the sum of
-    squares at the solution."""
-    J = problem.slope(np.zeros(problem.columns))
-    cameras = len(problem.scene.delay)
-    asked = [
-        *(INTRINSICS * np.arange(cameras)),
-        *range(problem.columns - problem.of_back, problem.columns),
-    ]
-    wanted = np.zeros((problem.columns, len(asked)))
-    wanted[asked, np.arange(len(asked))] = 1.0
-    normal = (J.T @ J + 1e-12 * scipy.sparse.identity(problem.columns)).tocsc()
-    covariance = scipy.sparse.linalg.spsolve(normal, wanted)
-    deviation = np.sqrt(np.asarray(covariance).reshape(wanted.shape)[asked, np.arange(len(asked))])
-    focal: Floats = deviation[:cameras] / problem.scene.intrinsics[:, 0]
-    return focal, deviation[cameras:] if problem.of_back else None
+def _deviations(problem: _Problem) -> tuple[Floats, Floats, Floats | None]:
+    """Of the focal lengths (C,), as parts of them, of the cameras' places (C,) [m], and of the back (4,)."""
+    scene, seen = problem.scene, problem.seen
+    cameras = len(scene.delay)
+    at_rest = np.zeros(problem.columns)
+    J = problem.slope(at_rest)
+    error = problem.error(at_rest)
+    first = cameras * INTRINSICS
+    asked = np.array(
+        [
+            *(INTRINSICS * np.arange(cameras)),
+            *range(first, first + (cameras - 1) * POSE),
+            *range(problem.columns - problem.of_back, problem.columns),
+        ]
+    )
+    stretch = np.repeat(seen.view // _STRETCH, 2)
+    usual, covariance = asked_covariances(J, error, stretch, asked)
+    deviation = np.sqrt(np.diag(usual))
+    focal: Floats = deviation[:cameras] / scene.intrinsics[:, 0]
+    place_m = np.zeros(cameras)
+    for camera in range(1, cameras):
+        at = slice(cameras + (camera - 1) * POSE, cameras + camera * POSE)
+        pose = scene.camera_from_scene[camera]
+        # the centre is -R^T t; a step turns R from the left and shifts t
+        by_step = -pose.R.T @ np.hstack([cross_matrices(pose.t_m), np.eye(3)])
+        place_m[camera] = np.sqrt(np.trace(by_step @ covariance[at, at] @ by_step.T))
+    back = deviation[cameras + (cameras - 1) * POSE :] if problem.of_back else None
+    return focal, place_m, back

@@ -1,11 +1,11 @@
 """From a folder of recordings of a board to a rig: intrinsics, extrinsics, and what was refused on the way."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
-from mocapd.calibrate.board.recordings import find_recordings
+from mocapd.calibrate.board.recordings import Recording, RecordingTimes, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
@@ -18,6 +18,10 @@ from mocapd.calibrate.extrinsics.board_sighting import (
     refuse_unseen,
     sight_board,
 )
+from mocapd.calibrate.extrinsics.folder_alignment import align_views
+from mocapd.calibrate.extrinsics.instants import Instants
+from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
+from mocapd.calibrate.extrinsics.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
@@ -33,7 +37,9 @@ _ALONE = IntrinsicsLimits(focal_deviation=0.25)
 class FolderParams:
     """How much of the recordings is looked at, and how the extrinsics are solved."""
 
-    most_pictures: int = 200  # per camera, evenly over the recording
+    most_pictures: int = 200  # instants that the extrinsics are solved from
+    densely: int = 3  # times as many are looked at, for the board's motion,
+    least_hz: float = 10.0  # and of long recordings so many a second
     choice: Choice = field(default_factory=Choice)
     extrinsics: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
 
@@ -41,7 +47,8 @@ class FolderParams:
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraReport:
     """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, pictures with the board,
-    `backs` of them with its back."""
+    `backs` of them with its back. `delay_frames`: how much later than the first camera it exposes pictures of one
+    stamp, at first where frames are lost; `place_cm`: how near it is to where it is said to be."""
 
     rms_px: float
     held_out_px: float
@@ -51,6 +58,7 @@ class CameraReport:
     covered: float
     delay_frames: float
     focal_deviation: float
+    place_cm: float
     refused_views: tuple[int, ...]
     refused_corners: int
 
@@ -91,13 +99,28 @@ def calibrate_folder(
         )
     notes: list[str] = []
     sightings = []
-    stride = max(1, -(-max(one.frames for one in recordings) // params.most_pictures))
+    clocks = {one.name: one.stamps() for one in recordings}
+    stride = _stride(recordings, clocks, params)
     for recording in recordings:
         sighting = sight_board(recording, spec, stride, progress)
         if sighting.spec != spec:
             notes.append(sighting.variant_note)
             spec = sighting.spec
         sightings.append(sighting)
+    return calibrate_sightings(sightings, clocks, spec, progress, floor_frame, params, notes)
+
+
+def calibrate_sightings(
+    sightings: Sequence[BoardSighting],
+    clocks: Mapping[str, RecordingTimes],
+    spec: BoardSpec,
+    progress: Progress,
+    floor_frame: int | None = None,
+    params: FolderParams | None = None,
+    notes: Sequence[str] = (),
+) -> FolderCalibration:
+    """The rig of cameras whose boards are found; `clocks[camera]`: when their frames were taken. Raises ConfigError."""
+    params = params or FolderParams()
     refuse_unseen(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}
@@ -105,7 +128,19 @@ def calibrate_folder(
         progress("lenses", done, len(sightings))
         intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
     progress("lenses", len(sightings), len(sightings))
-    return _solve_rig(sightings, intrinsics_of, spec, floor_frame, params, notes, progress)
+    return _solve_rig(
+        sightings, intrinsics_of, clocks, spec, floor_frame, params, list(notes), progress
+    )
+
+
+def _stride(
+    recordings: Sequence[Recording], clocks: Mapping[str, RecordingTimes], params: FolderParams
+) -> int:
+    """Every which frame is looked at: between neighbours the board must not go far."""
+    most = params.densely * params.most_pictures
+    even = -(-max(len(clocks[one.name].stamps_s) for one in recordings) // most)
+    slowest_s = max(clock.period_s for clock in clocks.values())
+    return max(1, min(even, int(1.0 / (params.least_hz * slowest_s))))
 
 
 def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
@@ -117,6 +152,7 @@ def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> 
 def _solve_rig(
     sightings: Sequence[BoardSighting],
     intrinsics_of: Mapping[str, Intrinsics],
+    clocks: Mapping[str, RecordingTimes],
     spec: BoardSpec,
     floor_frame: int | None,
     params: FolderParams,
@@ -124,21 +160,38 @@ def _solve_rig(
     progress: Progress,
 ) -> FolderCalibration:
     names = [one.recording.name for one in sightings]
-    views = {one.recording.name: one.views for one in sightings}
-    known = sorted(
-        {i for name in names for i in views[name] if i not in intrinsics_of[name].thrown_out}
-    )
-    if floor_frame is not None and floor_frame not in known:
-        raise ConfigError(
-            "no camera sees the board in it",
-            f"--floor-frame {floor_frame}",
-            f"one of the frames with the board, such as {known[len(known) // 2]}",
-        )
     progress("room", 0, 1)
+    # a view that contradicted its own camera's intrinsics tells nothing of time and room either
+    views = {
+        one.recording.name: {
+            i: view
+            for i, view in one.views.items()
+            if i not in intrinsics_of[one.recording.name].thrown_out
+        }
+        for one in sightings
+    }
+    aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
+    instants = aligned.instants
+    floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
     sizes_px = [one.recording.size_px for one in sightings]
-    extrinsics = solve_extrinsics(names, sizes_px, intrinsics_of, views, spec, params.extrinsics)
+    bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)
+    extrinsics = solve_extrinsics(
+        names,
+        sizes_px,
+        {name: replace(lens, thrown_out=()) for name, lens in intrinsics_of.items()},
+        instants.views,
+        spec,
+        replace(params.extrinsics, bundle=bundle),
+        instants.lags,
+    )
     progress("room", 1, 1)
-    made = place_in_world(extrinsics, floor_frame, f"frame {floor_frame}", params.extrinsics)
+    try:
+        made = place_in_world(extrinsics, floor, f"frame {floor_frame}", params.extrinsics)
+        refuse_contradicted_lenses(made.rig, intrinsics_of)
+    except ConfigError as error:
+        raise _out_of_time(error, aligned.times) from None
+    later_s = {name: fit.delay_frames * instants.period_s for name, fit in made.cameras.items()}
+    notes += [f"{said}: mended" for said in aligned.times.troubles(later_s)]
     notes += [made.note] if made.note else []
     if made.gluing is not None:
         notes += [trouble] if (trouble := gluing_trouble(made.gluing)) else []
@@ -146,7 +199,12 @@ def _solve_rig(
         notes.append("no camera saw the back of the board, which was said to be two-sided")
     reports = {
         one.recording.name: _report(
-            one, intrinsics_of[one.recording.name], made.cameras[one.recording.name]
+            one,
+            intrinsics_of[one.recording.name],
+            made.cameras[one.recording.name],
+            aligned.delay_frames(
+                one.recording.name, names[0], made.cameras[one.recording.name].delay_frames
+            ),
         )
         for one in sightings
     }
@@ -162,7 +220,32 @@ def _solve_rig(
     )
 
 
-def _report(one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit) -> CameraReport:
+def _out_of_time(error: ConfigError, times: AlignedTimes) -> ConfigError:
+    """The same, with the trouble in the cameras' times that may be its cause."""
+    said = "; ".join(times.troubles())
+    if not said:
+        return error
+    return ConfigError(
+        f"{said}; mended, the cameras still do not fit: {error}", "the room", TIME_FIX
+    )
+
+
+def _floor_instant(instants: Instants, floor_frame: int) -> int:
+    """Of the picture in which the board lies on the floor. Raises ConfigError."""
+    floor = instants.of_picture(floor_frame)
+    if floor is None:
+        known = sorted({index for own in instants.source.values() for index in own.values()})
+        raise ConfigError(
+            "no camera sees the board in it",
+            f"--floor-frame {floor_frame}",
+            f"one of the frames with the board, such as {known[len(known) // 2]}",
+        )
+    return floor
+
+
+def _report(
+    one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit, delay_frames: float
+) -> CameraReport:
     return CameraReport(
         fit.rms_px,
         intrinsics.held_out_px,
@@ -170,8 +253,9 @@ def _report(one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit) -> Camer
         sum(view.back for view in one.views.values()),
         one.pictures,
         covered(list(one.views.values()), one.recording.size_px),
-        fit.delay_frames,
+        delay_frames,
         fit.focal_deviation,
+        fit.place_cm,
         intrinsics.thrown_out,
         fit.refused_corners,
     )

@@ -68,21 +68,24 @@ def observations(
     views: Mapping[str, Mapping[int, BoardView]],
     indices: Sequence[int],
     board_m: Floats,
+    lags: Mapping[str, Mapping[int, float]] | None = None,
 ) -> Observations:
-    """Every corner of these board positions in every camera."""
+    """Every corner of these board positions in every camera. `lags[camera][index]`: from the position's instant to
+    that picture [frames]; None: none."""
     parts = [
-        (camera, place, views[name][index])
+        (camera, place, views[name][index], lags[name][index] if lags else 0.0)
         for camera, name in enumerate(names)
         for place, index in enumerate(indices)
         if index in views[name]
     ]
-    counts = [len(view.ids) for _, _, view in parts]
+    counts = [len(view.ids) for _, _, view, _ in parts]
     return Observations(
-        np.repeat([camera for camera, _, _ in parts], counts),
-        np.repeat([place for _, place, _ in parts], counts),
-        np.concatenate([board_m[view.ids] for _, _, view in parts]),
-        np.concatenate([view.corners_px for _, _, view in parts]),
-        np.repeat([view.back for _, _, view in parts], counts),
+        np.repeat([camera for camera, _, _, _ in parts], counts),
+        np.repeat([place for _, place, _, _ in parts], counts),
+        np.concatenate([board_m[view.ids] for _, _, view, _ in parts]),
+        np.concatenate([view.corners_px for _, _, view, _ in parts]),
+        np.repeat([view.back for _, _, view, _ in parts], counts),
+        np.repeat([lag for _, _, _, lag in parts], counts),
     )
 
 

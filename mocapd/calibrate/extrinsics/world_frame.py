@@ -27,11 +27,20 @@ class WorldFrame:
 
 @dataclass(frozen=True, slots=True)
 class PlayAreaError:
-    """Distance of corners, triangulated, from a rigid board laid through them [cm]."""
+    """Distance of corners, triangulated, from a rigid board laid through them [cm]; with what the cameras' places are
+    known to, see `with_places`."""
 
     median_cm: float
     p95_cm: float
     corners: int
+
+    def with_places(self, place_cm: float) -> "PlayAreaError":
+        """The same where cameras may be `place_cm` off together with all that they saw: no board shows that."""
+        return PlayAreaError(
+            float(np.hypot(self.median_cm, place_cm)),
+            float(np.hypot(self.p95_cm, place_cm)),
+            self.corners,
+        )
 
 
 def world_on_floor(

@@ -1,0 +1,168 @@
+"""The pictures of all cameras in one time: by their stamps, and by the board's motion where that contradicts them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from mocapd.calibrate.extrinsics.board_track import BoardTrack
+from mocapd.calibrate.extrinsics.clock_map import SAME_CLOCK, ClockMap, clock_map
+from mocapd.calibrate.extrinsics.offset_search import PairOffsets, find_offsets
+from mocapd.errors import ConfigError
+from mocapd.types import Floats
+
+MENDED = (
+    0.9  # periods, from which on an offset is mended here; the joint solution finds smaller ones
+)
+_WORTH_SAYING = 0.5  # periods
+_MOST_JUMPS_PER_MINUTE = 30.0
+TIME_FIX = (
+    "record all cameras with one program that stamps their frames, or clap the board shut in sight of all and cut the "
+    "videos there"
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AlignedTimes:
+    """times_s[camera][picture] [s] in the reference camera's time, of pictures whose time is known.
+
+    offset_s: by camera, how much later its clock says the same (the first stretch, where it jumps); `maps` has all.
+    """
+
+    reference: str
+    times_s: Mapping[str, Mapping[int, float]]
+    maps: Mapping[str, ClockMap]
+    period_s: Mapping[str, float]
+
+    def troubles(self, later_s: Mapping[str, float] | None = None) -> tuple[str, ...]:
+        """What the stamps do not say, camera by camera. later_s: how much later [s] each exposes than was found here."""
+        later_s = later_s or {}
+        out = []
+        for name, clock in self.maps.items():
+            if not _is_mended(clock):
+                continue
+            more_s = later_s.get(name, 0.0) - later_s.get(self.reference, 0.0)
+            clock = ClockMap(clock.jump_s, clock.offset_s - more_s)
+            out.append(f"{name} {described(clock, self.period_s[name], self.reference)}")
+        return tuple(out)
+
+
+def align_times(
+    tracks: Mapping[str, BoardTrack], stamps_s: Mapping[str, Mapping[int, float]]
+) -> AlignedTimes:
+    """`stamps_s[camera][picture]`: of all pictures with the board, by the files.
+
+    Raises ConfigError: a camera's pictures contradict those of another at the offset that the stamps give, and at
+    no other do they agree.
+    """
+    pairs: dict[tuple[str, str], PairOffsets] = {}
+    for a, b in combinations(tracks, 2):
+        found = find_offsets(tracks[a], tracks[b])
+        if found is not None:
+            pairs[a, b] = found
+    reference = _reference(list(tracks), pairs)
+    maps: dict[str, tuple[ClockMap, ...]] = {reference: (SAME_CLOCK,)}
+    while len(maps) < len(tracks):
+        placed, name = _next(list(tracks), maps, pairs)
+        own = SAME_CLOCK
+        if placed is not None:
+            offsets = pairs.get((placed, name)) or find_offsets(tracks[placed], tracks[name])
+            if offsets is not None:
+                own = _checked(tracks, placed, name, offsets)
+            maps[name] = (own, *maps[placed])
+        else:
+            maps[name] = (own,)
+    times, merged = {}, {}
+    for name in tracks:
+        indices = sorted(stamps_s[name])
+        stamps = np.array([stamps_s[name][index] for index in indices])
+        at_s, known = stamps, np.ones(len(stamps), bool)
+        for one in maps[name]:
+            at_s, inside = one.times(at_s)
+            known &= inside
+        times[name] = {
+            index: float(t) for index, t, good in zip(indices, at_s, known, strict=True) if good
+        }
+        merged[name] = _merged(maps[name])
+    return AlignedTimes(
+        reference, times, merged, {name: track.period_s for name, track in tracks.items()}
+    )
+
+
+def described(clock: ClockMap, period_s: float, other: str) -> str:
+    """What the offset and the jumps of a camera are, as against another."""
+    parts = []
+    offset_s = float(clock.offset_s[0])
+    if abs(offset_s) >= _WORTH_SAYING * period_s:
+        # what was recorded from later on has lower stamps
+        side = f"behind {other} (it began later)" if offset_s < 0.0 else f"ahead of {other}"
+        parts.append(
+            f"is {abs(offset_s) / period_s:.1f} frames ({1e3 * abs(offset_s):.0f} ms) {side}"
+        )
+    for at_s, change_s in zip(clock.jump_s, clock.changes_s, strict=True):
+        frames = round(abs(change_s) / period_s)
+        what = "loses" if change_s < 0.0 else "repeats or gains"
+        parts.append(f"{what} {frames} frame{'s' if frames != 1 else ''} near {at_s:.1f} s")
+    return ", ".join(parts)
+
+
+def _is_mended(clock: ClockMap) -> bool:
+    return len(clock.jump_s) > 0 or bool(clock.offset_s.any())
+
+
+def _merged(chain: Sequence[ClockMap]) -> ClockMap:
+    """Offsets and jumps of a chain of maps in one, for what is said."""
+    jump_s: Floats = np.concatenate([one.jump_s for one in chain])
+    change_s: Floats = np.concatenate([one.changes_s for one in chain])
+    order = np.argsort(jump_s)
+    first_s = sum(float(one.offset_s[0]) for one in chain)
+    return ClockMap(jump_s[order], first_s + np.concatenate([[0.0], np.cumsum(change_s[order])]))
+
+
+def _reference(names: Sequence[str], pairs: Mapping[tuple[str, str], PairOffsets]) -> str:
+    """The camera that jumps least against the others, and shares most with them."""
+
+    def worth(name: str) -> tuple[int, int]:
+        own = [offsets for pair, offsets in pairs.items() if name in pair and offsets.sure]
+        return -sum(len(one.jumps) for one in own), sum(one.pairs for one in own)
+
+    return max(names, key=worth)
+
+
+def _next(
+    names: Sequence[str], placed: Mapping[str, object], pairs: Mapping[tuple[str, str], PairOffsets]
+) -> tuple[str | None, str]:
+    """A placed camera and one that is not, which together are surest; None: with nobody."""
+    best: tuple[tuple[bool, int], str, str] | None = None
+    for (a, b), offsets in pairs.items():
+        if (a in placed) == (b in placed):
+            continue
+        known, new = (a, b) if a in placed else (b, a)
+        worth = (offsets.sure, offsets.pairs)
+        if best is None or worth > best[0]:
+            best = worth, known, new
+    if best is None:
+        return None, next(name for name in names if name not in placed)
+    return best[1], best[2]
+
+
+def _checked(
+    tracks: Mapping[str, BoardTrack], placed: str, name: str, offsets: PairOffsets
+) -> ClockMap:
+    """The map from what the motion says, or none where that adds nothing. Raises ConfigError."""
+    track = tracks[name]
+    clock = clock_map(offsets)
+    small = not len(clock.jump_s) and abs(float(clock.offset_s[0])) < MENDED * track.period_s
+    if small or not offsets.refuted:
+        return SAME_CLOCK
+    said = described(clock, track.period_s, placed)
+    if not offsets.sure:
+        raise ConfigError(f"the pictures are not of one moment: it perhaps {said}", name, TIME_FIX)
+    minutes = (tracks[placed].times_s[-1] - tracks[placed].times_s[0]) / 60.0
+    jumps = len(clock.jump_s)
+    if jumps > max(4.0, _MOST_JUMPS_PER_MINUTE * minutes):
+        raise ConfigError(
+            f"its frames come out of time {jumps} times against {placed}", name, TIME_FIX
+        )
+    return clock
