@@ -14,6 +14,7 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
 from mocapd.errors import CannotCreateError, ConfigError
 from mocapd.trackers.base import RoomLearner, Tracker
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import Floats, FrameSet
 from mocapd.whole_file import whole_file
 
@@ -27,7 +28,8 @@ class RecordedTrack:
 
     times_s (F,): since the capture's start [s]; joints_m (F,J,3) [m, world]; global_xyzw (F,J,4):
     rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,); uncertainty_m (F,J): as in BodyState,
-    inf where it is unknown, and everywhere when left out.
+    inf where it is unknown, and everywhere when left out; unrecognised: frames in which somebody moves who is not taken for a
+    person.
     """
 
     times_s: Floats
@@ -37,6 +39,7 @@ class RecordedTrack:
     confidence: Floats
     tracker: NDArray[np.str_]
     uncertainty_m: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    unrecognised: int = 0
 
     def __post_init__(self) -> None:
         if self.uncertainty_m.size == 0:
@@ -59,9 +62,11 @@ def track_all(
     """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done."""
     names = skeleton_of(shape).names
     times, joints, quats, confidence, by, uncertainty = [], [], [], [], [], []
+    unrecognised = 0
     for done, one in enumerate(frames, start=1):
         track = tracker.step(one, shape)
         body, shape = track.body, track.shape
+        unrecognised += track.lost_reason is LostReason.UNRECOGNISED
         if body.pose is not None and body.joints_m is not None:
             times.append(seconds(body.t_ns))
             joints.append(body.joints_m)
@@ -79,6 +84,7 @@ def track_all(
         np.array(confidence).reshape(n, j),
         np.array(by, dtype=np.str_),
         np.array(uncertainty).reshape(n, j),
+        unrecognised,
     )
 
 
