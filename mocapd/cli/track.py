@@ -75,10 +75,15 @@ def track(
     from mocapd.app.progress import ProgressBars
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
-    from mocapd.session.offline import check_writable, learn_room, track_all, write_track
+    from mocapd.session.offline import (
+        check_writable,
+        learn_room,
+        track_all,
+        why_missing,
+        write_track,
+    )
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
-    from mocapd.trackers.lost_reason import LostReason
 
     check_writable(out)
     own = effective.tracker
@@ -103,9 +108,6 @@ def track(
         )
     write_track(out, result)
     typer.echo(f"{out}: {len(result.times_s)} of {origin.count} frames with a person", err=True)
-    if result.unrecognised:
-        reason = LostReason.UNRECOGNISED
-        typer.echo(
-            f"mocapd: in {result.unrecognised} of {origin.count} frames {reason.what} -- {reason.fix}",
-            err=True,
-        )
+    why = why_missing(result, origin.count)
+    if why:
+        typer.echo(f"mocapd: {why}", err=True)

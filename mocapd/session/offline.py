@@ -88,6 +88,14 @@ def track_all(
     )
 
 
+def why_missing(track: RecordedTrack, count: int) -> str:
+    """In a line for people, why some of `count` frames have nobody though somebody moves in them; empty: it is not so."""
+    if not track.unrecognised:
+        return ""
+    reason = LostReason.UNRECOGNISED
+    return f"in {track.unrecognised} of {count} frames {reason.what} -- {reason.fix}"
+
+
 def check_writable(path: Path) -> None:
     """Before a long run, that its result can be kept. Raises CannotCreateError."""
     try:

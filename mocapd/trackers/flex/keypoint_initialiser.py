@@ -35,13 +35,15 @@ class KeypointCandidate:
     """Somebody who may be here: fitted to joints and silhouettes; who: the pieces of the foreground; shadows: with those that
     may be one.
 
-    off_sds2: median over the joints of how far off the body has them [standard deviations^2], in the camera where that is
-    largest; apart_m: mean distance between the body's joints and the triangulated ones; lowest_m: height of the lowest joint.
+    spread_m: median over the joints of how far each is spread over its map, in the camera where that is largest, inf where
+    one sees too few; off_sds2: likewise, how far off the body has them [standard deviations^2]; apart_m: mean distance
+    between the body's joints and the triangulated ones; lowest_m: height of the lowest joint.
     """
 
     fit: Fit
     who: Standing
     shadows: bool
+    spread_m: float
     off_sds2: float
     apart_m: float
     lowest_m: float
@@ -143,7 +145,8 @@ class KeypointInitialiser:
             fit,
             who,
             shadows,
-            self._off_sds2(joints, joints_m),
+            self._spread_m(joints),
+            _largest_median(joints.off_sds2(joints_m)),
             apart_m,
             float(joints_m[:, 1].min()),
         )
@@ -154,16 +157,16 @@ class KeypointInitialiser:
         low_m, high_m = p.lowest_m
         return (
             one.fit.explained >= p.explained + (p.shadows_more if one.shadows else 0.0)
+            and one.spread_m <= p.spread_m
             and one.off_sds2 <= p.off_sds2
             and one.apart_m <= p.apart_m
             and low_m <= one.lowest_m <= high_m
         )
 
-    def _off_sds2(self, joints: JointTerm, joints_m: Floats) -> float:
-        """See `KeypointCandidate`; inf where a camera sees too few joints."""
-        seen = joints.off_sds2(joints_m)
-        enough = min(map(len, seen)) >= self._params.least_joints
-        return max(float(np.median(one)) for one in seen) if enough else np.inf
+    def _spread_m(self, joints: JointTerm) -> float:
+        """See `KeypointCandidate`."""
+        enough = min(len(one.joints) for one in joints.seen) >= self._params.least_joints
+        return _largest_median(joints.spreads_m()) if enough else np.inf
 
     def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
         """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
@@ -216,6 +219,10 @@ def _upright_about(
     root_m = middle_m - (middle_of(rest_m[_HIPS], rest_m[_NECK]) - rest_m[_HIPS])
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     return MotionState(root_m, local, np.zeros(fitter.model.n_pose), factors, information)
+
+
+def _largest_median(by_camera: Sequence[Floats]) -> float:
+    return max(float(np.median(one)) for one in by_camera)
 
 
 def _middle_px(blob: Blob) -> Floats:

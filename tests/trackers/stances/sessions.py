@@ -54,22 +54,26 @@ def record(session: StanceSession, folder: Path) -> None:
     )
 
 
-def _scenario(session: StanceSession, number: int) -> Scenario:
-    hall = session.rig == "ring"
+def scenario_of(name: str, rig: str, number: int) -> Scenario:
+    """A room without a chair before cameras of this rig; number: of the clothes and of the noise."""
     scene = load_scenario(
-        asset_path("scenarios") / ("gym_mono.toml" if hall else "living_room.toml")
+        asset_path("scenarios") / ("gym_mono.toml" if rig == "ring" else "living_room.toml")
     )
-    body = BodySpec(stature_m=_STATURES_M[number], whole=True)
+    body = BodySpec(stature_m=_STATURES_M[number % len(_STATURES_M)], whole=True)
     clothes = Clothes(
         shirt="plain", top_srgb=_TOPS[number % len(_TOPS)], trousers_srgb=_TROUSERS[number % len(_TROUSERS)],
         top_weave=Weave(pattern="stripes" if number % 3 == 1 else "plain"),
     )  # fmt: skip
-    scenario = msgspec.structs.replace(
-        scene, name=session.name, seed=4000 + number, loop_s=SECONDS, person_appears_s=EMPTY_S, scribble_s=0.2,
-        cameras=_cameras(scene.cameras[0], session.rig), body=body, clothes=clothes, others=(), absences=(),
+    return msgspec.structs.replace(
+        scene, name=name, seed=4000 + number, loop_s=SECONDS, person_appears_s=EMPTY_S, scribble_s=0.2,
+        cameras=_cameras(scene.cameras[0], rig), body=body, clothes=clothes, others=(), absences=(),
         motion=MotionSpec(keyframes=[PoseKeyframe(t_s=0.0)]),
         lights=tuple(msgspec.structs.replace(one, events=()) for one in scene.lights),
     )  # fmt: skip
+
+
+def _scenario(session: StanceSession, number: int) -> Scenario:
+    scenario = scenario_of(session.name, session.rig, number)
     if not session.seat:
         return scenario
     height_m = hips_height_m(STANCES[session.stance], World(scenario).skeleton) - _FROM_HIPS_M
