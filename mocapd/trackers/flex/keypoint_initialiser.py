@@ -115,7 +115,8 @@ class KeypointInitialiser:
     def attempt(
         self, middle_m: Floats, who: Standing, shadows: bool, factors: Floats, information: Floats
     ) -> KeypointCandidate | None:
-        """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network sees no trunk."""
+        """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network is far from
+        sure of its joints, or sees no trunk."""
         p, fitter = self._params, self._silhouettes
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
@@ -125,6 +126,8 @@ class KeypointInitialiser:
             if not terms:
                 return None
             joints = terms[0]
+            if self._spread_m(joints) > p.hopeless_m:
+                return None
             places_m = triangulated_joints(joints.seen, hips_m, p.middle_sd_m)
             posed = pose_through(fitter, places_m, factors, information)
             if posed is None:

@@ -56,11 +56,15 @@ class KeypointStartParams:
     iterations: int = 6  # towards the joints
     explained: float = 0.62  # of silhouette and body together
     shadows_more: float = 0.08  # with what may be shadow: it lies on the floor before the feet, and draws the body there
-    spread_m: float = 0.09  # see KeypointCandidate; of people up to 0.07, of chairs from 0.11
-    off_sds2: float = (
-        1.3  # likewise; of people up to 1.0, of who lies, whom the network does not know, to 4
+    # see KeypointCandidate
+    spread_m: float = 0.09  # of people up to 0.07, of chairs from 0.11
+    hopeless_m: float = (
+        0.15  # the same, above which nothing is fitted: at the first look the middle may be off
     )
-    apart_m: float = 0.3  # likewise; of people up to 0.25 before cameras beside each other, of a bookshelf from 0.4
+    off_sds2: float = 1.3  # of people up to 1.0; of who lies, whom the network does not know, to 4
+    apart_m: float = (
+        0.3  # of people up to 0.25, before cameras beside each other; of a bookshelf from 0.4
+    )
     least_joints: int = 10  # of 15, seen inside each picture
     lowest_m: tuple[float, float] = (-0.15, 0.3)  # the lowest joint, above the floor
     same_place_m: float = 0.4  # between two looks in a row
