@@ -123,7 +123,7 @@ class KeypointInitialiser:
         for _ in range(p.looks):
             watch = self._joints.watch(fitter, state, self._views)
             terms = self._joints.term(fitter.model, map(watch, who.blobs))
-            if not terms:
+            if not terms or len(terms[0].seen) < len(who.blobs):
                 return None
             joints = terms[0]
             if self._spread_m(joints) > p.hopeless_m:

@@ -1,6 +1,7 @@
 """Rooms in which things are moved and nobody is: who is found there is a ghost."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import msgspec
 import numpy as np
@@ -27,7 +28,7 @@ class MovedThing:
     rig: str
     size_m: tuple[float, float, float]
     srgb: tuple[int, int, int]
-    kind: str = "box"
+    kind: Literal["box", "ball", "tree"] = "box"
 
 
 THINGS = (
