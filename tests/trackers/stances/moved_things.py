@@ -22,18 +22,22 @@ _WAY_M = 0.9
 
 @dataclass(frozen=True, slots=True)
 class MovedThing:
-    """A box of this size [m] that appears after the empty room and is pushed to and fro before cameras of this rig."""
+    """A thing of this size [m] that appears after the empty room and is pushed to and fro before cameras of this rig.
+
+    is_known: as a ghost of the search for who stands, which takes it for somebody small.
+    """
 
     name: str
     rig: str
     size_m: tuple[float, float, float]
     srgb: tuple[int, int, int]
     kind: Literal["box", "ball", "tree"] = "box"
+    is_known: bool = False
 
 
 THINGS = (
     MovedThing("chair", "pair", (0.42, 0.9, 0.42), (120, 84, 54)),
-    MovedThing("chair_stereo", "stereo", (0.42, 0.9, 0.42), (60, 60, 110)),
+    MovedThing("chair_stereo", "stereo", (0.42, 0.9, 0.42), (60, 60, 110), is_known=True),
     MovedThing("cupboard", "pair", (0.5, 1.7, 0.4), (196, 120, 40)),
     MovedThing("cupboard_stereo", "stereo", (0.5, 1.7, 0.4), (200, 196, 190)),
     MovedThing("ball", "stereo", (0.75, 0.75, 0.75), (160, 50, 60), "ball"),
