@@ -78,7 +78,13 @@ def track(
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.session.capture_checks import check_capture
-    from mocapd.session.offline import learn_room, track_all, track_file, write_track
+    from mocapd.session.offline import (
+        learn_room,
+        track_all,
+        track_file,
+        why_missing,
+        write_track,
+    )
     from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
 
@@ -109,3 +115,6 @@ def track(
         )
     write_track(target, result)
     typer.echo(f"{out}: {len(result.times_s)} of {origin.count} frames with a person", err=True)
+    why = why_missing(result, origin.count)
+    if why:
+        typer.echo(f"mocapd: {why}", err=True)

@@ -90,7 +90,8 @@ class Trouble(msgspec.Struct, frozen=True):
 
 class StatusReport(msgspec.Struct, frozen=True):
     """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
-    published: frames since the start; dropped: frame sets displaced by newer ones."""
+    published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
+    tracked though somebody moves, and what they can do; mostly empty."""
 
     version: str
     pid: int
@@ -109,4 +110,5 @@ class StatusReport(msgspec.Struct, frozen=True):
     outputs: tuple[OutputReport, ...]
     calibration: CalibrationReport | None = None
     last_trouble: Trouble | None = None
+    lost_reason: str = ""
     schema: str = STATUS

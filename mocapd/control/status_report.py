@@ -18,6 +18,7 @@ from mocapd.control.messages import (
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus
 from mocapd.service.fitness import fitness_of
+from mocapd.service.health import lost_reason_text
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service
 from mocapd.session.session import Session
@@ -48,6 +49,7 @@ def status_report(service: Service, last_trouble: Trouble | None) -> StatusRepor
         outputs=_outputs(snapshot.outputs),
         calibration=_calibration(session),
         last_trouble=last_trouble,
+        lost_reason=lost_reason_text(metrics.lost_reason),
     )
 
 

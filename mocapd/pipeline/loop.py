@@ -114,7 +114,7 @@ class PipelineLoop:
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
-        self._recorder.published(frames, body, step_ns, monotonic_ns())
+        self._recorder.published(frames, body, step_ns, monotonic_ns(), track.lost_reason)
 
     def _none(self, absence: Absence) -> None:
         """No frames came for a while."""

@@ -8,6 +8,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
 
 
@@ -28,7 +29,7 @@ class Metrics:
     `t_ns`) to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
     was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
-    since the start; turns: how often the pipeline's thread
+    since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
     has come round, with frames or without.
     """
 
@@ -44,6 +45,7 @@ class Metrics:
     cameras: dict[str, CameraMetrics]
     latency_counts: LatencyCounts = field(default_factory=LatencyCounts)
     turns: int = 0
+    lost_reason: LostReason | None = None
 
 
 class MetricsRecorder:
@@ -60,9 +62,17 @@ class MetricsRecorder:
         self._turns = 0
         self._tracking = Tracking.LOST
         self._tracker = ""
+        self._lost_reason: LostReason | None = None
 
-    def published(self, frames: FrameSet, body: BodyState, step_ns: int, now_ns: int) -> None:
-        """A body went out at `now_ns`, after a tracker's step of `step_ns`."""
+    def published(
+        self,
+        frames: FrameSet,
+        body: BodyState,
+        step_ns: int,
+        now_ns: int,
+        lost_reason: LostReason | None = None,
+    ) -> None:
+        """A body went out at `now_ns`, after a tracker's step of `step_ns`; lost_reason: as the tracker says."""
         per_ms = NS_PER_S // 1000
         with self._lock:
             self._rate.add(now_ns)
@@ -73,11 +83,12 @@ class MetricsRecorder:
             self._spread_ms.add(frames.spread_ns / per_ms)
             self._published += 1
             self._tracking, self._tracker = body.tracking, body.tracker
+            self._lost_reason = lost_reason
 
     def absent(self, body: BodyState) -> None:
         """A body went out that is of no frames."""
         with self._lock:
-            self._tracking = body.tracking
+            self._tracking, self._lost_reason = body.tracking, None
 
     def turned(self) -> None:
         """The pipeline's thread has come round."""
@@ -91,7 +102,7 @@ class MetricsRecorder:
             latency, step = self._latency_ms.samples(), self._step_ms.samples()
             spread, published = self._spread_ms.samples(), self._published
             tracking, tracker, turns = self._tracking, self._tracker, self._turns
-            latencies = self._latencies.counts()
+            latencies, lost_reason = self._latencies.counts(), self._lost_reason
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -108,4 +119,5 @@ class MetricsRecorder:
             },
             latency_counts=latencies,
             turns=turns,
+            lost_reason=lost_reason,
         )

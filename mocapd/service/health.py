@@ -10,6 +10,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
 from mocapd.session.camera_inputs import CameraInput
+from mocapd.trackers.lost_reason import LostReason
 
 
 def health_message(
@@ -38,8 +39,13 @@ def health_message(
             OutputHealth(name, s.sent, s.refused, s.listeners, s.detail)
             for name, s in outputs.items()
         ),
-        detail=detail,
+        detail=detail or lost_reason_text(metrics.lost_reason),
     )
+
+
+def lost_reason_text(reason: LostReason | None) -> str:
+    """One line for people; empty for none."""
+    return "" if reason is None else f"{reason.what} -- {reason.fix}"
 
 
 def camera_message(

@@ -14,6 +14,7 @@ from mocapd.errors import ConfigError
 from mocapd.output_file import FileKind, OutputFile
 from mocapd.trackers.base import RoomLearner, Tracker
 from mocapd.trackers.doubt import doubted
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
@@ -30,7 +31,8 @@ class RecordedTrack:
 
     times_s (F,): since the capture's start [s]; joints_m (F,J,3) [m, world]; global_xyzw (F,J,4):
     rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,); uncertainty_m (F,J): as in BodyState,
-    inf where it is unknown, and everywhere when left out.
+    inf where it is unknown, and everywhere when left out; unrecognised: frames in which somebody moves who is not taken for a
+    person.
     """
 
     times_s: Floats
@@ -40,6 +42,7 @@ class RecordedTrack:
     confidence: Floats
     tracker: NDArray[np.str_]
     uncertainty_m: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    unrecognised: int = 0
 
     def __post_init__(self) -> None:
         if self.uncertainty_m.size == 0:
@@ -67,9 +70,11 @@ def track_all(
     how much the cameras' views contradict each other for good."""
     names = skeleton_of(shape).names
     times, joints, quats, confidence, by, uncertainty = [], [], [], [], [], []
+    unrecognised = 0
     for done, one in enumerate(frames, start=1):
         track = tracker.step(one, shape)
         body, shape = doubted(track.body, off_m), track.shape
+        unrecognised += track.lost_reason is LostReason.UNRECOGNISED
         if body.pose is not None and body.joints_m is not None:
             times.append(seconds(body.t_ns))
             joints.append(body.joints_m)
@@ -87,12 +92,21 @@ def track_all(
         np.array(confidence).reshape(n, j),
         np.array(by, dtype=np.str_),
         np.array(uncertainty).reshape(n, j),
+        unrecognised,
     )
 
 
 def track_file(path: Path, force: bool = False, inputs: Sequence[Path] = ()) -> OutputFile:
     """Where a track is written. For the rest see OutputFile."""
     return OutputFile(path, _TRACK, force, inputs)
+
+
+def why_missing(track: RecordedTrack, count: int) -> str:
+    """In a line for people, why some of `count` frames have nobody though somebody moves in them; empty: it is not so."""
+    if not track.unrecognised:
+        return ""
+    reason = LostReason.UNRECOGNISED
+    return f"in {track.unrecognised} of {count} frames {reason.what} -- {reason.fix}"
 
 
 def write_track(out: OutputFile | Path, track: RecordedTrack) -> None:

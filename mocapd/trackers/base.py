@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import BodyState, Bytes, FrameSet, Tracking
 
 Probe = Callable[[str], None]  # hears that the stage of this name has ended
@@ -18,7 +19,7 @@ class Track:
     """What a tracker says of one frame set.
 
     shape: the wearer's as known now, that of the step or what was learned beyond it; quality: how much
-    of the evidence the body explains, 0..1, 0 when lost.
+    of the evidence the body explains, 0..1, 0 when lost; lost_reason: why nobody is tracked, where the tracker can tell.
 
     evidence[camera] is an id map (h,w) uint8 over the region roi_px[camera] = x0, y0, x1, y1 of
     the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
@@ -30,6 +31,7 @@ class Track:
     quality: float = 0.0
     evidence: Mapping[str, Bytes] = field(default_factory=dict)
     roi_px: Mapping[str, tuple[int, int, int, int]] = field(default_factory=dict)
+    lost_reason: LostReason | None = None
 
 
 class Tracker(Protocol):

@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.geometry.camera_model import centre, rays
+from mocapd.service.health import lost_reason_text
 from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
@@ -62,6 +63,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
     figures: Mapping[str, object] = {
         "tracker": metrics.tracker,
         "tracking": metrics.tracking.value,
+        "lost_reason": lost_reason_text(metrics.lost_reason),
         "rate_hz": metrics.rate_hz,
         "published": metrics.published,
         "sets_made": metrics.sets_made,

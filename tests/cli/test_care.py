@@ -134,6 +134,13 @@ def test_every_line_has_what_it_is_about() -> None:
     assert "3 d 0 h ago: right: lost" in text
 
 
+def test_who_is_not_taken_for_a_person_is_not_called_nobody() -> None:
+    told = report(state="nobody", tracking="lost", lost_reason="somebody moves -- stand up once")
+    (line,) = [one for one in status_lines(told, 0.0) if one.startswith("state")]
+    assert "nobody is tracked: somebody moves -- stand up once" in line
+    assert "nobody in view" in "\n".join(status_lines(report(state="nobody"), 0.0))
+
+
 def test_what_others_have_named_is_told_in_one_line() -> None:
     """Of a camera node's reason, or of a webcam's serial number, a terminal is to obey nothing."""
     odd = msgspec.structs.replace(CAMERA, detail="\x1b]0;owned\x07\nstate  tracking")

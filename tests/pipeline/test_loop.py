@@ -14,8 +14,9 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Probe, Track, Tracker, unprobed
+from mocapd.trackers.base import Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
 
@@ -53,6 +54,14 @@ class WaitingTracker(CannedTracker):
         self.entered.release()
         self.let_go.acquire()
         return super().step(frames, shape)
+
+
+class UnseeingTracker(CannedTracker):
+    """Finds nobody though somebody moves."""
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        reason = LostReason.UNRECOGNISED
+        return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
 
 
 class Run:
@@ -120,6 +129,15 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
     assert metrics.cameras["a"].counts.received == 12
     assert metrics.cameras["b"].delay_ms >= 5.0
     assert not run.deaths
+
+
+def test_metrics_tell_why_nobody_is_tracked() -> None:
+    run = Run(UnseeingTracker())
+    assert run.loop.metrics().lost_reason is None
+    run.loop.start()
+    run.feed_until_out(2)
+    assert run.loop.stop(20.0)
+    assert run.loop.metrics().lost_reason is LostReason.UNRECOGNISED
 
 
 def test_while_a_step_takes_long_the_newest_waits_and_what_is_older_is_dropped() -> None:

@@ -6,11 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.body.shape import mean_shape
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
-from mocapd.session.offline import RecordedTrack, learn_room, track_all, write_track
+from mocapd.session.offline import RecordedTrack, learn_room, track_all, why_missing, write_track
+from mocapd.trackers.base import Track, lost_body
 from mocapd.trackers.canned.tracker import UNCERTAINTY_M, CannedTracker
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import Frame, FrameSet
 from tests.pipeline.free_running import PIXELS
 
@@ -30,6 +32,25 @@ def test_confidence_and_uncertainty_of_every_joint_are_kept(tmp_path: Path) -> N
         assert kept["joints"].shape == (FRAMES - 1, len(INDEX), 3)  # in one nobody was there
         assert kept["confidence"].shape == kept["uncertainty"].shape == (FRAMES - 1, len(INDEX))
         assert (kept["uncertainty"] == UNCERTAINTY_M).all()
+
+
+class _BlindTracker(CannedTracker):
+    """Finds nobody, and says of all frames but the first why."""
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        reason = LostReason.UNRECOGNISED if frames.t_ns else None
+        return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
+
+
+def test_why_nobody_was_tracked_is_told_with_how_often() -> None:
+    sets = [FrameSet(k * PERIOD_NS, {}) for k in range(FRAMES)]
+    lost = track_all(_BlindTracker(), mean_shape(1.75), sets, lambda _: None)
+    assert len(lost.times_s) == 0
+    assert why_missing(lost, FRAMES).startswith(
+        "in 4 of 5 frames somebody moves here who is not taken for a person -- stand upright once"
+    )
+    well = track_all(CannedTracker(), mean_shape(1.75), sets, lambda _: None)
+    assert why_missing(well, FRAMES) == ""
 
 
 class _LearningTracker(CannedTracker):

@@ -34,6 +34,7 @@ def test_scene_body_and_figures(host: TinyHost, server: WebServer) -> None:
     assert (uncertainty_m["leftHand"], uncertainty_m["leftFoot"]) == (0.02, None)
     assert figures["latency_ms"]["median"] > 0
     assert figures["spread_ms"]["median"] is None  # nobody measured it yet
+    assert figures["lost_reason"] == ""
     assert figures["cameras"][1]["state"] == "lost"
     assert "plug it in" in figures["cameras"][1]["reason"]
     assert figures["outputs"][0]["listeners"] == 1

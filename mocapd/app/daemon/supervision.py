@@ -38,7 +38,8 @@ def state_text(snapshot: Snapshot) -> str:
     if not snapshot.metrics.published:
         who = "waiting for the first frame"
     elif snapshot.metrics.tracking is Tracking.LOST:
-        who = "nobody is seen"
+        reason = snapshot.metrics.lost_reason
+        who = "nobody is seen" if reason is None else reason.what
     else:
         who = "somebody is tracked"
     return "; ".join([who, *(_camera(status) for status in snapshot.cameras.values())])

@@ -19,6 +19,7 @@ def status_text(snapshot: Snapshot) -> str:
     if not math.isnan(m.latency_ms.median):
         parts.append(f"{m.latency_ms.median:.0f} ms (p95 {m.latency_ms.p95:.0f})")
     parts.append(f"{m.tracker} {m.tracking.value}" if m.tracker else "no frame yet")
+    parts += [m.lost_reason.what] if m.lost_reason is not None else []
     parts.append(" ".join(_camera(status) for status in snapshot.cameras.values()))
     parts += [f"{name}: {_listeners(status)}" for name, status in snapshot.outputs.items()]
     if m.sets_dropped:

@@ -23,7 +23,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
             "daemon",
             f"{report.instance}, mocapd {report.version}, pid {report.pid}, up {duration(report.uptime_s)}",
         ),
-        ("state", f"{_STATES[report.state]} ({report.tracker}, {report.tracking})"),
+        ("state", f"{_state(report)} ({report.tracker}, {report.tracking})"),
         ("rate", _rate(report)),
         ("calibration", _calibration(report, now_unix_s)),
         *((f"camera {one.id}", _camera(one)) for one in report.cameras),
@@ -43,6 +43,13 @@ def duration(span_s: float) -> str:
         parts.append((count, unit))
     first = next((i for i, (count, _) in enumerate(parts) if count), len(parts) - 1)
     return " ".join(f"{count} {unit}" for count, unit in parts[first : first + 2])
+
+
+def _state(report: StatusReport) -> str:
+    """Somebody who is not taken for a person is in view."""
+    if report.state == "nobody" and report.lost_reason:
+        return f"nobody is tracked: {report.lost_reason}"
+    return _STATES[report.state]
 
 
 def _rate(report: StatusReport) -> str:

@@ -66,6 +66,18 @@ class JointTerm:
                 out[one.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
         return out
 
+    def off_sds2(self, joints_m: Floats) -> list[Floats]:
+        """Of each camera, how far off the rays its joints (N,) are in a body at joints_m (J,3) [standard deviations^2]."""
+        return [_mahalanobis2(one, joints_m)[0] for one in self.seen]
+
+    def spreads_m(self) -> list[Floats]:
+        """Of each camera, the standard deviation (N,) of each joint's place across its ray [m]."""
+        out: list[Floats] = []
+        for one in self.seen:
+            xx, xy, yy = one.information.T
+            out.append(np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy)))
+        return out
+
     def places_m(self, hips_m: Floats) -> Floats:
         """Where each joint (J,3) of a body with its hips at hips_m (3,) was seen, on average of the cameras; NaN: nowhere."""
         total, count = np.zeros((N_JOINTS, 3)), np.zeros(N_JOINTS)

@@ -45,6 +45,51 @@ class StartParams:
 
 
 @dataclass(frozen=True, slots=True)
+class KeypointStartParams:
+    """When joints and a silhouette are somebody."""
+
+    least_height_px: int = 16  # of a piece: who lies is low [work px]
+    step_m: float = 0.1  # from one distance that is tried to the next
+    bottom_weight: float = 0.15  # of a piece's lower edge on the floor, beside its middle
+    middle_sd_m: float = 0.5  # of the first guess of the hips' place
+    looks: int = 2  # of the network, the second about the pose that came of the first
+    iterations: int = 6  # towards the joints
+    explained: float = 0.62  # of silhouette and body together
+    shadows_more: float = 0.08  # with what may be shadow: it lies on the floor before the feet, and draws the body there
+    # see KeypointCandidate
+    spread_m: float = 0.09  # of people up to 0.07, of chairs from 0.11
+    hopeless_m: float = (
+        0.15  # the same, above which nothing is fitted: at the first look the middle may be off
+    )
+    off_sds2: float = 1.3  # of people up to 1.0; of who lies, whom the network does not know, to 4
+    apart_m: float = (
+        0.3  # of people up to 0.25, before cameras beside each other; of a bookshelf from 0.4
+    )
+    least_joints: int = 10  # of 15, seen inside each picture
+    lowest_m: tuple[float, float] = (-0.15, 0.3)  # the lowest joint, above the floor
+    same_place_m: float = 0.4  # between two looks in a row
+
+
+@dataclass(frozen=True, slots=True)
+class MotionWatchParams:
+    """When something that moves must be somebody who is not found."""
+
+    least_px: int = 500  # of all that is before the background of a camera, in work pixels
+    most_share: float = 0.6  # of the picture: more is another light
+    moved_px: int = (
+        40  # that are before it now and were not at the look before, or were and are not
+    )
+    moved_share: float = (
+        0.03  # the same, of all that is before it: the edge of a chair that was moved flickers less
+    )
+    cameras: int = 2  # in which it does
+    lasts_s: float = (
+        2.0  # from the first such look to the last: somebody who walks in is found by then
+    )
+    rest_s: float = 1.5  # without one, and it has ended
+
+
+@dataclass(frozen=True, slots=True)
 class Params:
     """Parameters of the tracker without a shirt."""
 
@@ -58,6 +103,8 @@ class Params:
     background: BackgroundParams = field(default_factory=BackgroundParams)
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
+    keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
+    motion_watch: MotionWatchParams = field(default_factory=MotionWatchParams)
     floor: FloorParams = field(default_factory=FloorParams)
     facing: FaceWatchParams = field(default_factory=FaceWatchParams)
     turning: TurnWatchParams = field(default_factory=TurnWatchParams)

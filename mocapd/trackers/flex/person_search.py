@@ -1,6 +1,6 @@
 """Who stands before the background and is to be tracked: a person, and of several the nearest."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,10 @@ from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.flex.camera_views import CameraViews
-from mocapd.trackers.flex.params import StartParams
+from mocapd.trackers.flex.joint_views import JointViews
+from mocapd.trackers.flex.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
+from mocapd.trackers.flex.motion_watch import MotionWatch
+from mocapd.trackers.flex.params import KeypointStartParams, MotionWatchParams, StartParams
 from mocapd.trackers.flex.stance import (
     Standing,
     blobs_of,
@@ -20,6 +23,7 @@ from mocapd.trackers.flex.stance import (
     standing,
     views_of,
 )
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import Camera, Floats
 
 Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
@@ -27,11 +31,13 @@ Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
-    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one."""
+    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one; low: as
+    the network's joints found them, who does not stand."""
 
     who: Standing
     shadows: bool
     views: tuple[View, ...]
+    low: KeypointCandidate | None = None
 
 
 _Likely = tuple[Fit, _Seen]
@@ -73,20 +79,28 @@ class PersonSearch:
         self,
         silhouettes: Fitter,
         floor: FloorTerm,
+        joints: JointViews,
         views: CameraViews,
         cameras: Sequence[Camera],
         params: StartParams,
+        low: KeypointStartParams,
+        motion: MotionWatchParams,
         now_ns: Callable[[], int],
     ) -> None:
-        """silhouettes: a fitter whose body is of one colour; cameras: those of the views; now_ns: see `Resources`."""
+        """silhouettes: a fitter whose body is of one colour; cameras: those of the views; low: of who does not stand;
+        motion: of who is not found; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params, now_ns
+        self._motion = MotionWatch(motion)
+        self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
         self.reset()
 
     def reset(self) -> None:
         """Look at once, and remember nobody."""
         self.times = LookTimes(self._params)
         self._likely_m: list[Floats] = []
+        self._low.reset()
+        self._motion.reset()
         self.give_up()
 
     def give_up(self) -> None:
@@ -103,6 +117,8 @@ class PersonSearch:
             return None
         begins = self._under_way is None
         if self._under_way is None:
+            self._see()
+            self._motion.look(t_ns, {i: self._views.each[i].before for i in self._views.present})
             self._under_way = self._look(factors, information)
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
@@ -115,14 +131,20 @@ class PersonSearch:
             likeliest: _Likely | None = end.value
             if likeliest is not None and not begins:
                 likeliest = self._as_now(*likeliest)
-            return None if likeliest is None else (likeliest[0], self._names(likeliest[1]))
+            if likeliest is None:
+                return None
+            self._motion.reset()
+            return likeliest[0], self._names(likeliest[1])
         self.times.looked(t_ns, to_the_end=False)
         return None
 
+    def lost_reason(self, t_ns: int) -> LostReason | None:
+        """Why nobody is found, where that can be told."""
+        return self._motion.reason(t_ns)
+
     def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
-        """A whole look at the newest pictures; it may be left after each fit, and gone on with at another frame set."""
+        """A whole look at the newest pictures, which `_see` saw; it may be left after each fit, and gone on with later."""
         p = self._params
-        self._see()
         fits = []
         for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
             fit = yield from first_fit(
@@ -132,7 +154,9 @@ class PersonSearch:
         likely = [one for one in fits if self._is_likely(one[0])]
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
-            return None
+            low = yield from self._low.look(factors, information)
+            return None if low is None else _found_low(low, self._views.present)
+        self._low.reset()
         # who is nearer wants to be tracked: a passer-by is seldom in front
         fit, seen = max(
             likely, key=lambda one: one[0].explained - p.farther_per_m * self._away_m(one[0])
@@ -146,6 +170,9 @@ class PersonSearch:
         """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
         p = self._params
         self._see()
+        if then.low is not None:
+            low = self._low.now(then.low, p.walked_m)
+            return None if low is None else _found_low(low, self._views.present)
         away_m, now = min(
             (
                 (float(np.linalg.norm(one.who.place_m - then.who.place_m)), one)
@@ -187,3 +214,8 @@ class PersonSearch:
         """From the cameras, on average."""
         eyes = [centre(camera) for camera in self._cameras]
         return float(np.linalg.norm(np.array(eyes) - fit.state.root_m, axis=1).mean())
+
+
+def _found_low(one: KeypointCandidate, present: Mapping[int, float]) -> _Likely:
+    """Somebody whom the joints found; present: see `CameraViews`."""
+    return one.fit, _Seen(one.who, one.shadows, views_of(one.who, present), one)

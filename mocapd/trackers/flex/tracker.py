@@ -79,8 +79,9 @@ class FlexTracker:
         self._terms = PoseTerms(self._model, len(rig.cameras), p)
         self._cameras = CameraViews(self._wardrobe.fitter, p)
         self._find = PersonSearch(
-            self._silhouettes, self._terms.floor, self._cameras, rig.cameras, p.start, now_ns
-        )
+            self._silhouettes, self._terms.floor, self._terms.joints, self._cameras, rig.cameras, p.start,
+            p.keypoint_start, p.motion_watch, now_ns,
+        )  # fmt: skip
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
         self._legs_below = LegsBelow(
             p, self._skeleton, self._cameras, self._wardrobe, self._silhouettes, self._terms, self._others
@@ -323,7 +324,8 @@ class FlexTracker:
         known = self._known
         if tracking is Tracking.LOST or known is None:
             self._told = None
-            return Track(lost_body(frames.t_ns, self.name), shape)
+            reason = self._find.lost_reason(frames.t_ns)
+            return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
         body, self._told = told_of(
             known, self._told, frames.t_ns, tracking, self.name, self._wardrobe.fitter, shape, self.params
         )  # fmt: skip

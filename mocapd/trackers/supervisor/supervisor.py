@@ -9,6 +9,7 @@ from mocapd.clock import nanoseconds
 from mocapd.each import Aside, at_once
 from mocapd.trackers import steadying
 from mocapd.trackers.base import GuidedTracker, Probe, Track, Tracker, lost_body, unprobed
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.trackers.steadying import Told
 from mocapd.trackers.supervisor.choice import Claim, chosen
 from mocapd.trackers.supervisor.gliding import Glider, Sourced
@@ -135,7 +136,7 @@ class Supervisor:
         if self._speaker is None:
             self._glider.reset()
             self._is_completed = False
-            return Track(lost_body(frames.t_ns, self.name), shape)
+            return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=self._lost_reason())
         track, now = (
             self._known[self._speaker].track,
             self._composed(self._heard_of(before, frames.t_ns), skeleton),
@@ -307,6 +308,12 @@ class Supervisor:
                     one.tracker.reset(near=told)
                     standby, known.has_offer = offered(standby, t_ns, self.params), True
                 known.standby = standby
+
+    def _lost_reason(self) -> LostReason | None:
+        """What the first of them says that can tell."""
+        tracks = [known.track for known in self._known.values() if known.now]
+        reasons = [track.lost_reason for track in tracks if track is not None]
+        return next((one for one in reasons if one is not None), None)
 
     # --- who is who ---
 

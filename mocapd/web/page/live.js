@@ -11,6 +11,13 @@ const TRACKING = {
 };
 const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
 
+function tracking(figures) {
+  if (figures.tracking === "lost" && figures.lost_reason) {
+    return [`Nobody is tracked: ${figures.lost_reason}`, "working"];
+  }
+  return TRACKING[figures.tracking] ?? [figures.tracking, "waiting"];
+}
+
 export class Live {
   constructor(root) {
     this.root = root;
@@ -84,7 +91,7 @@ export class Live {
     }
     const latency = figures.latency_ms;
     this.state(
-      ...(TRACKING[figures.tracking] ?? [figures.tracking, "waiting"]),
+      ...tracking(figures),
       `tracker ${figures.tracker || "–"}, ${number(figures.rate_hz)} poses a second, ` +
         `${number(latency.median)} ms from light to output, step ${number(figures.step_ms.median)} ms, ` +
         `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped`,

@@ -207,6 +207,9 @@ class CheckStep:
 
     @property
     def _nobody(self) -> Problem:
+        reason = None if self._tracking is None else self._tracking.metrics().lost_reason
+        if reason is not None:
+            return Problem(reason.what, "all cameras", reason.fix)
         return _NOBODY if self._context.draft.has_shirt else _NOBODY_PLAIN
 
     def _move(self, now_ns: int) -> None:

@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+from mocapd.app.daemon.supervision import state_text
 from mocapd.app.terminal.status_line import status_text
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.types import Tracking
 
 NOTHING = Percentiles(float("nan"), float("nan"))
@@ -40,6 +42,13 @@ def test_before_the_first_frame_nothing_is_made_up() -> None:
     opening = replace(CAMERA, state=CaptureState.OPENING, fps_hz=0.0)
     text = status_text(Snapshot(metrics, {"left": opening}, {}))
     assert text == " 0.0 Hz | no frame yet | left opening"
+
+
+def test_somebody_who_is_not_taken_for_a_person_is_told_of() -> None:
+    lost = replace(METRICS, tracking=Tracking.LOST, lost_reason=LostReason.UNRECOGNISED)
+    text = status_text(Snapshot(lost, {"left": CAMERA}, {}))
+    assert "| colour lost | somebody moves here who is not taken for a person |" in text
+    assert state_text(Snapshot(lost, {}, {})) == "somebody moves here who is not taken for a person"
 
 
 def test_a_camera_that_counts_as_live_and_sends_nothing_is_told() -> None:

@@ -11,6 +11,7 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Probe, Track, lost_body, unprobed
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.trackers.supervisor.kinds import KINDS
 from mocapd.trackers.supervisor.params import Params
 from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
@@ -24,7 +25,7 @@ _PIXEL = np.zeros((1, 1, 3), np.uint8)
 @dataclass(frozen=True)
 class Word:
     """What is said from then on. off_m: away from where the person is, along x; arms_rad: raised beyond
-    the true pose; knees_rad: bent beyond it."""
+    the true pose; knees_rad: bent beyond it; lost_reason: of who is lost."""
 
     from_s: float
     tracking: Tracking = Tracking.LIVE
@@ -32,6 +33,7 @@ class Word:
     off_m: float = 0.0
     arms_rad: float = 0.0
     knees_rad: float = 0.0
+    lost_reason: LostReason | None = None
 
 
 LOST = Tracking.LOST
@@ -72,7 +74,8 @@ class ScriptedTracker:
         self.probe("look")
         word = next(w for w in reversed(self.script) if nanoseconds(w.from_s) <= frames.t_ns)
         if word.tracking is LOST:
-            return Track(lost_body(frames.t_ns, self.name), shape)
+            lost = lost_body(frames.t_ns, self.name)
+            return Track(lost, shape, lost_reason=word.lost_reason)
         true = true_pose(frames.t_ns)
         quats = true.quats_xyzw.copy()
         for side, way in (("left", 1.0), ("right", -1.0)):

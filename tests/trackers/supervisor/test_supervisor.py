@@ -12,6 +12,7 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.trackers.base import Track, unprobed
+from mocapd.trackers.lost_reason import LostReason
 from mocapd.trackers.supervisor.joining import LOWER_BONES, LOWER_JOINTS
 from mocapd.trackers.supervisor.kinds import KINDS, Kind
 from mocapd.trackers.supervisor.params import Params
@@ -68,6 +69,18 @@ def test_where_nobody_else_can_run_the_shirt_is_all() -> None:
     auto = Supervisor([Candidate(colour, KINDS["colour"])])
     bodies = [auto.step(frame_set(k * 33_333_333, 1), SHAPE).body for k in range(10)]
     assert speakers(bodies) == ["colour"]
+
+
+def test_why_nobody_is_tracked_is_passed_on() -> None:
+    unseen = Word(0.0, LOST, lost_reason=LostReason.UNRECOGNISED)
+    colour, flex = (
+        ScriptedTracker(name, script, 0.9)
+        for name, script in (("colour", (Word(0.0, LOST),)), ("flex", (unseen, Word(1.0))))
+    )
+    auto = Supervisor([Candidate(one, KINDS[one.name]) for one in (colour, flex)])
+    tracks = [auto.step(frame_set(k * 100_000_000, 2), SHAPE) for k in range(20)]
+    assert {one.lost_reason for one in tracks[:10]} == {LostReason.UNRECOGNISED}
+    assert tracks[-1].lost_reason is None
 
 
 def test_without_a_shirt_the_other_speaks_alone_and_the_search_is_spared() -> None:
