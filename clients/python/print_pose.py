@@ -3,7 +3,6 @@
 Usage: python print_pose.py [ENDPOINT]
 """
 
-import math
 import sys
 
 from mocapd.client import ENDPOINT, Body, Client, Link
@@ -34,8 +33,6 @@ def told(body: Body | None) -> str:
     if "leftHand" not in body:
         return f"{body.seq:6d}  nobody there"
     hand = body["leftHand"]
-    if not all(map(math.isfinite, hand.position_m)):
-        return f"{body.seq:6d}  ignored: the position of the left hand is no number"
     x_m, y_m, z_m = hand.position_m
     return (
         f"{body.seq:6d}  left hand {x_m:+.2f} {y_m:+.2f} {z_m:+.2f} m"

@@ -224,6 +224,18 @@ def test_damaged_messages_are_left_out(tmp_path: Path) -> None:
         list(RecordingReader(tmp_path / "a.mcap").everything())
 
 
+def test_a_recording_replaces_a_file_only_by_force(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    path.write_text("my notes")
+    with pytest.raises(CannotCreateError, match="is there already") as caught:
+        RecordingWriter(path, RecordingParams(), 0)
+    assert "--force" in caught.value.fix
+    assert path.read_text() == "my notes"
+    recorded = frames(0.1)
+    record(path, recorded, force=True)
+    assert len(frames_of(list(RecordingReader(path).everything()))) == len(recorded)
+
+
 BAD_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, 3.5e38, -1.1e6)
 BAD_PERSONS = (-1, 2**31, 2**63)
 
