@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
-from mocapd.evaluate.simulated.variation import stereo_pair
-from mocapd.sim.export import export_capture
 
+from lab.simulated.export import export_capture
+from lab.simulated.variation import stereo_pair
 from mocapd.assets import asset_path
 from mocapd.sim.person_spec import BodySpec, Clothes, MotionSpec, PoseKeyframe, Weave
 from mocapd.sim.scenario import CameraSpec, Scenario, Thing, load_scenario
