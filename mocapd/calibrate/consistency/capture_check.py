@@ -17,9 +17,8 @@ from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
     PersonFinder,
     PersonView,
-    Room,
+    RoomsByLight,
     WorkPictures,
-    room_of,
     shrink,
 )
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
@@ -199,7 +198,7 @@ class CaptureCheck:
             WorkPictures(np.array(one.times_s), np.stack(one.pictures), one.smaller)
             for one in there
         ]
-        rooms = [room_of(one) for one in works]
+        rooms = [RoomsByLight(one) for one in works]
         turns: list[Sequence[int]] = [range(4)] * len(there)
         out: list[Stretch] = []
         for k in chosen:
@@ -217,7 +216,7 @@ class CaptureCheck:
 def _people(
     finder: PersonFinder,
     work: WorkPictures,
-    room: Room,
+    rooms: RoomsByLight,
     between_s: tuple[float, float],
     turns: Sequence[int],
 ) -> list[PersonView]:
@@ -225,7 +224,7 @@ def _people(
     if len(ids) < 8:
         return []
     part = WorkPictures(work.times_s[ids], work.pictures[ids], work.smaller)
-    return finder.people(part, room, _PEOPLE, turns)
+    return finder.people(part, rooms.during(part), _PEOPLE, turns)
 
 
 def _moving_s(meter: MotionMeter) -> float:
