@@ -25,14 +25,17 @@ _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
 _NICE = 15
+_SPEED_M_S = 0.5  # of joints, as people move
 
 
 class ViewWatch:
     """Joins a frame hub. `put` is called by capture threads, `start`, `stop` by the owner, the rest by anybody."""
 
-    def __init__(self, rig: Rig | None, stature_m: float | None = None) -> None:
-        """No rig, or one without two cameras and more: whatever its pictures show is checked all the same."""
-        self._rig, self._stature_m = rig, stature_m
+    def __init__(
+        self, rig: Rig | None, stature_m: float | None = None, longest_s: float = _LONGEST_S
+    ) -> None:
+        """No rig: there is nothing to compare with. longest_s: of collecting, when little moves."""
+        self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
         self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
         self._is_collecting = bool(self._sizes)
@@ -60,8 +63,10 @@ class ViewWatch:
 
     @property
     def off_m(self) -> float:
-        """By how much views contradict each other for good, as last compared [m]."""
-        return self._result.off_m
+        """By how much views contradict each other for good, as last compared [m]; what moves is off where a camera is late,
+        whose times are not corrected here."""
+        late_s = max((abs(one.late_s) for one in self._result.findings), default=0.0)
+        return max(self._result.off_m, _SPEED_M_S * late_s)
 
     def notice(self, camera: str) -> str:
         """What people must do about a camera; empty when nothing."""
@@ -99,7 +104,7 @@ class ViewWatch:
                 check.put_small(camera, t_ns, small, smaller)
                 t_s = seconds(t_ns)
                 first_s = t_s if first_s is None else first_s
-            if first_s is not None and (check.has_enough or t_s - first_s > _LONGEST_S):
+            if first_s is not None and (check.has_enough or t_s - first_s > self._longest_s):
                 self._is_collecting = False
                 return check.result()
         return None

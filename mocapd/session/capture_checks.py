@@ -12,6 +12,7 @@ from mocapd.types import FrameSet, Rig
 
 _log = logging.getLogger(__name__)
 
+_LEAST_LOOKED = 2  # views of two cameras
 _LONGEST_S = 60.0  # of a recording, that is looked at until enough has moved
 
 
@@ -42,6 +43,11 @@ def check_capture(
         if number % 30 == 29 and (check.has_enough or seconds(frames.t_ns) > _LONGEST_S):
             break
     result = check.result()
+    if result.looked < _LEAST_LOOKED and len(check.names) > 1:
+        _log.info(
+            "%s: too little of a person is seen by two cameras at once to compare the rig with what it shows",
+            origin.rig_source,
+        )
     for finding in result.findings:
         _log.warning("%s: %s", origin.rig_source, finding)
     return CheckedCapture(origin, result)

@@ -6,18 +6,19 @@ moves. With one camera only what people look like in its pictures can be checked
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 
+from mocapd.calibrate.bump.changed_places import Places, places_of
 from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.hypotheses import exchanged_finding
 from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
     PersonFinder,
     PersonView,
-    Room,
+    RoomsByLight,
     WorkPictures,
-    room_of,
     shrink,
 )
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
@@ -64,7 +65,7 @@ class CheckResult:
 
 @dataclass(slots=True, eq=False)
 class _Kept:
-    """Of one camera. fps_hz: of its frames."""
+    """Of one camera. newest: its newest whole picture, where whole ones come."""
 
     camera: Camera
     meter: MotionMeter = field(default_factory=MotionMeter)
@@ -74,6 +75,7 @@ class _Kept:
     frames: int = 0
     first_s: float = 0.0
     last_s: float = 0.0
+    newest: Bytes | None = None
 
 
 class CaptureCheck:
@@ -83,10 +85,16 @@ class CaptureCheck:
         self._kept = {camera.name: _Kept(camera) for camera in rig.cameras}
         self._stature_m = stature_m
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the cameras that are checked."""
+        return tuple(self._kept)
+
     def put(self, frame: Frame) -> None:
         """A picture of a camera of the rig; one of another size than its calibration is left out."""
         kept = self._kept.get(frame.camera)
         if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
+            kept.newest = frame.pixels
             self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
 
     def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
@@ -133,7 +141,7 @@ class CaptureCheck:
                 sum(1 for one in stretches if one[0]),
             )
         verdict = judge(cameras, stretches)
-        findings = verdict.findings
+        findings = self._with_the_room(there, verdict.findings)
         if not findings:
             findings = judge_world(names, verdict.fits, self._stature_m)
         if turned and not any(
@@ -147,6 +155,29 @@ class CaptureCheck:
         return CheckResult(
             (*late, *findings), max(off_m, verdict.off_m if findings else 0.0), len(verdict.fits)
         )
+
+    def _with_the_room(
+        self, there: Sequence[_Kept], findings: tuple[Finding, ...]
+    ) -> tuple[Finding, ...]:
+        """What the room's own points say beside people: cameras that agree about them are in their places, and see as
+        calibrated; those that agree crosswise are exchanged."""
+        concerned = {name for one in findings for name in one.cameras}
+        out = list(findings)
+        for a, b in combinations(there, 2):
+            names = a.camera.name, b.camera.name
+            if (findings and not concerned & set(names)) or a.newest is None or b.newest is None:
+                continue
+            places = places_of((a.camera, b.camera), (a.newest, b.newest))
+            if places is Places.RIGHT:
+                out = [
+                    one
+                    for one in out
+                    if not set(names) <= set(one.cameras)
+                    and one.cameras not in ((names[0],), (names[1],))
+                ]
+            elif places is Places.CHANGED and not findings:
+                return (exchanged_finding(*names),)
+        return tuple(out)
 
     def _stretches(self, there: Sequence[_Kept], late_s: Sequence[float]) -> list[Stretch]:
         """The people in the stretches of time in which most moves, with the times that they should have."""
@@ -167,7 +198,7 @@ class CaptureCheck:
             WorkPictures(np.array(one.times_s), np.stack(one.pictures), one.smaller)
             for one in there
         ]
-        rooms = [room_of(one) for one in works]
+        rooms = [RoomsByLight(one) for one in works]
         turns: list[Sequence[int]] = [range(4)] * len(there)
         out: list[Stretch] = []
         for k in chosen:
@@ -185,7 +216,7 @@ class CaptureCheck:
 def _people(
     finder: PersonFinder,
     work: WorkPictures,
-    room: Room,
+    rooms: RoomsByLight,
     between_s: tuple[float, float],
     turns: Sequence[int],
 ) -> list[PersonView]:
@@ -193,7 +224,7 @@ def _people(
     if len(ids) < 8:
         return []
     part = WorkPictures(work.times_s[ids], work.pictures[ids], work.smaller)
-    return finder.people(part, room, _PEOPLE, turns)
+    return finder.people(part, rooms.during(part), _PEOPLE, turns)
 
 
 def _moving_s(meter: MotionMeter) -> float:

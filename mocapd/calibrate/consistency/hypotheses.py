@@ -7,7 +7,7 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Mistake
+from mocapd.calibrate.consistency.findings import Finding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.view_agreement import mirrored, upside_down, zoomed
 from mocapd.geometry.camera_model import centre
@@ -103,15 +103,24 @@ def _exchanged(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
         if any(cameras[order[i]].size_px != cameras[i].size_px for i in moved):
             continue
         if len(moved) == 2:
-            a, b = (names[i] for i in moved)
-            what = f"the pictures of {a!r} fit the place of {b!r}, and those of {b!r} that of {a!r}: they are exchanged"
-            fix = "exchange their 'file' in rig.json, or the cameras"
+            two = exchanged_finding(*(names[i] for i in moved))
+            what, fix = two.what, two.fix
         else:
             pairs = ", ".join(f"{names[i]!r} that of {names[order[i]]!r}" for i in moved)
             what = f"the pictures fit other cameras' places: {pairs}"
             fix = "give each camera its own video in rig.json"
         placed = tuple(cameras[k] for k in order)
         yield Hypothesis(Mistake.EXCHANGED, placed, (unchanged,) * count, moved, what, fix)
+
+
+def exchanged_finding(a: str, b: str) -> Finding:
+    """Of two cameras, each of which shows what the other one should."""
+    return Finding(
+        Mistake.EXCHANGED,
+        (a, b),
+        f"the pictures of {a!r} fit the place of {b!r}, and those of {b!r} that of {a!r}: they are exchanged",
+        "exchange their 'file' in rig.json, or the cameras",
+    )
 
 
 def _swapped(count: int, i: int, j: int) -> tuple[int, ...]:

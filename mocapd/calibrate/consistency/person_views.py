@@ -30,6 +30,7 @@ _TORSO_M = 0.50  # from hips to neck, of somebody 1.75 m tall
 _ROOM_PICTURES = 24
 _CELL_PX = INPUT_PX / CELLS
 _GREY = (127.5, 127.5, 127.5)
+_SAME_LIGHT = 0.15  # of the logarithm of a picture's mean
 _DIFFERS = 28.0  # of a channel, 0..255
 _HEIGHT_SHARES = (0.5, 0.9, 1.5, 2.4)  # of a candidate's height, what the crop may show
 _LOOSE_CELLS = 2.6  # a median spread above which a person counts as lost
@@ -194,6 +195,31 @@ def room_of(work: WorkPictures) -> Room:
     ids = np.unique(np.linspace(0, len(work.pictures) - 1, _ROOM_PICTURES).astype(int))
     room, known = clip_background([work.pictures[i] for i in ids], work.times_s[ids])
     return Room(room, known.astype(np.uint8))
+
+
+class RoomsByLight:
+    """A camera's room in each light: pictures before and after a lamp went out are of two rooms."""
+
+    def __init__(self, work: WorkPictures) -> None:
+        self._work = work
+        self._light = np.log([float(one[::4, ::4].mean()) + 4.0 for one in work.pictures])
+        self._known: dict[int, Room] = {}
+
+    def during(self, part: WorkPictures) -> Room:
+        """In the light of a few seconds of the same pictures."""
+        light = float(
+            np.median(np.log([float(one[::4, ::4].mean()) + 4.0 for one in part.pictures]))
+        )
+        alike = np.abs(self._light - light) < _SAME_LIGHT
+        if alike.sum() < _ROOM_PICTURES:
+            alike[:] = True
+        key = int(np.flatnonzero(alike)[0]) * len(alike) + int(alike.sum())
+        if key not in self._known:
+            work = self._work
+            self._known[key] = room_of(
+                WorkPictures(work.times_s[alike], work.pictures[alike], work.smaller)
+            )
+        return self._known[key]
 
 
 def candidates(work: WorkPictures, room: Room) -> list[Ints]:

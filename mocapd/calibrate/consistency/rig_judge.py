@@ -31,6 +31,7 @@ _RIVAL = 0.75  # of what the best zoom brings, another camera's that may be mean
 _OFTEN = 0.65  # share of stretches that an explanation must improve
 _CONTRADICT_DEG = 2.2
 _LEAST_STRETCHES = 2
+_LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -169,7 +170,8 @@ def _gain(
             when.add(key[2])
             # who agrees well as given, once, has no mistake that lasts
             against += before.cost < _AGREES and gains[-1] < 0.5 * least
-    if len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
+    few = len(gains) < _LEAST_FOR_ZOOM if hypothesis.mistake is Mistake.ZOOMED else False
+    if few or len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
         return 0.0
     if np.mean([fit.up[1] for fit in fits.values() if np.isfinite(fit.up[1])] or [1.0]) < 0.0:
         return 0.0  # what stands everybody on the head explains nothing

@@ -1,0 +1,27 @@
+"""A few of the wrong captures, as a part of the study that `python -m tests.capture_checks` is."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.capture_checks.__main__ import said_of
+from tests.capture_checks.cases import CASES, WrongCapture, make_wrong
+
+CHOSEN = ("25 Hz", "millimetres", "left-handed world", "2 frames late, pair_clutter_jacks")
+
+
+@pytest.mark.parametrize(
+    "case", [one for one in CASES if one.name in CHOSEN], ids=lambda one: one.name
+)
+def test_a_wrong_capture_is_not_tracked_without_the_right_word(
+    case: WrongCapture, dev_captures: Callable[[str], Path], tmp_path: Path
+) -> None:
+    outcome, reasons, words = said_of(make_wrong(case, dev_captures(case.capture).parent, tmp_path))
+    assert set(reasons) & set(case.wanted)
+    assert outcome == ("refused" if "refused" in case.wanted else "mended")
+    assert words
+
+
+def test_a_capture_as_it_is_gives_no_word(dev_captures: Callable[[str], Path]) -> None:
+    assert said_of(dev_captures("pair_outdoor_async")) == ("SILENT", (), [])
