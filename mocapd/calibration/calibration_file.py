@@ -46,6 +46,7 @@ FILE_NAME = "calibration.toml"
 COLOURS = "colours"
 
 _MOST_BYTES = 256_000  # a camera takes 1 kB
+_MOST_SETUP_BYTES = 2_000_000  # a picture of the board takes 0.5 to 2 kB
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
@@ -74,7 +75,7 @@ def read_calibration(place: Path) -> SavedCalibration:
     """
     path = calibration_path(place)
     try:
-        saved = read_setup(path)
+        saved = _read(path)
     except MissingError:
         raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
     if not saved.is_placed:
@@ -89,12 +90,16 @@ def read_calibration(place: Path) -> SavedCalibration:
 
 
 def read_setup(path: Path) -> SavedCalibration:
-    """The calibration in a file, or as much of it as a setup in progress has found; sources without passwords.
+    """As much of a calibration as a setup in progress has found; sources without passwords.
 
     Raises MissingError when there is none, InputError, or ConfigError naming file and key when it is damaged.
     """
+    return _read(path, _MOST_SETUP_BYTES)
+
+
+def _read(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
     where = str(path)
-    data = _toml(path)
+    data = _toml(path, most_bytes)
     schema = data.get("schema")
     if schema != SCHEMA:
         told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
@@ -157,9 +162,9 @@ def write_setup(
     try:
         private_folder(path.parent)
         text = _text(_with_pictures(path.parent, saved, pictures))
-        if len(text) > _MOST_BYTES:
+        if len(text) > _MOST_SETUP_BYTES:
             raise CannotCreateError(
-                f"would have {len(text) >> 20} MB, at most {_MOST_BYTES >> 20} are kept", str(path)
+                f"would have {len(text)} bytes, at most {_MOST_SETUP_BYTES} are kept", str(path)
             )
         with whole_file(path, private=True) as partial:
             partial.write_text(text, encoding="utf-8")
@@ -205,7 +210,7 @@ def _keep_before(path: Path) -> dict[tuple[str, str], str]:
     """The calibration that is there becomes the previous one, and that stays where this one is of no use; the
     passwords that earlier versions kept within it. Raises OSError."""
     try:
-        saved = read_setup(path)
+        saved = _read(path)
     except MocapdError as error:
         aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
         _log.warning("%s cannot be used (%s), and is kept as %s", path, error.what, aside.name)
@@ -278,7 +283,7 @@ def _named(folder: Path) -> str:
     for path in folder.glob("*.toml*"):
         if path.name != SECRETS:
             with suppress(InputError):  # none of ours
-                said += read_file(path, _MOST_BYTES)
+                said += read_file(path, _MOST_SETUP_BYTES)
     return said.decode("utf-8", "replace")
 
 
@@ -296,8 +301,8 @@ def _tidy_folder(folder: Path, now_s: float) -> None:
             picture.unlink()
 
 
-def _toml(path: Path) -> dict[str, Any]:
+def _toml(path: Path, most_bytes: int) -> dict[str, Any]:
     try:
-        return parse_toml(read_text(path, _MOST_BYTES))
+        return parse_toml(read_text(path, most_bytes))
     except MalformedError as error:
         raise ConfigError(f"not valid TOML ({error.what})", str(path), _RECALIBRATE) from None

@@ -206,7 +206,7 @@ def _with_measurements(draft: Draft, camera: SavedCamera) -> SavedCamera:
         SavedBoardView(
             index=view.index,
             ids=tuple(view.ids.tolist()),
-            corners_px=tuple(map(tuple, view.corners_px.tolist())),
+            corners_px=tuple(map(tuple, view.corners_px.round(3).tolist())),
             sharpness=view.sharpness,
             back=view.back,
         )

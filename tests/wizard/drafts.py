@@ -72,7 +72,7 @@ def drafted() -> Draft:
     """All of it, with moments of the board and a camera whose address has a password."""
     draft = full_draft()
     one, other = draft.cameras
-    corners_px = np.random.default_rng(2).uniform(0, 48, (24, 2))
+    corners_px = np.random.default_rng(2).uniform(0, 48, (24, 2)).round(3)
     views = {7: BoardView(7, np.arange(24), corners_px, 0.4, back=True)}
     return replace(
         draft,
