@@ -39,7 +39,7 @@ THINGS = (
     MovedThing("chair", "pair", (0.42, 0.9, 0.42), (120, 84, 54)),
     MovedThing("chair_stereo", "stereo", (0.42, 0.9, 0.42), (60, 60, 110), is_known=True),
     MovedThing("cupboard", "pair", (0.5, 1.7, 0.4), (196, 120, 40)),
-    MovedThing("cupboard_stereo", "stereo", (0.5, 1.7, 0.4), (200, 196, 190)),
+    MovedThing("cupboard_stereo", "stereo", (0.5, 1.7, 0.4), (200, 196, 190), is_known=True),
     MovedThing("ball", "stereo", (0.75, 0.75, 0.75), (160, 50, 60), "ball"),
     MovedThing("plant", "pair", (0.6, 1.5, 0.6), (70, 100, 60), "tree"),
     MovedThing("chair_ring", "ring", (0.45, 1.1, 0.45), (90, 60, 50)),
