@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from mocapd.boundary.pictures import decode_picture
-from mocapd.capture.capture_folder import as_set, frame_sets, load_folder
+from mocapd.capture.capture_folder import frame_sets, load_folder
+from mocapd.capture.frame_groups import as_set
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.capture.kinds.source_kinds import cameras_of_origin, open_origin, open_source, origin_of
 from mocapd.capture.pace import Pace
