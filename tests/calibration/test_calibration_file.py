@@ -276,7 +276,7 @@ DAMAGES = {
     "K": (_set("camera", 0, "K", 0, [60.0, 5.0, 32.0]), "'left': 'K' is not"),
     "K of text": (_set("camera", 0, "K", 0, 0, "wide"), "K"),
     "dist": (_set("camera", 0, "dist", [0.0, 0.0]), "dist"),
-    "R": (_set("camera", 0, "R", 0, 0, -1.0), "not a rotation"),
+    "R": (_set("camera", 0, "R", 0, 0, -2.0), "not a rotation"),
     "t": (_set("camera", 1, "t_m", 2, math.nan), r"'camera\[1\]\.t_m\[2\]' is not finite"),
     "controls": (_set("camera", 0, "controls", "exposure", "long"), "exposure"),
     "views": (_set("camera", 0, "lens", "views", 10**12), "views"),  # took a terabyte
