@@ -62,7 +62,7 @@ def align_times(
         if found is not None:
             pairs[a, b] = found
     reference = _reference(list(tracks), pairs)
-    maps = {reference: (SAME_CLOCK,)}
+    maps: dict[str, tuple[ClockMap, ...]] = {reference: (SAME_CLOCK,)}
     while len(maps) < len(tracks):
         placed, name = _next(list(tracks), maps, pairs)
         own = SAME_CLOCK
