@@ -113,9 +113,9 @@ def calibrate(case: Case) -> Outcome:
         found = calibrate_sightings(sightings, clocks, SPEC, lambda *_: None, params=_PARAMS)
     except ConfigError as error:
         numbers = re.findall(r"([\d.]+) frames \(\d+ ms\) (behind|ahead)", str(error))
-        late = [float(n) * (1.0 if side == "behind" else -1.0) for n, side in numbers] or [np.nan]
+        refused = [float(n) * (1.0 if side == "behind" else -1.0) for n, side in numbers]
         wall_s = time.perf_counter() - began_s
-        return Outcome(case, np.nan, np.nan, np.nan, late[-1], str(error), wall_s)
+        return Outcome(case, np.nan, np.nan, np.nan, (refused or [np.nan])[-1], str(error), wall_s)
     cm, deg = errors(case.session.rig, found.rig.cameras)
     told = np.nan if found.play_area is None else found.play_area.median_cm
     late_frames = found.cameras[case.session.rig[-1].name].delay_frames

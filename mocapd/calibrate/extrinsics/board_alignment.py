@@ -31,7 +31,7 @@ class Affine:
 
     def inverse(self) -> "Affine":
         """b_from_a."""
-        L: Floats = np.linalg.inv(self.L).astype(float)
+        L: Floats = np.asarray(np.linalg.inv(self.L), dtype=np.float64)
         return Affine(L, -np.einsum("...ij,...j->...i", L, self.t_m))
 
 

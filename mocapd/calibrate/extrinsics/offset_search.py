@@ -102,8 +102,8 @@ def find_offsets(a: BoardTrack, b: BoardTrack) -> PairOffsets | None:
     most = int(MOST_OFFSET_S / step_s) if is_followed else _MOST_INDICES
     most = min(most, int(max(-first_s, last_s, 0.0) / step_s) + 1)
     rough, finer = a.thinned(_ROUGH_ROWS), a.thinned(_FINE_ROWS)
-    offsets_s: Floats = (np.arange(-most, most + 1) * step_s).astype(float)
-    trials = _Trials(rough, b, offsets_s, 1)
+    coarse_s: Floats = step_s * np.arange(-most, most + 1, dtype=np.float64)
+    trials = _Trials(rough, b, coarse_s, 1)
     candidates = [one for rows in _windows(rough) for one in _fitting(trials, rows)]
     if not candidates:
         return None
@@ -118,8 +118,8 @@ def find_offsets(a: BoardTrack, b: BoardTrack) -> PairOffsets | None:
     if not is_followed:
         lowest, highest = -most * step_s, most * step_s
     fine = np.arange(round(phases * lowest / step_s), round(phases * highest / step_s) + 1)
-    offsets_s = (fine * (step_s / phases)).astype(float)
-    trials = _Trials(finer, b, offsets_s, phases)
+    fine_s: Floats = (step_s / phases) * fine.astype(np.float64)
+    trials = _Trials(finer, b, fine_s, phases)
     path = _refined(trials, _best_path(trials, path.a_from_b, path.scale_px))
     return _judged(trials, path)
 
