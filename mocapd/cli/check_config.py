@@ -10,7 +10,6 @@ from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.cli.options import CameraOption, ConfigOption, SetOption, effective_config
 
 if TYPE_CHECKING:
-    from mocapd.config.config_keys import Key
     from mocapd.config.effective import Setting
     from mocapd.config.sections import Config
 
@@ -26,9 +25,6 @@ def check_config(
     cameras: CameraOption = None,
     changed: Annotated[bool, typer.Option("--changed", help="Only what is not built in.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
-    as_markdown: Annotated[
-        bool, typer.Option("--markdown", help="The table of all keys for the README.")
-    ] = False,
 ) -> None:
     """Print each setting and where it came from, the calibration that `mocapd run` would use, and what
     is permitted but unsafe. Passwords of cameras are not shown.
@@ -37,9 +33,6 @@ def check_config(
 
     Example: mocapd check-config --changed
     """
-    if as_markdown:
-        _print_markdown()
-        return
     effective = effective_config(config, settings, cameras)
     rows = [s for s in effective.settings if s.changed or not changed]
     if as_json:
@@ -86,30 +79,6 @@ def _print_table(rows: "list[Setting]") -> None:
     widths = [max((len(row[i]) for row in cells), default=0) for i in range(2)]
     for key, value, origin in cells:
         print(f"{key:<{widths[0]}} = {value:<{widths[1]}}  # {origin}")
-
-
-def _print_markdown() -> None:
-    from mocapd.config.config_keys import entry_keys
-    from mocapd.config.effective import known_keys
-    from mocapd.config.sources import env_name
-
-    print("| key | default | environment | meaning |\n|---|---|---|---|")
-    for path, key in known_keys().items():
-        print(f"| `{path}` | {_default(key)} | `{env_name(path)}` | {key.help} |")
-        for one in entry_keys(key):
-            print(f"| `{one.path}` | {_default(one)} | | {one.help} |")
-
-
-def _default(key: "Key") -> str:
-    from dataclasses import MISSING
-
-    from mocapd.config.config_keys import shown
-
-    if key.default is MISSING:
-        return "must be given"
-    if key.default is None:
-        return "none"
-    return key.default_text or f"`{shown(key.default)}`"
 
 
 def _plain(value: Any) -> Any:

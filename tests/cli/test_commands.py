@@ -57,12 +57,6 @@ def test_check_config_changed_and_json(clean_env: dict[str, str]) -> None:
     assert told["camera"]["from"] == "command line"
 
 
-def test_the_readme_holds_the_table_of_keys(clean_env: dict[str, str]) -> None:
-    readme = Path(__file__).resolve().parents[2] / "README.md"
-    table = mocapd_here(clean_env, "check-config", "--markdown").out
-    assert table in readme.read_text(), "renew it: mocapd check-config --markdown"
-
-
 def test_cameras_as_json_is_one_object_a_line(clean_env: dict[str, str]) -> None:
     outcome = mocapd(clean_env, "cameras", "--json")
     assert outcome.code == 0
