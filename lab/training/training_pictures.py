@@ -26,7 +26,7 @@ from lab.training.random_scenes import random_body, random_clothes, random_scene
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.geometry.camera_model import project, to_camera
-from mocapd.sim.person.group import Body
+from mocapd.sim.person.group import PersonBody
 from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
 from mocapd.sim.renderer import CameraRenderer, figure_of, furnished_set
 from mocapd.sim.scenario import Scenario, load_scenario
@@ -68,12 +68,12 @@ def examples_of(
             empty = renderer.picture(None, levels, int(rng.integers(1 << 20)))
         at_m = rng.normal(0.0, [0.35, 0.0, 0.35])
         pose = _moved(random_pose(rng, world.skeleton, clips, shutter_s), at_m)
-        opened, closed = [Body(pose.opened)], [Body(pose.closed)]
+        opened, closed = [PersonBody(pose.opened)], [PersonBody(pose.closed)]
         if two:
             behind = random_pose(rng, other.skeleton, clips, shutter_s)
             behind = _moved(behind, 0.3 * at_m + _behind(rng, renderer.spec.position_m))
-            opened.append(Body(behind.opened))
-            closed.append(Body(behind.closed))
+            opened.append(PersonBody(behind.opened))
+            closed.append(PersonBody(behind.closed))
         shown = renderer.picture_of_group(opened, closed, levels, int(rng.integers(1 << 20)))
         joints_m = joint_positions(world.skeleton, pose.middle)
         example = _example(renderer.camera, shown, empty, joints_m, world.shape.stature_m)

@@ -47,7 +47,7 @@ class Reloaded(msgspec.Struct, frozen=True):
     waiting: tuple[str, ...]
 
 
-class CameraReport(msgspec.Struct, frozen=True):
+class CameraStatusReport(msgspec.Struct, frozen=True):
     """One camera. state: live, silent, starting, lost or ended; detail: why; rate_hz: pictures a second;
     mounting: steady, bumped, swapped or unknown. Passwords are not in `source`."""
 
@@ -106,7 +106,7 @@ class StatusReport(msgspec.Struct, frozen=True):
     published: int
     dropped: int
     uptime_s: float
-    cameras: tuple[CameraReport, ...]
+    cameras: tuple[CameraStatusReport, ...]
     outputs: tuple[OutputReport, ...]
     calibration: CalibrationReport | None = None
     last_trouble: Trouble | None = None

@@ -10,7 +10,7 @@ from mocapd.capture.capture_status import CaptureStatus
 from mocapd.config.sections import Config
 from mocapd.control.messages import (
     CalibrationReport,
-    CameraReport,
+    CameraStatusReport,
     OutputReport,
     StatusReport,
     Trouble,
@@ -84,9 +84,9 @@ def _outputs(statuses: Mapping[str, SinkStatus]) -> tuple[OutputReport, ...]:
     )
 
 
-def _camera(message: CameraStatus, status: CaptureStatus | None) -> CameraReport:
+def _camera(message: CameraStatus, status: CaptureStatus | None) -> CameraStatusReport:
     is_silent = status is not None and status.is_silent
-    return CameraReport(
+    return CameraStatusReport(
         id=message.camera,
         state=SILENT if is_silent else message.state,
         detail=message.detail,

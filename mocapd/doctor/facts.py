@@ -11,7 +11,7 @@ from mocapd.wizard.draft import DraftCamera
 
 
 @dataclass(frozen=True, slots=True)
-class Trouble:
+class FactTrouble:
     """What a MocapdError says."""
 
     what: str
@@ -23,7 +23,7 @@ class ConfigFacts:
     """file: None when there is none; trouble: why it cannot be used; then what is built in was looked at."""
 
     file: Path | None
-    trouble: Trouble | None = None
+    trouble: FactTrouble | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class FolderFacts:
 
     key: str
     path: Path
-    trouble: Trouble | None
+    trouble: FactTrouble | None
     open_to_others: bool
     free_bytes: int | None
     holds_little: bool = False
@@ -83,7 +83,7 @@ class CalibrationFacts:
     it was saved, None where not known; room_of: the cameras in it."""
 
     path: Path | None
-    trouble: Trouble | None = None
+    trouble: FactTrouble | None = None
     age_s: float = 0.0
     rms_px: float | None = None
     play_area_cm: float | None = None

@@ -14,7 +14,7 @@ from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.control_lock import Lockable
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.node.imperfections import Imperfections, Way
-from mocapd.node.node_controls import NodeControls
+from mocapd.node.node_controls import ControlOrders
 from mocapd.outputs.instance import chunk
 from mocapd.pipeline.latest import Latest
 from mocapd.session.camera_inputs import CameraInput
@@ -50,7 +50,7 @@ class NodeCamera:
         self._size_px = camera.size_px
         self._capture = CaptureThread(camera.source, self, died, camera.expected_hz)
         source = camera.source
-        self.controls = NodeControls(source) if can_set and isinstance(source, Lockable) else None
+        self.controls = ControlOrders(source) if can_set and isinstance(source, Lockable) else None
         self._thread = threading.Thread(target=self._work, name=f"send-{self.name}", daemon=True)
         self._session: zenoh.Session | None = None
         self._publisher: zenoh.Publisher | None = None

@@ -18,7 +18,7 @@ from mocapd.errors import MalformedError, UnavailableError
 _MOST_WAITING = 16  # orders: a wizard waits for each before it gives the next
 
 
-class NodeControls:
+class ControlOrders:
     """Takes orders from `attach` until what that was given is closed. Who may give them is not decided here."""
 
     def __init__(self, source: Lockable) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapd.sim.person.figure import Figure, build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, vertex_normals
-from mocapd.sim.person.group import Body, Group, group_of, patches_seen, posed_group
+from mocapd.sim.person.group import Group, PersonBody, group_of, patches_seen, posed_group
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response import noise_table, response_curve
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
@@ -103,11 +103,11 @@ class CameraRenderer:
     ) -> Bytes:
         """A picture of the person alone moving between two poses, None: the empty room."""
         there = (0,) if shutter is not None else ()
-        opened, closed = ([Body(pose, jacket)] for pose in shutter) if shutter else ([], [])
+        opened, closed = ([PersonBody(pose, jacket)] for pose in shutter) if shutter else ([], [])
         return self._picture(there, opened, closed, levels, noise_key)
 
     def picture_of_group(
-        self, opened: list[Body], closed: list[Body], levels: Floats, noise_key: int
+        self, opened: list[PersonBody], closed: list[PersonBody], levels: Floats, noise_key: int
     ) -> Bytes:
         """A picture of as many figures, the person first, moving between two sets of poses."""
         return self._picture(tuple(range(len(opened))), opened, closed, levels, noise_key)
@@ -117,9 +117,11 @@ class CameraRenderer:
         others = range(1, len(self._figures))
         return (0, *others) if self._world.present(t_s) else tuple(others)
 
-    def _bodies(self, there: tuple[int, ...], t_s: float) -> list[Body]:
+    def _bodies(self, there: tuple[int, ...], t_s: float) -> list[PersonBody]:
         worlds = (self._world, *self._world.others)
-        return [Body(worlds[i].pose(t_s), worlds[i].jacket(t_s), worlds[i].screen) for i in there]
+        return [
+            PersonBody(worlds[i].pose(t_s), worlds[i].jacket(t_s), worlds[i].screen) for i in there
+        ]
 
     def _group(self, there: tuple[int, ...]) -> Group:
         if there not in self._groups:
@@ -129,8 +131,8 @@ class CameraRenderer:
     def _picture(
         self,
         there: tuple[int, ...],
-        at_opening: list[Body],
-        at_closing: list[Body],
+        at_opening: list[PersonBody],
+        at_closing: list[PersonBody],
         levels: Floats,
         noise_key: int,
     ) -> Bytes:
@@ -176,7 +178,7 @@ class CameraRenderer:
 
     def labels(self, pose: Pose, jacket: float = 0.0) -> tuple[Bytes, Bytes]:
         """Exact labels of the person alone: patch index (H,W) 0..20, and 255 where she is."""
-        owner = self._owners((0,), [Body(pose, jacket)])
+        owner = self._owners((0,), [PersonBody(pose, jacket)])
         seen = owner >= 0
         patch = np.where(seen, patches_seen(self.figure, jacket)[np.maximum(owner, 0)], 0)
         return patch.astype(np.uint8), _mask(seen)
@@ -195,7 +197,7 @@ class CameraRenderer:
         patch = np.where(person, patches[np.clip(owner, 0, len(patches) - 1)], 0)
         return patch.astype(np.uint8), _mask(person), _mask(owner >= own)
 
-    def _owners(self, there: tuple[int, ...], bodies: list[Body]) -> Ints:
+    def _owners(self, there: tuple[int, ...], bodies: list[PersonBody]) -> Ints:
         """The triangle (H,W) of the group that each pixel sees, -1: none."""
         group = self._group(there)
         points, _ = self._project(posed_group(group, bodies))

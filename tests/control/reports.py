@@ -4,9 +4,14 @@ from typing import Any
 
 import msgspec
 
-from mocapd.control.messages import CalibrationReport, CameraReport, OutputReport, StatusReport
+from mocapd.control.messages import (
+    CalibrationReport,
+    CameraStatusReport,
+    OutputReport,
+    StatusReport,
+)
 
-CAMERA = CameraReport(
+CAMERA = CameraStatusReport(
     id="left",
     state="live",
     detail="",

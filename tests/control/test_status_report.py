@@ -12,7 +12,7 @@ from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.messages import (
     CalibrationReport,
-    CameraReport,
+    CameraStatusReport,
     OutputReport,
     StatusReport,
     Trouble,
@@ -112,7 +112,7 @@ def test_the_newest_warning_is_remembered_and_nothing_less() -> None:
 def test_the_page_about_it_names_every_field() -> None:
     page = (Path(__file__).parents[2] / "docs/operating.md").read_text()
     told = page.partition("In JSON:")[2].partition("\n\n")[0]
-    kinds = (StatusReport, CameraReport, OutputReport, CalibrationReport, Trouble)
+    kinds = (StatusReport, CameraStatusReport, OutputReport, CalibrationReport, Trouble)
     for kind in kinds:
         for name in kind.__struct_fields__:
             assert f"`{name}`" in told, (kind.__name__, name)

@@ -24,11 +24,11 @@ from mocapd.doctor.facts import (
     CameraFacts,
     ClockFacts,
     ConfigFacts,
+    FactTrouble,
     FolderFacts,
     LibraryFacts,
     PortFacts,
     ProcessorFacts,
-    Trouble,
     UserFacts,
 )
 from mocapd.doctor.finding import Verdict
@@ -133,7 +133,7 @@ FOLDER = FolderFacts("state_dir", Path("/var/lib/mocapd"), None, False, 20 << 30
         (replace(FOLDER, free_bytes=5 << 20, holds_little=True), OK, "5 MB free"),
         (replace(FOLDER, free_bytes=1000, holds_little=True), BAD, "0 MB free"),
         (replace(FOLDER, open_to_others=True), WARN, "chmod 700 /var/lib/mocapd"),
-        (replace(FOLDER, trouble=Trouble("cannot be written to", "chown it")), BAD, "chown it"),
+        (replace(FOLDER, trouble=FactTrouble("cannot be written to", "chown it")), BAD, "chown it"),
     ],
 )
 def test_folders(facts: FolderFacts, verdict: Verdict, says: str) -> None:
@@ -151,7 +151,11 @@ GOOD = CalibrationFacts(Path("c.toml"), None, 3 * DAY_S, 0.3, 0.8, 2)
         (GOOD, OK, "2 cameras, 3 days old, 0.30 px, 0.8 cm"),
         (replace(GOOD, rms_px=None, play_area_cm=None), OK, "3 days old"),
         (CalibrationFacts(None), WARN, "mocapd calibrate"),
-        (replace(GOOD, trouble=Trouble("has schema 9", "use the mocapd that wrote it")), BAD, "9"),
+        (
+            replace(GOOD, trouble=FactTrouble("has schema 9", "use the mocapd that wrote it")),
+            BAD,
+            "9",
+        ),
         (replace(GOOD, play_area_cm=8.0), WARN, "--step room"),
         (replace(GOOD, rms_px=4.0), WARN, "--step room"),
         (replace(GOOD, age_s=300 * DAY_S), WARN, "it is old"),
@@ -206,7 +210,9 @@ def test_libraries_and_the_extra_for_vrchat() -> None:
 
 def test_configuration_and_daemons() -> None:
     assert check_config(ConfigFacts(Path("config.toml"))).verdict is OK
-    broken = check_config(ConfigFacts(None, Trouble("config.toml:3: no key 'colour'", "colour?")))
+    broken = check_config(
+        ConfigFacts(None, FactTrouble("config.toml:3: no key 'colour'", "colour?"))
+    )
     assert (broken.verdict, broken.fix) == (BAD, "colour?")
     assert [one.verdict for one in check_daemons(())] == [OK]
     both = check_daemons((report(), report(state="blind")))

@@ -23,7 +23,7 @@ from mocapd.capture.remote.picture_reader import Arrived, PictureReader
 from mocapd.capture.webcam.camera_controls import Control
 from mocapd.clock import NS_PER_S
 from mocapd.errors import MalformedError
-from mocapd.node.node_controls import NodeControls
+from mocapd.node.node_controls import ControlOrders
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from mocapd.pipeline.bundler import Bundler
 from mocapd.pipeline.metrics import CameraMetrics
@@ -168,13 +168,13 @@ def orders(place: Place) -> Attempt:
         Order("range", Control.FOCUS),
         Order("keep", kept=Kept(exposure=20, gain=8, power_line_hz=50)),
     ]
-    if NodeControls(FakeWebcam("a")).done(camera_wire.encode(goods[0])).value != 99:
+    if ControlOrders(FakeWebcam("a")).done(camera_wire.encode(goods[0])).value != 99:
         raise WrongError("a good order is not followed")
 
     def attempt(random: Random, number: int) -> bool:
         webcam = FakeWebcam("a")
         order = camera_wire.encode(_another(random, random.choice(goods)))
-        done = NodeControls(webcam).done(damaged(random, order) if number % 2 else order)
+        done = ControlOrders(webcam).done(damaged(random, order) if number % 2 else order)
         for control, value in webcam.values.items():
             if not RANGES[control].low <= value <= RANGES[control].high:
                 raise WrongError(f"{control} is {value}")

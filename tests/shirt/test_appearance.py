@@ -5,7 +5,7 @@ import pytest
 
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import appearance as looks
-from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.appearance import ShirtAppearance
 from mocapd.types import Floats
 
 MODEL_MEAN = standard_shirt().srgb / 255.0
@@ -19,7 +19,7 @@ def statistics(light: Floats, counts: Floats) -> Floats:
     return np.concatenate([counts[:, None], counts[:, None] * bgr], axis=1)
 
 
-def mean_of(appearance: Appearance) -> Floats:
+def mean_of(appearance: ShirtAppearance) -> Floats:
     return looks.gaussians(appearance, MODEL_MEAN, MODEL_COVARIANCE, 0.04, 0.015, 0.25)[0]
 
 
@@ -56,19 +56,19 @@ def test_learning_converges_to_what_is_seen_and_remembers_what_is_not() -> None:
 
 
 def test_white_balance_is_found_again_from_learned_colours() -> None:
-    learned = Appearance(np.eye(3), statistics(COLD_LAMP, np.full(10, 300.0)))
+    learned = ShirtAppearance(np.eye(3), statistics(COLD_LAMP, np.full(10, 300.0)))
     W_found = looks.white_balance(learned, MODEL_MEAN, ridge=1e-6)
     np.testing.assert_allclose(W_found @ COLD_LAMP, np.eye(3), atol=1e-3)
     few = statistics(COLD_LAMP, np.where(np.arange(10) < 2, 300.0, 0.0))
     np.testing.assert_array_equal(
-        looks.white_balance(Appearance(np.eye(3), few), MODEL_MEAN), np.eye(3)
+        looks.white_balance(ShirtAppearance(np.eye(3), few), MODEL_MEAN), np.eye(3)
     )
 
 
 @pytest.mark.parametrize("gain", [0.4, 1.7])
 def test_transported_follows_a_change_of_brightness(gain: float) -> None:
     """A plain change of brightness is what it is drawn towards, so nothing is left over."""
-    before = Appearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
+    before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
     after = looks.transported(before, statistics(gain * np.eye(3), np.full(10, 150.0)), MODEL_MEAN)
     np.testing.assert_allclose(mean_of(after), gain * MODEL_MEAN[:, ::-1], atol=1e-9)
 
@@ -77,7 +77,7 @@ def test_transported_follows_a_change_of_brightness(gain: float) -> None:
 def test_transported_follows_a_change_of_colour(seen: range) -> None:
     """Drawn to plain brightness by a ridge, it comes most of the way; colours not seen come along."""
     counts = np.where(np.isin(np.arange(10), list(seen)), 200.0, 0.0)
-    before = Appearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
+    before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
     after = looks.transported(before, statistics(COLD_LAMP, counts), MODEL_MEAN)
     wanted = (MODEL_MEAN @ COLD_LAMP.T)[:, ::-1]
     off_before = np.abs(mean_of(before) - wanted).max(axis=1)
@@ -89,7 +89,7 @@ def test_transported_follows_a_change_of_colour(seen: range) -> None:
 
 def test_transported_believes_no_lamp_that_cannot_be() -> None:
     """Colours that changed places: the pose is wrong, not the light."""
-    before = Appearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
+    before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
     wrong = statistics(np.eye(3)[[1, 0, 2]], np.full(10, 200.0))
     assert looks.transported(before, wrong, MODEL_MEAN) is before
     nothing = np.zeros((10, 4))

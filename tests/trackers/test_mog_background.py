@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.trackers.colour_paper.mog_background import BackgroundParams, BackgroundSubtractor
+from mocapd.trackers.colour_paper.mog_background import BackgroundSubtractor, MixtureParams
 from mocapd.types import Bytes
 
 
@@ -16,7 +16,7 @@ def room(seed: int, person: bool = False) -> Bytes:
 
 
 def test_a_person_who_comes_in_is_foreground() -> None:
-    subtractor = BackgroundSubtractor(BackgroundParams(shift=1, grow=0))
+    subtractor = BackgroundSubtractor(MixtureParams(shift=1, grow=0))
     for seed in range(30):
         empty = subtractor.apply(room(seed))
     assert (empty > 0).mean() < 0.01
@@ -27,7 +27,7 @@ def test_a_person_who_comes_in_is_foreground() -> None:
 
 
 def test_looking_without_learning_does_not_absorb_a_person() -> None:
-    subtractor = BackgroundSubtractor(BackgroundParams(shift=1, history=20))
+    subtractor = BackgroundSubtractor(MixtureParams(shift=1, history=20))
     for seed in range(30):
         subtractor.apply(room(seed))
     for seed in range(60):
@@ -46,8 +46,8 @@ def test_reset_forgets_the_room() -> None:
 
 
 def test_growing_keeps_a_margin() -> None:
-    plain = BackgroundSubtractor(BackgroundParams(shift=1, grow=0))
-    grown = BackgroundSubtractor(BackgroundParams(shift=1, grow=2))
+    plain = BackgroundSubtractor(MixtureParams(shift=1, grow=0))
+    grown = BackgroundSubtractor(MixtureParams(shift=1, grow=2))
     for seed in range(10):
         plain.apply(room(seed))
         grown.apply(room(seed))

@@ -8,8 +8,8 @@ from pathlib import Path
 from mocapd.app.install import interpreter
 from mocapd.app.install.own_file import NEW, Outcome, gid_of, put, put_once, take_away
 from mocapd.app.install.places import (
+    InstallPaths,
     PlacedFile,
-    Places,
     files,
     of_machine,
     of_package,
@@ -22,7 +22,7 @@ _WANTS = "*.wants/mocapd*.service"  # of an enabled unit
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class InstallTarget:
     """What is installed for. `user`: a unit of this user alone; `root`: a package that is built there, whose
     units start `python`, this interpreter when None; `dry_run`: nothing is changed."""
 
@@ -31,7 +31,7 @@ class Target:
     python: Path | None = None
     dry_run: bool = False
 
-    def places(self) -> Places:
+    def places(self) -> InstallPaths:
         """Where the files go."""
         if self.root is not None:
             return of_package(self.root)
@@ -39,7 +39,7 @@ class Target:
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class InstallStep:
     """What became, or would become, of one file."""
 
     path: Path
@@ -47,7 +47,7 @@ class Done:
     is_admins: bool
 
 
-def install(target: Target, euid: int | None = None) -> list[Done]:
+def install(target: InstallTarget, euid: int | None = None) -> list[InstallStep]:
     """Put everything in place. Raises ConfigError, PermissionDeniedError or CannotCreateError."""
     _require_sense(target, os.geteuid() if euid is None else euid)
     python = target.python or interpreter.own()
@@ -58,7 +58,7 @@ def install(target: Target, euid: int | None = None) -> list[Done]:
     return [_done(one, _put(one, target.dry_run)) for one in wanted]
 
 
-def uninstall(target: Target, euid: int | None = None) -> list[Done]:
+def uninstall(target: InstallTarget, euid: int | None = None) -> list[InstallStep]:
     """Take away what nobody has changed; the admin's own stays. Raises as `install`, ConfigError also while the
     service is enabled."""
     _require_sense(target, os.geteuid() if euid is None else euid)
@@ -78,7 +78,7 @@ def uninstall(target: Target, euid: int | None = None) -> list[Done]:
     return done
 
 
-def next_steps(target: Target, done: list[Done]) -> list[str]:
+def next_steps(target: InstallTarget, done: list[InstallStep]) -> list[str]:
     """The commands that an installation is to be followed by, each with a word on it; none after one for a package."""
     if target.root is not None:
         return []
@@ -107,14 +107,14 @@ def next_steps(target: Target, done: list[Done]) -> list[str]:
     ]
 
 
-def steps_after(target: Target) -> list[str]:
+def steps_after(target: InstallTarget) -> list[str]:
     """What is to be run when the files are gone."""
     if target.root is not None:
         return []
     return [f"systemctl{' --user' if target.user else ''} daemon-reload"]
 
 
-def what_stays(target: Target) -> list[Path]:
+def what_stays(target: InstallTarget) -> list[Path]:
     """What an uninstallation leaves: it is the admin's, or cannot be made again."""
     if target.user or target.root is not None:
         return []
@@ -127,7 +127,7 @@ def what_stays(target: Target) -> list[Path]:
     return [*dict.fromkeys(one for path in there for one in (path, path.resolve()))]
 
 
-def hidden_hint(target: Target, system: Path = Path("/")) -> str:
+def hidden_hint(target: InstallTarget, system: Path = Path("/")) -> str:
     """What to say of files of a package, below `system`, in whose place ours are read; empty when there are none."""
     if target.root is not None:
         return ""
@@ -150,7 +150,7 @@ def _way(path: Path) -> tuple[str, str]:
     return path.parent.name, path.name
 
 
-def _require_sense(target: Target, euid: int) -> None:
+def _require_sense(target: InstallTarget, euid: int) -> None:
     if target.user and target.root is not None:
         raise ConfigError(
             "--user and --root contradict each other",
@@ -183,11 +183,11 @@ def _put(one: PlacedFile, dry_run: bool) -> Outcome:
     return put(one.path, one.text, dry_run)
 
 
-def _done(one: PlacedFile, outcome: Outcome) -> Done:
-    return Done(one.path, outcome, one.is_admins)
+def _done(one: PlacedFile, outcome: Outcome) -> InstallStep:
+    return InstallStep(one.path, outcome, one.is_admins)
 
 
-def _enabled(places: Places) -> Iterator[Path]:
+def _enabled(places: InstallPaths) -> Iterator[Path]:
     for folder in (places.units, places.user_units):
         if folder is not None:
             yield from folder.glob(_WANTS)
@@ -199,7 +199,7 @@ def _remove_empty(folder: Path) -> None:
         folder.rmdir()
 
 
-def kept_hint(done: list[Done]) -> str:
+def kept_hint(done: list[InstallStep]) -> str:
     """What to do about files that were changed by hand; empty when there are none."""
     kept = [one for one in done if one.outcome is Outcome.KEPT]
     if not kept:

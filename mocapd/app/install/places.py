@@ -30,7 +30,7 @@ class PlacedFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class InstallPaths:
     """Folders; None for what is not placed. `units`, `user_units`: of systemd, `examples`: drop-ins that
     nothing reads, `rules`: of udev, `config`: of mocapd."""
 
@@ -42,10 +42,10 @@ class Places:
     config: Path | None = None
 
 
-def of_machine() -> Places:
+def of_machine() -> InstallPaths:
     """Where an admin's own units are."""
     units = Path("/etc/systemd/system")
-    return Places(
+    return InstallPaths(
         units=units,
         user_units=None,
         examples=units / f"{UNIT}.d",
@@ -55,17 +55,17 @@ def of_machine() -> Places:
     )
 
 
-def of_user() -> Places:
+def of_user() -> InstallPaths:
     """Of whoever runs this. No configuration: it would hide that of the machine."""
     given = os.environ.get("XDG_CONFIG_HOME", "")
     base = Path(given) if given.startswith("/") else Path.home() / ".config"
-    return Places(units=None, user_units=base / "systemd/user")
+    return InstallPaths(units=None, user_units=base / "systemd/user")
 
 
-def of_package(root: Path) -> Places:
+def of_package(root: Path) -> InstallPaths:
     """Below `root`, where packages have theirs."""
     lib = root / "usr/lib"
-    return Places(
+    return InstallPaths(
         units=lib / "systemd/system",
         user_units=lib / "systemd/user",
         examples=root / "usr/share/doc/mocapd/examples",
@@ -75,7 +75,7 @@ def of_package(root: Path) -> Places:
     )
 
 
-def files(places: Places, python: Path) -> Iterator[PlacedFile]:
+def files(places: InstallPaths, python: Path) -> Iterator[PlacedFile]:
     """Every file with its text; the units start mocapd with this interpreter. Raises ConfigError."""
     drop_in = "`systemctl edit {}`"
     if places.units is not None:

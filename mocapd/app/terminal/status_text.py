@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterable
 
-from mocapd.control.messages import CameraReport, OutputReport, StatusReport
+from mocapd.control.messages import CameraStatusReport, OutputReport, StatusReport
 from mocapd.errors import one_line
 
 _STATES = {
@@ -75,7 +75,7 @@ def _ago(span_s: float) -> str:
     return f"{days} day{'s' if days > 1 else ''} old"
 
 
-def _camera(one: CameraReport) -> str:
+def _camera(one: CameraStatusReport) -> str:
     parts = [f"{one.state} {one.rate_hz:.1f} Hz" if one.state == "live" else one.state]
     parts += [one.detail] if one.detail else []
     parts += ["bumped: calibrate the room again"] if one.mounting == "bumped" else []

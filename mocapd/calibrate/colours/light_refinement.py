@@ -18,7 +18,7 @@ from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
-from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.appearance import ShirtAppearance
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
 from mocapd.trackers.colour.params import Params
@@ -39,7 +39,7 @@ class Reading:
     light: str
     fit: Fit
     view: View
-    appearance: Appearance
+    appearance: ShirtAppearance
     agreement: float
     colours: int
 
@@ -71,7 +71,7 @@ class LightRefinement:
         return self.fitter.drawings[index]
 
     def follow(
-        self, index: int, light: str, fit: Fit, start: Appearance, turns: range
+        self, index: int, light: str, fit: Fit, start: ShirtAppearance, turns: range
     ) -> Reading | None:
         """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
         self.segmenters[index].memory.appearance = start
@@ -124,7 +124,7 @@ class LightRefinement:
         means = sums[:, 3:0:-1] / np.maximum(n, 1.0)[:, None]
         before = segmenter.memory.appearance.W
         W = solve_white_balance(means, self._model.mean, n, before, precision=self._precision)
-        segmenter.memory.appearance = Appearance(W, sums)
+        segmenter.memory.appearance = ShirtAppearance(W, sums)
 
     def judged_alone(self, reading: Reading) -> Reading:
         """The reading judged by its own camera alone."""

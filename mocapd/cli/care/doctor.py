@@ -35,14 +35,14 @@ def doctor(
     effective, error = config_to_look_after(config, settings)
 
     from mocapd.doctor.examination import examine
-    from mocapd.doctor.facts import Trouble
+    from mocapd.doctor.facts import FactTrouble
     from mocapd.doctor.finding import Verdict
     from mocapd.doctor.gathering.gathering import gathered
 
     trouble = None
     if error is not None:
         where = f"{error.where}: " if error.where else ""
-        trouble = Trouble(f"{where}{error.what}", error.fix)
+        trouble = FactTrouble(f"{where}{error.what}", error.fix)
     findings = examine(gathered(effective, trouble))
     print("\n".join(map(_as_json, findings)) if as_json else _as_text(findings))
     raise typer.Exit(int(any(one.verdict is Verdict.BAD for one in findings)))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from mocapd.app.install.installing import Done
+    from mocapd.app.install.installing import InstallStep
 
 UserOption = Annotated[
     bool, typer.Option("--user", help="A service of your own, which runs while you are logged in.")
@@ -49,14 +49,14 @@ def install_service(
     Example: sudo /opt/mocapd/bin/mocapd install-service
     """
     from mocapd.app.install.installing import (
-        Target,
+        InstallTarget,
         hidden_hint,
         install,
         kept_hint,
         next_steps,
     )
 
-    target = Target(user, root, python, dry_run)
+    target = InstallTarget(user, root, python, dry_run)
     done = install(target)
     _print(done, dry_run)
     _print_hint(kept_hint(done))
@@ -78,13 +78,13 @@ def uninstall_service(
     Example: sudo /opt/mocapd/bin/mocapd uninstall-service
     """
     from mocapd.app.install.installing import (
-        Target,
+        InstallTarget,
         steps_after,
         uninstall,
         what_stays,
     )
 
-    target = Target(user, root, None, dry_run)
+    target = InstallTarget(user, root, None, dry_run)
     _print(uninstall(target), dry_run)
     stays = what_stays(target)
     if stays:
@@ -93,7 +93,7 @@ def uninstall_service(
         print(f"\nnext:\n  {step}")
 
 
-def _print(done: "list[Done]", dry_run: bool) -> None:
+def _print(done: "list[InstallStep]", dry_run: bool) -> None:
     width = max(len(str(one.path)) for one in done)
     if dry_run:
         print("nothing is changed; it would be:")
@@ -101,7 +101,7 @@ def _print(done: "list[Done]", dry_run: bool) -> None:
         print(f"{one.path!s:<{width}}  {_outcome(one)}")
 
 
-def _outcome(one: "Done") -> str:
+def _outcome(one: "InstallStep") -> str:
     from mocapd.app.install.own_file import Outcome
 
     if one.is_admins and one.outcome is Outcome.UNCHANGED:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.config.sections import Config
-from mocapd.doctor.facts import CalibrationFacts, Trouble
+from mocapd.doctor.facts import CalibrationFacts, FactTrouble
 from mocapd.errors import MocapdError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.saved_session import LoadedCalibration, configured_calibration
@@ -20,7 +20,7 @@ def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibrati
         if saved is None and config.rig is not None:
             return _of_rig_file(config.rig), None
     except MocapdError as error:
-        return CalibrationFacts(place, Trouble(error.what, error.fix)), None
+        return CalibrationFacts(place, FactTrouble(error.what, error.fix)), None
     if saved is None:
         return CalibrationFacts(None), None
     made, room = saved.tables.made.when, saved.tables.room

@@ -8,7 +8,7 @@ from pathlib import Path
 from mocapd.boundary.folders import readable_by_others, require_own_folder
 from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.sections import Config
-from mocapd.doctor.facts import FolderFacts, Trouble
+from mocapd.doctor.facts import FactTrouble, FolderFacts
 from mocapd.errors import MocapdError
 
 
@@ -32,9 +32,9 @@ def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
         try:
             require_own_folder(path)
         except MocapdError as error:
-            trouble = Trouble(error.what, error.fix)
+            trouble = FactTrouble(error.what, error.fix)
     if trouble is None and not os.access(there, os.W_OK | os.X_OK):
-        trouble = Trouble("cannot be written to", f"chown or chmod it, or set {key} to another")
+        trouble = FactTrouble("cannot be written to", f"chown or chmod it, or set {key} to another")
     try:
         free: int | None = shutil.disk_usage(there).free
     except OSError:

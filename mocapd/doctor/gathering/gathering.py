@@ -2,7 +2,7 @@
 
 from mocapd.config.effective import Effective
 from mocapd.control.meant import daemons_found
-from mocapd.doctor.facts import ConfigFacts, Facts, Trouble
+from mocapd.doctor.facts import ConfigFacts, Facts, FactTrouble
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import camera_facts
 from mocapd.doctor.gathering.folder_facts import folder_facts
@@ -16,7 +16,7 @@ from mocapd.doctor.gathering.system_facts import (
 )
 
 
-def gathered(effective: Effective, trouble: Trouble | None) -> Facts:
+def gathered(effective: Effective, trouble: FactTrouble | None) -> Facts:
     """trouble: why the configuration proper cannot be used; `effective` is what is built in then."""
     config = effective.config
     calibration, saved = calibration_facts(config)

@@ -49,7 +49,7 @@ def as_published() -> LimbScoreParams:
 
 
 @dataclass(frozen=True, slots=True)
-class AppearanceParams:
+class LimbAppearanceParams:
     """How the colours of the parts are learned."""
 
     enough_s: float = 1.0  # of sure and full view, after which a ring's colour is fixed

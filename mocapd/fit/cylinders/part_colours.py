@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.fit.cylinders.limb_params import AppearanceParams
+from mocapd.fit.cylinders.limb_params import LimbAppearanceParams
 from mocapd.fit.cylinders.occlusion_kernels import OcclusionModel
 from mocapd.fit.cylinders.part_colour_kernels import observe_colours
 from mocapd.types import Bytes, Floats, Singles
@@ -32,7 +32,7 @@ class AppearanceModel:
             np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
         )
 
-    def is_fixed(self, params: AppearanceParams) -> bool:
+    def is_fixed(self, params: LimbAppearanceParams) -> bool:
         """Whether no ring in any view changes any more."""
         return bool((self.seen_s >= params.enough_s).all())
 
@@ -67,7 +67,7 @@ def learn(
     observed: RingColours,
     confidence: Floats,
     dt_s: float,
-    params: AppearanceParams,
+    params: LimbAppearanceParams,
 ) -> AppearanceModel:
     """The running average with one more picture of camera `view`, taken dt_s after the one before.
 

@@ -42,7 +42,7 @@ _SWAPPED_LOOKS = (
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Candidate:
+class FaceCandidate:
     """A face that one view (camera index) sees; unseen_s: since it was last found there; looks: how often it was.
     alive: its place has changed, None: too soon to tell. placed: where it is, as of `placed_s` ago; None: not yet."""
 
@@ -64,7 +64,7 @@ class FaceSearch:
 
     def reset(self) -> None:
         """Forget everything."""
-        self.candidates: list[Candidate] = []
+        self.candidates: list[FaceCandidate] = []
         self._straight = self._crossed = 0
         self._turn = 0
         self._work: list[tuple[float, tuple[int, int, int, int]]] = []
@@ -93,7 +93,7 @@ class FaceSearch:
             self._look(views)
         self._place_one(views, by_index)
 
-    def _followed(self, of: Candidate, view: HeadView | None, dt_s: float) -> Candidate:
+    def _followed(self, of: FaceCandidate, view: HeadView | None, dt_s: float) -> FaceCandidate:
         older = replace(of, unseen_s=of.unseen_s + dt_s, placed_s=of.placed_s + dt_s)
         if view is None:
             return older
@@ -157,7 +157,7 @@ class FaceSearch:
             )  # fmt: skip
             if seen:
                 alive = self._alive(view, seen[0])
-                self.candidates.append(Candidate(view.index, seen[0], 0.0, 1, alive))
+                self.candidates.append(FaceCandidate(view.index, seen[0], 0.0, 1, alive))
         self.candidates.sort(key=lambda c: -c.box.size_px)
         del self.candidates[self._params.candidates :]
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapd.body.arrays import camera_arrays
 from mocapd.fit.head.face_placing import Depth, PlacedFace
-from mocapd.fit.head.face_search import Candidate, FaceSearch
+from mocapd.fit.head.face_search import FaceCandidate, FaceSearch
 from mocapd.fit.head.head_cloud import (
     Cloud,
     cloud_about,
@@ -135,12 +135,12 @@ class HeadTracker:
         self._outlines_m.append(placed.middle_m)
         if len(self._outlines_m) < self._params.outline_looks:
             return lost
-        of = Candidate(index, box, 0.0, len(self._outlines_m), True, placed, 0.0)
+        of = FaceCandidate(index, box, 0.0, len(self._outlines_m), True, placed, 0.0)
         self._start(of, placed, views)
         self._faceless_s = self._params.facing_s + 1e-6
         return replace(self._told(HeadState.TRACKED, of, placed), yaw_rad=None)
 
-    def _is_head(self, of: Candidate, placed: PlacedFace) -> bool:
+    def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
         """Seen more than once, of a head's size, and at a distance on which a pair agrees; one camera, or two in one
         place, go by the size."""
         alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
@@ -152,18 +152,18 @@ class HeadTracker:
         low, high = self._params.size_share
         return low < of.size_share < high
 
-    def _may_start(self, of: Candidate) -> bool:
+    def _may_start(self, of: FaceCandidate) -> bool:
         return of.unseen_s == 0.0 and of.alive is True
 
-    def _away_m(self, of: Candidate, placed: PlacedFace) -> float:
+    def _away_m(self, of: FaceCandidate, placed: PlacedFace) -> float:
         return float(np.linalg.norm(placed.middle_m - centre(self._cameras[of.view])))
 
-    def _across_m(self, share: float, of: Candidate, placed: PlacedFace) -> float:
+    def _across_m(self, share: float, of: FaceCandidate, placed: PlacedFace) -> float:
         """A share of the face's side, at its distance."""
         focal_px = float(self._cameras[of.view].K[0, 0])
         return share * of.box.size_px * self._away_m(of, placed) / focal_px
 
-    def _start(self, of: Candidate, placed: PlacedFace, views: Sequence[HeadView]) -> None:
+    def _start(self, of: FaceCandidate, placed: PlacedFace, views: Sequence[HeadView]) -> None:
         ray = placed.middle_m - centre(self._cameras[of.view])
         ray = ray / np.linalg.norm(ray)
         along = np.outer(ray, ray)
@@ -176,7 +176,7 @@ class HeadTracker:
         self._outlines_m = []
         self._search.candidates.clear()
 
-    def _told(self, state: HeadState, of: Candidate, placed: PlacedFace) -> HeadTrack:
+    def _told(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
         yaw = self._towards_rad(placed.middle_m, of.view)
         boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
         return HeadTrack(

@@ -19,19 +19,21 @@ _PRIOR_PX = 60.0  # weight of the prior against learned pixels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Appearance:
+class ShirtAppearance:
     """W (3,3), model_from_camera on RGB 0..1; sums (10,4): decayed count and BGR sums of each colour."""
 
     W: Floats
     sums: Floats
 
 
-def fresh(W: Floats) -> Appearance:
+def fresh(W: Floats) -> ShirtAppearance:
     """Nothing learned yet under this white balance."""
-    return Appearance(W, np.zeros((N, 4)))
+    return ShirtAppearance(W, np.zeros((N, 4)))
 
 
-def learn(appearance: Appearance, sums: Floats, dt_s: float, memory_s: float) -> Appearance:
+def learn(
+    appearance: ShirtAppearance, sums: Floats, dt_s: float, memory_s: float
+) -> ShirtAppearance:
     """Blend in the statistics of a new frame; a colour that was not seen keeps its memory."""
     keep = np.exp(-dt_s / memory_s)
     seen = sums[:, :1] >= _SEEN_PX
@@ -41,7 +43,7 @@ def learn(appearance: Appearance, sums: Floats, dt_s: float, memory_s: float) ->
 
 
 def gaussians(
-    appearance: Appearance,
+    appearance: ShirtAppearance,
     model_mean: Floats,
     model_covariance: Floats,
     cloth_sd: float,
@@ -66,7 +68,7 @@ def whitening(mean: Floats, covariance: Floats) -> Singles:
     return out
 
 
-def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.02) -> Floats:
+def white_balance(appearance: ShirtAppearance, model_mean: Floats, ridge: float = 0.02) -> Floats:
     """W (3,3) from the learned means of the colours seen (paper section 5.2, step 5), pulled to the last W."""
     n = appearance.sums[:, 0]
     seen = n >= _SEEN_PX
@@ -81,7 +83,9 @@ def white_balance(appearance: Appearance, model_mean: Floats, ridge: float = 0.0
     return W
 
 
-def transported(appearance: Appearance, observed: Floats, model_mean: Floats) -> Appearance:
+def transported(
+    appearance: ShirtAppearance, observed: Floats, model_mean: Floats
+) -> ShirtAppearance:
     """The appearance in a new light, from what is seen now where each colour is expected.
 
     One matrix M carries the known colours to the observed ones (10,4 statistics of the predicted
@@ -109,4 +113,4 @@ def transported(appearance: Appearance, observed: Floats, model_mean: Floats) ->
     W = appearance.W @ np.linalg.inv(M[::-1, ::-1])
     sums = appearance.sums.copy()
     sums[:, 1:4] = sums[:, 1:4] @ M.T
-    return Appearance(W, sums)
+    return ShirtAppearance(W, sums)

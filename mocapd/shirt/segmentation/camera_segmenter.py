@@ -15,7 +15,7 @@ from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.white_balance import remember_illumination
 from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation import bare_skin
-from mocapd.shirt.segmentation.appearance import Appearance
+from mocapd.shirt.segmentation.appearance import ShirtAppearance
 from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
@@ -50,7 +50,7 @@ _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 class Memory:
     """What was learned of one camera since the last reset."""
 
-    appearance: Appearance
+    appearance: ShirtAppearance
     references: tuple[Floats, ...]  # reference illuminations, paper section 5.2
     background_mean: NDArray[np.float32]
     background_age: Ids
@@ -158,7 +158,9 @@ class CameraSegmenter:
             ids, pixel_weight = self._classified(best, roi, distance, prior)
         return ids, pixel_weight
 
-    def _relit(self, predicted: Ids, ids: Ids, roi: Roi, distance: Ids, prior: float) -> Appearance:
+    def _relit(
+        self, predicted: Ids, ids: Ids, roi: Roi, distance: Ids, prior: float
+    ) -> ShirtAppearance:
         memory = self.memory
         seen = np.zeros((10, 4))
         colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, seen)
@@ -174,7 +176,7 @@ class CameraSegmenter:
         return best
 
     def _classified(
-        self, appearance: Appearance, roi: Roi, distance: Ids, prior: float
+        self, appearance: ShirtAppearance, roi: Roi, distance: Ids, prior: float
     ) -> tuple[Ids, Ids]:
         p, memory = self.params, self.memory
         h, w = roi[3] - roi[1], roi[2] - roi[0]
@@ -231,7 +233,7 @@ class CameraSegmenter:
         W = learned.W
         if memory.looks % _WHITE_BALANCE_EVERY == 0:
             W = looks.white_balance(learned, self.model.mean)
-        memory.appearance = Appearance(W, learned.sums)
+        memory.appearance = ShirtAppearance(W, learned.sums)
         if sure:
             memory.references = remember_illumination(memory.references, W)
             count_colours(

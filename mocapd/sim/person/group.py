@@ -15,7 +15,7 @@ from mocapd.types import Bytes, Floats, Pose
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Body:
+class PersonBody:
     """How somebody is at one instant. jacket: how far it is on, 0..1; screen: on which they are shown, if any."""
 
     pose: Pose
@@ -45,7 +45,7 @@ def group_of(figures: Sequence[Figure]) -> Group:
     )
 
 
-def posed_group(group: Group, bodies: Sequence[Body]) -> Floats:
+def posed_group(group: Group, bodies: Sequence[PersonBody]) -> Floats:
     """Vertices (V,3) in the world [m]."""
     posed = []
     for figure, body in zip(group.figures, bodies, strict=True):

@@ -9,7 +9,7 @@ from mocapd.types import Bytes
 
 
 @dataclass(frozen=True, slots=True)
-class BackgroundParams:
+class MixtureParams:
     """`shift`: the mask is 2^shift times smaller than the frame, each way.
 
     `history`: frames the mixture remembers; `deviation2`: squared Mahalanobis distance beyond
@@ -26,8 +26,8 @@ class BackgroundParams:
 class BackgroundSubtractor:
     """The background of one camera. It learns from every frame it is given; one thread."""
 
-    def __init__(self, params: BackgroundParams | None = None) -> None:
-        self.params = params or BackgroundParams()
+    def __init__(self, params: MixtureParams | None = None) -> None:
+        self.params = params or MixtureParams()
         self.reset()
 
     def reset(self) -> None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from mocapd.shirt.colour.colour_model import NOISE_SIGMA, SHADING_SIGMA
 from mocapd.trackers.colour_paper.chrominance import HistogramParams
-from mocapd.trackers.colour_paper.mog_background import BackgroundParams
+from mocapd.trackers.colour_paper.mog_background import MixtureParams
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Params:
     pose_prior: bool = True  # step 3
     adaptive_white_balance: bool = True  # step 5 and the reference illuminations of step 1
 
-    background: BackgroundParams = field(default_factory=BackgroundParams)
+    background: MixtureParams = field(default_factory=MixtureParams)
     histogram: HistogramParams = field(default_factory=HistogramParams)
     min_foreground: float = 0.004  # share of the frame; with less the background hint is not used
     crop: float = 4.5  # side of the region looked at, in windows s of the histogram search

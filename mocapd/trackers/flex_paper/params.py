@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from mocapd.fit.cylinders.limb_params import (
-    AppearanceParams,
+    LimbAppearanceParams,
     LimbMotionParams,
     LimbScoreParams,
 )
@@ -23,7 +23,7 @@ class Params:
     head: HeadParams = field(default_factory=HeadParams)
     motion: LimbMotionParams = field(default_factory=LimbMotionParams)
     score: LimbScoreParams = field(default_factory=LimbScoreParams)
-    appearance: AppearanceParams = field(default_factory=AppearanceParams)
+    appearance: LimbAppearanceParams = field(default_factory=LimbAppearanceParams)
     edges: MotionEdgeParams = field(default_factory=MotionEdgeParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
     simulation: SimulationParams = field(default_factory=SimulationParams)

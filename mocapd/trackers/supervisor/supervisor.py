@@ -24,7 +24,7 @@ from mocapd.trackers.supervisor.standby import (
     stepped,
     wants_offer,
 )
-from mocapd.trackers.supervisor.standing import Standing, is_well, judged
+from mocapd.trackers.supervisor.standing import TrackerStanding, is_well, judged
 from mocapd.trackers.supervisor.steady_arms import with_steady_arms
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
@@ -57,7 +57,7 @@ class _Known:
     live_since_ns: int | None = None
     known_since_ns: int | None = None
     told: Told | None = None
-    standing: Standing = field(default_factory=Standing)
+    standing: TrackerStanding = field(default_factory=TrackerStanding)
     standby: Standby = field(default_factory=Standby)
 
     @property

@@ -1,6 +1,6 @@
 """The WebSocket `/pictures`: the page asks for each picture, so a slow page is never flooded.
 
-Request, JSON: {camera, width, after, over}: width in px of the screen; after: `seq` of the last picture
+PictureRequest, JSON: {camera, width, after, over}: width in px of the screen; after: `seq` of the last picture
 it got, null at first; over: what is drawn over it, `setup` (when one is on) or `body`. Answer, one
 binary message: uint32 (little-endian) length of the header, the header {camera, seq, t_ns, size_px,
 shapes} as JSON, the JPEG. No new frame within a second: `seq` is null, `why` says the reason, and
@@ -32,7 +32,7 @@ LONGEST_NAME = 4096  # of a camera; the longest that anybody has tried has 3000 
 MOST_FRAMES = 2**63 - 1
 
 
-class Request(msgspec.Struct, frozen=True):
+class PictureRequest(msgspec.Struct, frozen=True):
     """What a page asks for."""
 
     camera: Annotated[str, Meta(max_length=LONGEST_NAME)]
@@ -53,7 +53,7 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
 
         async with asyncio.TaskGroup() as group:
             while True:
-                request = await understood(socket, Request)
+                request = await understood(socket, PictureRequest)
                 if under_way >= MOST_UNDER_WAY:
                     raise BadMessageError("more requests than cameras")
                 under_way += 1
@@ -62,7 +62,9 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
     await serve(socket, answers())
 
 
-async def _answer(socket: WebSocket, host: Host, encoder: PictureEncoder, request: Request) -> None:
+async def _answer(
+    socket: WebSocket, host: Host, encoder: PictureEncoder, request: PictureRequest
+) -> None:
     picture = await encoder.picture(request.camera, request.width, request.after)
     if picture is None:
         hub = host.hub

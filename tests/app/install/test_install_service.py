@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from mocapd.app.install import installing, interpreter
-from mocapd.app.install.installing import Done, Target, install, next_steps, uninstall
+from mocapd.app.install.installing import InstallStep, InstallTarget, install, next_steps, uninstall
 from mocapd.app.install.own_file import Outcome
-from mocapd.app.install.places import Places, files, of_machine
+from mocapd.app.install.places import InstallPaths, files, of_machine
 from mocapd.app.install.unit_texts import unit_text
 from mocapd.errors import CannotCreateError, ConfigError, PermissionDeniedError
 from tests.cli.mocapd_process import mocapd_here
@@ -19,7 +19,7 @@ UNIT = "usr/lib/systemd/system/mocapd.service"
 CONFIG = "etc/mocapd/config.toml"
 
 
-def outcomes(done: list[Done]) -> set[Outcome]:
+def outcomes(done: list[InstallStep]) -> set[Outcome]:
     return {one.outcome for one in done}
 
 
@@ -28,7 +28,7 @@ def contents(root: Path) -> dict[Path, bytes]:
 
 
 def test_installed_twice_is_as_installed_once(tmp_path: Path) -> None:
-    target = Target(root=tmp_path)
+    target = InstallTarget(root=tmp_path)
     assert outcomes(install(target)) == {Outcome.MADE}
     once = contents(tmp_path)
     assert outcomes(install(target)) == {Outcome.UNCHANGED}
@@ -44,46 +44,46 @@ def test_the_configuration_is_of_the_services_group_at_once(
 ) -> None:
     group = grp.struct_group(("mocapd", "x", 12_345, []))
     monkeypatch.setattr(grp, "getgrnam", {"mocapd": group}.__getitem__)
-    done = install(Target(root=tmp_path))
+    done = install(InstallTarget(root=tmp_path))
     assert (tmp_path / CONFIG).stat().st_gid == 12_345
     assert (tmp_path / UNIT).stat().st_gid == os.getegid()
-    assert "chgrp" not in " ".join(next_steps(Target(), done))
+    assert "chgrp" not in " ".join(next_steps(InstallTarget(), done))
 
 
 def test_where_the_group_is_still_to_be_made_the_steps_give_it_the_configuration(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(grp, "getgrnam", {}.__getitem__)
-    steps = next_steps(Target(), install(Target(root=tmp_path)))
+    steps = next_steps(InstallTarget(), install(InstallTarget(root=tmp_path)))
     made = steps.index("systemd-sysusers")
     assert steps.index(f"chgrp mocapd {tmp_path / CONFIG}") > made
 
 
 def test_a_dry_run_says_the_same_and_changes_nothing(tmp_path: Path) -> None:
-    dry = install(Target(root=tmp_path, dry_run=True))
+    dry = install(InstallTarget(root=tmp_path, dry_run=True))
     assert not any(tmp_path.iterdir())
-    assert install(Target(root=tmp_path)) == dry
+    assert install(InstallTarget(root=tmp_path)) == dry
     before = contents(tmp_path)
-    dry = uninstall(Target(root=tmp_path, dry_run=True))
+    dry = uninstall(InstallTarget(root=tmp_path, dry_run=True))
     assert contents(tmp_path) == before
-    assert uninstall(Target(root=tmp_path)) == dry
+    assert uninstall(InstallTarget(root=tmp_path)) == dry
 
 
 def test_another_interpreter_renews_the_units_alone(tmp_path: Path) -> None:
-    install(Target(root=tmp_path, python=Path("/old/bin/python")))
-    done = install(Target(root=tmp_path, python=Path("/new/bin/python")))
+    install(InstallTarget(root=tmp_path, python=Path("/old/bin/python")))
+    done = install(InstallTarget(root=tmp_path, python=Path("/new/bin/python")))
     renewed = {one.path.name for one in done if one.outcome is Outcome.RENEWED}
     assert renewed == {"mocapd.service", "mocapd@.service", "mocapd-camera-node.service"}
     assert "ExecStart=/new/bin/python -P" in (tmp_path / UNIT).read_text()
 
 
 def test_what_an_admin_has_changed_stays(tmp_path: Path) -> None:
-    install(Target(root=tmp_path, python=Path("/old/bin/python")))
+    install(InstallTarget(root=tmp_path, python=Path("/old/bin/python")))
     unit, config = tmp_path / UNIT, tmp_path / CONFIG
     changed = unit.read_text().replace("WatchdogSec=30", "WatchdogSec=90")
     unit.write_text(changed)
     config.write_text("instance = 'hall'\n")
-    done = install(Target(root=tmp_path))
+    done = install(InstallTarget(root=tmp_path))
     assert unit.read_text() == changed
     assert config.read_text() == "instance = 'hall'\n"
     beside = unit.with_name("mocapd.service.new")
@@ -91,16 +91,16 @@ def test_what_an_admin_has_changed_stays(tmp_path: Path) -> None:
     assert {one.path for one in done if one.outcome is Outcome.KEPT} == {unit}
     assert str(unit) in installing.kept_hint(done)
     assert {
-        one.path for one in uninstall(Target(root=tmp_path)) if one.outcome is Outcome.KEPT
+        one.path for one in uninstall(InstallTarget(root=tmp_path)) if one.outcome is Outcome.KEPT
     } == {unit}
     assert {path.name for path in contents(tmp_path)} == {"mocapd.service", "config.toml"}
 
 
 def test_uninstalled_leaves_the_configuration_alone(tmp_path: Path) -> None:
-    install(Target(root=tmp_path))
-    assert outcomes(uninstall(Target(root=tmp_path))) == {Outcome.REMOVED}
+    install(InstallTarget(root=tmp_path))
+    assert outcomes(uninstall(InstallTarget(root=tmp_path))) == {Outcome.REMOVED}
     assert {*contents(tmp_path)} == {tmp_path / CONFIG}
-    assert outcomes(uninstall(Target(root=tmp_path))) == {Outcome.ABSENT}
+    assert outcomes(uninstall(InstallTarget(root=tmp_path))) == {Outcome.ABSENT}
 
 
 def test_an_enabled_service_is_not_pulled_away(
@@ -108,26 +108,26 @@ def test_an_enabled_service_is_not_pulled_away(
 ) -> None:
     monkeypatch.delenv("SUDO_USER", raising=False)
     units = empty_home / "config/systemd/user"
-    install(Target(user=True))
+    install(InstallTarget(user=True))
     wants = units / "default.target.wants"
     wants.mkdir()
     (wants / "mocapd.service").symlink_to(units / "mocapd.service")
     with pytest.raises(ConfigError, match=r"systemctl --user disable --now mocapd\.service"):
-        uninstall(Target(user=True))
+        uninstall(InstallTarget(user=True))
     assert (units / "mocapd.service").exists()
     (wants / "mocapd.service").unlink()
-    assert outcomes(uninstall(Target(user=True))) == {Outcome.REMOVED}
+    assert outcomes(uninstall(InstallTarget(user=True))) == {Outcome.REMOVED}
 
 
 def test_only_root_installs_for_the_machine_and_sudo_not_for_a_user(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     with pytest.raises(PermissionDeniedError, match="only root") as refused:
-        install(Target(), euid=1000)
+        install(InstallTarget(), euid=1000)
     assert refused.value.exit_code == 77
     monkeypatch.setenv("SUDO_USER", "someone")
     with pytest.raises(ConfigError, match="root's own service"):
-        install(Target(user=True), euid=0)
+        install(InstallTarget(user=True), euid=0)
 
 
 def test_a_service_is_not_given_an_interpreter_that_it_cannot_see(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_a_path_that_would_mean_something_else_is_refused(path: str) -> None:
 def test_a_folder_where_the_unit_belongs_is_refused_by_name(tmp_path: Path) -> None:
     (tmp_path / UNIT).mkdir(parents=True)
     with pytest.raises(CannotCreateError, match="cannot be read"):
-        install(Target(root=tmp_path))
+        install(InstallTarget(root=tmp_path))
 
 
 def test_the_machines_own_has_each_file_once_and_says_what_comes_next() -> None:
@@ -187,19 +187,19 @@ def test_the_machines_own_has_each_file_once_and_says_what_comes_next() -> None:
     paths = [one.path for one in files(places, Path("/opt/m/bin/python"))]
     assert len(paths) == len({*paths}) == 7
     assert all(path.is_relative_to("/etc") for path in paths)
-    fresh = [Done(path, Outcome.MADE, False) for path in paths]
-    steps = "\n".join(next_steps(Target(), fresh))
+    fresh = [InstallStep(path, Outcome.MADE, False) for path in paths]
+    steps = "\n".join(next_steps(InstallTarget(), fresh))
     for word in ("systemd-sysusers", "udevadm control --reload", "daemon-reload", "enable --now"):
         assert word in steps
-    again = [Done(path, Outcome.UNCHANGED, False) for path in paths]
-    assert "daemon-reload" not in "\n".join(next_steps(Target(), again))
+    again = [InstallStep(path, Outcome.UNCHANGED, False) for path in paths]
+    assert "daemon-reload" not in "\n".join(next_steps(InstallTarget(), again))
 
 
 def test_a_user_has_one_unit_and_no_configuration(
     empty_home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("SUDO_USER", raising=False)
-    (one,) = install(Target(user=True))
+    (one,) = install(InstallTarget(user=True))
     assert one.path == empty_home / "config/systemd/user/mocapd.service"
     assert not (empty_home / "config/mocapd").exists()
 
@@ -208,31 +208,31 @@ def test_a_user_has_one_unit_and_no_configuration(
     ("target", "unit", "undo"),
     [
         (
-            Target(),
+            InstallTarget(),
             "system",
             "`sudo systemctl disable --now mocapd; sudo mocapd uninstall-service;",
         ),
         (
-            Target(user=True),
+            InstallTarget(user=True),
             "user",
             "mocapd uninstall-service --user; systemctl --user daemon-reload;",
         ),
     ],
 )
 def test_what_it_hides_of_a_package_is_told_with_the_way_back(
-    target: Target, unit: str, undo: str, tmp_path: Path
+    target: InstallTarget, unit: str, undo: str, tmp_path: Path
 ) -> None:
     assert installing.hidden_hint(target, tmp_path) == ""
-    install(Target(root=tmp_path))
+    install(InstallTarget(root=tmp_path))
     hint = installing.hidden_hint(target, tmp_path)
     assert f"{tmp_path}/usr/lib/systemd/{unit}/mocapd.service" in hint
     assert undo in hint
     assert "config.toml" not in hint
-    assert installing.hidden_hint(Target(root=tmp_path), tmp_path) == ""
+    assert installing.hidden_hint(InstallTarget(root=tmp_path), tmp_path) == ""
 
 
 def test_no_place_no_file() -> None:
-    assert not [*files(Places(None, None), Path("/opt/m/bin/python"))]
+    assert not [*files(InstallPaths(None, None), Path("/opt/m/bin/python"))]
 
 
 def test_the_commands_say_what_they_do(clean_env: dict[str, str], tmp_path: Path) -> None:

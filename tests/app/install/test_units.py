@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.app.install.installing import Target, install
+from mocapd.app.install.installing import InstallTarget, install
 from mocapd.config.effective import load_config
 
 TIGHT_ENOUGH = "20"  # in tenths: 2.0 of 10, "OK"
@@ -20,7 +20,7 @@ UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Everything, as in a package."""
     root = tmp_path_factory.mktemp("package")
-    install(Target(root=root))
+    install(InstallTarget(root=root))
     return root
 
 

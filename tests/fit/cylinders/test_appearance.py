@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mocapd.fit.cylinders.limb_params import AppearanceParams, LimbScoreParams
+from mocapd.fit.cylinders.limb_params import LimbAppearanceParams, LimbScoreParams
 from mocapd.fit.cylinders.occlusion import allocate_occlusion, fill_occlusion
 from mocapd.fit.cylinders.occlusion_kernels import OcclusionModel
 from mocapd.fit.cylinders.part_colours import AppearanceModel, learn, observe, reference_colours
@@ -13,7 +13,7 @@ from mocapd.fit.cylinders.work_camera import work_camera
 from mocapd.types import Bytes, Floats
 from tests.fit.cylinders.naive import ENDS_M, RADII_M, WORK_PX, camera
 
-PARAMS = AppearanceParams()
+PARAMS = LimbAppearanceParams()
 HIDDEN_BY_M = LimbScoreParams().hidden_by_m
 FOREARM, SHIN, UPPER_TRUNK = 4, 8, 1
 SURE = np.ones((len(ENDS_M), 2))

@@ -10,7 +10,7 @@ import pytest
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.cylinders.limb_params import (
-    AppearanceParams,
+    LimbAppearanceParams,
     LimbMotionParams,
     LimbScoreParams,
     as_published,
@@ -106,7 +106,7 @@ def seen(t_s: float, camera: int, ends_m: Floats) -> tuple[LimbView, Floats, Flo
 @cache
 def reference() -> tuple[np.ndarray, ...]:
     """The colours of both cameras, learned in the first seconds."""
-    model, params = AppearanceModel.unknown(2, len(RADII_M)), AppearanceParams()
+    model, params = AppearanceModel.unknown(2, len(RADII_M)), LimbAppearanceParams()
     for t_s in LEARNED_S:
         for camera in (0, 1):
             view, quads, depths = seen(t_s, camera, body_ends(t_s))
