@@ -9,8 +9,8 @@ from pathlib import Path
 
 from lab.studies.colour_proposals import ProposalScore, score_by_strokes, table
 from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
+from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances

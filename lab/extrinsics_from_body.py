@@ -16,8 +16,8 @@ from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks
 from mocapd.calibrate.self_calibration.relative_pose import relative_pose
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
+from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.config.sections import TrackerSection, default_cache_dir
 from mocapd.evaluate.score import JOINT_SETS, match, score

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 from mocapd.app.libraries import prepare_libraries
 from mocapd.assets import asset_path
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.session.tracker_setup import cached, make_caches, ready_tracker
 from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario

@@ -7,7 +7,7 @@ from typing import Any
 
 from lab.compared.ablations import FLEX_ABLATIONS, FLEX_PAPER_ABLATIONS
 from lab.compared.compare import BASELINE
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.session.side_by_side import each_camera
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.trackers.colour_paper.params import published

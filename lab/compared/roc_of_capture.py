@@ -23,8 +23,8 @@ from lab.compared.roc import (
     sweep_assisted,
 )
 from mocapd.body.model import build_model
+from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.record import ShirtColours
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence

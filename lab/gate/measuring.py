@@ -10,8 +10,8 @@ from lab.gate.figures import NAMES, Figures, as_row, rest_figures, track_figures
 from lab.gate.gate_file import GateRow
 from lab.gate.sets import GateCase
 from mocapd.body.shape import BodyShape
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.evaluate.capture_eval import BuildTracker
 from mocapd.evaluate.recovery import recovery

@@ -16,7 +16,7 @@ from mocapd.body.skeleton import (
     local_from_global,
 )
 from mocapd.geometry import rotations
-from mocapd.sim.person.legs import leg_rotations
+from mocapd.sim.person.leg_shape import leg_rotations
 from mocapd.sim.person.motion import local_rotvecs
 from mocapd.sim.person.poses import POSES, ArmDirections
 from mocapd.sim.person_spec import PoseKeyframe

@@ -16,8 +16,8 @@ import msgspec
 
 from mocapd.boundary.files import MissingError, is_absent, is_file, is_folder, read_file, read_text
 from mocapd.boundary.folders import private_folder
-from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import brief, check_numbers
+from mocapd.boundary.parsing import convert, parse_toml
 from mocapd.boundary.urls import is_masked
 from mocapd.calibration.saved_calibration import SCHEMA, ColourFit, SavedCalibration
 from mocapd.calibration.saved_sources import (

@@ -1,6 +1,6 @@
 """What a recording or a scenario knows."""
 
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.capture.capture_folder import CaptureFolder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.capture.origin import Origin

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.shape import FACTORS
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.calibration.saved_calibration import SavedCalibration, SavedWearer
 from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.shirt.colour.strokes import read_labelled

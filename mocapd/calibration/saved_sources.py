@@ -11,8 +11,8 @@ import msgspec
 import tomli_w
 
 from mocapd.boundary.files import MissingError, read_text
-from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import brief
+from mocapd.boundary.parsing import convert, parse_toml
 from mocapd.boundary.urls import has_password, is_masked, without_password
 from mocapd.calibration.saved_calibration import SavedCalibration, Text
 from mocapd.errors import ConfigError, MalformedError, NewerFileError

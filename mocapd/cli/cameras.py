@@ -8,8 +8,8 @@ import typer
 from mocapd.errors import one_line
 
 if TYPE_CHECKING:
-    from mocapd.capture.webcam.listing import CameraInfo
     from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
+    from mocapd.capture.webcam.webcam_listing import CameraInfo
 
 
 def add_to(app: typer.Typer) -> None:
@@ -37,7 +37,7 @@ def cameras(
     if at is not None:
         _print_remote(at, as_json)
         return
-    from mocapd.capture.webcam.listing import list_cameras
+    from mocapd.capture.webcam.webcam_listing import list_cameras
 
     found = list_cameras()
     for info in found:

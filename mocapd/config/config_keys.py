@@ -16,8 +16,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 from msgspec import Meta
 
-from mocapd.boundary.messages import convert
 from mocapd.boundary.numbers import brief, check_numbers
+from mocapd.boundary.parsing import convert
 from mocapd.boundary.urls import without_password
 from mocapd.errors import ConfigError, MalformedError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from mocapd.boundary.files import MissingError, read_text
-from mocapd.boundary.messages import parse_toml
+from mocapd.boundary.parsing import parse_toml
 from mocapd.config.key_lines import KeyLines
 from mocapd.errors import ConfigError, InputError, MalformedError
 

@@ -10,9 +10,8 @@ from typing import TypeVar
 
 import msgspec
 
-from mocapd.boundary.messages import decode_json
-from mocapd.control.line import read_line
-from mocapd.control.messages import (
+from mocapd.boundary.parsing import decode_json
+from mocapd.control.control_messages import (
     Answer,
     Recentered,
     Refused,
@@ -21,6 +20,7 @@ from mocapd.control.messages import (
     StatusReport,
     Verb,
 )
+from mocapd.control.line import read_line
 from mocapd.control.socket_place import (
     closed_folders,
     may_command,

@@ -13,9 +13,9 @@ from typing import Any
 
 import msgspec
 
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
+from mocapd.control.control_messages import Answer, Refused, Request, Verb
 from mocapd.control.line import read_line
-from mocapd.control.messages import Answer, Refused, Request, Verb
 from mocapd.control.socket_place import may_command, peer_of, short_address
 from mocapd.errors import (
     CannotCreateError,

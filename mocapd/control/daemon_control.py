@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import assert_never
 
 from mocapd.config.sections import Config
+from mocapd.control.control_messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.control_socket import ControlSocket
 from mocapd.control.last_trouble import LastTrouble
-from mocapd.control.messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.reloads import Reloads
 from mocapd.control.status_report import starting_report, status_report
 from mocapd.errors import MocapdError, UnavailableError

@@ -2,7 +2,7 @@
 
 import logging
 
-from mocapd.control.messages import Trouble
+from mocapd.control.control_messages import Trouble
 
 _LONGEST = 1000  # characters
 

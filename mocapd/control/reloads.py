@@ -3,7 +3,7 @@
 import threading
 from dataclasses import dataclass, field
 
-from mocapd.control.messages import Reloaded
+from mocapd.control.control_messages import Reloaded
 from mocapd.errors import MocapdError, UnavailableError
 
 

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 import mocapd
 from mocapd.capture.capture_status import CaptureStatus
 from mocapd.config.sections import Config
-from mocapd.control.messages import (
+from mocapd.control.control_messages import (
     CalibrationReport,
     CameraStatusReport,
     OutputReport,

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus
-from mocapd.control.messages import StatusReport
+from mocapd.capture.webcam.webcam_listing import CameraInfo
+from mocapd.control.control_messages import StatusReport
 from mocapd.wizard.draft import DraftCamera
 
 

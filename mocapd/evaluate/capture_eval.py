@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.shape import BodyShape
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.record import Calibration
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.evaluate.recovery import recovery

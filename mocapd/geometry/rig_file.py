@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from mocapd.boundary.files import read_text
-from mocapd.boundary.messages import parse_json
 from mocapd.boundary.numbers import brief
+from mocapd.boundary.parsing import parse_json
 from mocapd.errors import ConfigError, MalformedError, NewerFileError
 from mocapd.geometry.rig_plausibility import require_plausible
 from mocapd.types import Camera, Floats, Rig

@@ -10,7 +10,7 @@ from typing import Annotated, Protocol, TypeVar
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.messages import decode_json, decode_msgpack
+from mocapd.boundary.parsing import decode_json, decode_msgpack
 from mocapd.errors import InputError, MalformedError
 
 SCHEMA = "mocapd.Skeleton.v1"

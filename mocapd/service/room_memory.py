@@ -14,8 +14,8 @@ import numpy as np
 from msgspec import Meta
 
 from mocapd.boundary.files import MissingError, read_file
-from mocapd.boundary.messages import decode_msgpack
 from mocapd.boundary.numbers import brief
+from mocapd.boundary.parsing import decode_msgpack
 from mocapd.calibrate.bump.landmarks import Landmarks, landmarks_at
 from mocapd.errors import InputError, MocapdError, NewerFileError
 from mocapd.set_aside import Why, set_aside

@@ -1,6 +1,6 @@
 """What the configuration itself knows."""
 
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.calibration.shirt_pictures import stroked_folder, stroked_image
 from mocapd.config.sections import CameraSection, ShirtSection
 from mocapd.shirt.colour.model_pictures import read_model

@@ -8,8 +8,8 @@ from pathlib import Path
 from mocapd.boundary.files import is_absent, is_folder
 from mocapd.boundary.urls import without_password
 from mocapd.calibration.calibration_file import FILE_NAME, calibration_path, read_calibration
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.calibration.from_saved import from_saved
-from mocapd.calibration.record import Calibration, Wearer
 from mocapd.calibration.saved_calibration import SavedCalibration, SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.file import size_error

@@ -10,8 +10,8 @@ from datetime import datetime
 from functools import partial
 
 from mocapd.body.shape import BodyShape
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.calibration.from_origin import from_origin
-from mocapd.calibration.record import Calibration
 from mocapd.capture.kinds.source_kinds import (
     cameras_of_origin,
     open_origin,

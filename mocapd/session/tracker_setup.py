@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mocapd.body.shape import BodyShape
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.rehearsal import rehearse
 from mocapd.session.side_by_side import aside, each_camera

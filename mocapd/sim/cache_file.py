@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 import msgspec
 
 from mocapd.boundary.files import read_file
-from mocapd.boundary.messages import decode_msgpack
+from mocapd.boundary.parsing import decode_msgpack
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.file_lock import one_at_a_time
 from mocapd.whole_file import whole_file

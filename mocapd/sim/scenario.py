@@ -10,8 +10,8 @@ import msgspec
 
 from mocapd.body.skeleton import INDEX
 from mocapd.boundary.files import read_text
-from mocapd.boundary.messages import convert, parse_toml
 from mocapd.boundary.numbers import check_numbers
+from mocapd.boundary.parsing import convert, parse_toml
 from mocapd.errors import ConfigError, MalformedError
 from mocapd.sim.person.poses import POSES
 from mocapd.sim.person_spec import (

@@ -1,7 +1,7 @@
 """What a tracker takes from the calibration: rig, stature, proportions; and the errors when it lacks them."""
 
 from mocapd.body.shape import BodyShape, mean_shape, measured_shape
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.errors import ConfigError
 from mocapd.types import Rig
 

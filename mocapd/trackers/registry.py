@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mocapd.boundary.files import is_absent, is_file
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.each import Aside, Each, at_once, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre

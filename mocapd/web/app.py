@@ -12,7 +12,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 import mocapd
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.games.frames_access import PATH as FRAMES_PATH
@@ -26,7 +26,7 @@ from mocapd.web.links.wizard_link import WizardLink
 from mocapd.web.metrics_access import PATH as METRICS_PATH
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
-from mocapd.web.status import SetupAnswer, SetupRequest, Status
+from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
 
 PAGE_DIR = Path(__file__).with_name("page")
 # given here, as what the system believes of a suffix differs, and nosniff is strict about scripts

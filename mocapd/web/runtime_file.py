@@ -20,12 +20,12 @@ import msgspec
 from msgspec import Meta
 
 from mocapd.boundary.files import read_file
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
 from mocapd.outputs.http_answer import read_body
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
-from mocapd.web.status import SetupAnswer, SetupRequest, Status
+from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
 from mocapd.whole_file import whole_file
 
 ADDRESS = "127.0.0.1"

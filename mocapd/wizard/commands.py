@@ -11,8 +11,8 @@ from typing import ClassVar
 
 import msgspec
 
-from mocapd.boundary.messages import convert
 from mocapd.boundary.numbers import brief
+from mocapd.boundary.parsing import convert
 from mocapd.errors import InputError, MalformedError
 
 

@@ -22,8 +22,8 @@ from mocapd.calibration.calibration_file import (
     read_calibration,
     write_calibration,
 )
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.calibration.from_saved import from_saved
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.pipeline.loop import OnDeath
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import AsksForPorts, PortChange

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 
 import zenoh
 
-from mocapd.boundary.messages import decode_msgpack
+from mocapd.boundary.parsing import decode_msgpack
 from mocapd.client import Link, connect
 from mocapd.outputs.messages import CameraStatus
 from mocapd.outputs.zenoh import keys

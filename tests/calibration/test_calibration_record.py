@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 
 from mocapd.calibration.calibration_file import read_calibration
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.calibration.from_saved import from_saved
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
 from mocapd.types import Camera, LabelledPicture, Rig
 
 OF_0_2 = """\

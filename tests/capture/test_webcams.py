@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from mocapd.capture.webcam.device_access import holders, how_to_be_let_in
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.listing import list_cameras
-from mocapd.capture.webcam.node_access import holders, how_to_be_let_in
 from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
 from mocapd.capture.webcam.v4l2 import V4l2Source
+from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import capture_nodes, find_webcam, video_nodes
 from mocapd.errors import UnavailableError
 from tests.capture.fake_sysfs import FakeMachine

@@ -10,8 +10,8 @@ import pytest
 
 from mocapd.app.terminal.status_text import duration, status_lines
 from mocapd.config.runtime_folder import runtime_folder
+from mocapd.control.control_messages import Recentered, Reloaded, StatusReport, Trouble, Verb
 from mocapd.control.control_socket import ControlSocket
-from mocapd.control.messages import Recentered, Reloaded, StatusReport, Trouble, Verb
 from mocapd.control.socket_place import service_sockets, socket_path
 from mocapd.errors import ConfigError
 from tests.cli.mocapd_process import Outcome, mocapd_here

@@ -11,7 +11,7 @@ import pytest
 from mocapd.body.bones import NAMES
 from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import joint_positions
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.trackers.base import Track, unprobed
 from mocapd.trackers.registry import TRACKERS, Resources, build
@@ -275,7 +275,7 @@ def test_an_unknown_tracker_is_an_error_that_names_the_known() -> None:
 def test_canned_needs_no_compiler_and_no_camera_library() -> None:
     code = (
         "import sys\n"
-        "from mocapd.calibration.record import Calibration, Wearer\n"
+        "from mocapd.calibration.calibration_record import Calibration, Wearer\n"
         "from mocapd.trackers.registry import Resources, build\n"
         "build('canned', Calibration(wearer=Wearer(1.7)), Resources())\n"
         "print(sorted({'numba', 'cv2', 'scipy'} & set(sys.modules)))\n"

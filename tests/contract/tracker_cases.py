@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of

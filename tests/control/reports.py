@@ -4,7 +4,7 @@ from typing import Any
 
 import msgspec
 
-from mocapd.control.messages import (
+from mocapd.control.control_messages import (
     CalibrationReport,
     CameraStatusReport,
     OutputReport,

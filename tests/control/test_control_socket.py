@@ -18,9 +18,9 @@ import pytest
 
 from mocapd.config.runtime_folder import folders_to_look_in, runtime_folder
 from mocapd.control.control_client import Found, RunningDaemon, running_daemons
+from mocapd.control.control_messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.control_socket import LONGEST_REQUEST, MOST_AT_ONCE, ControlSocket
 from mocapd.control.meant import why_none
-from mocapd.control.messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.socket_place import (
     closed_folders,
     service_sockets,

@@ -5,7 +5,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from mocapd.control.messages import Reloaded
+from mocapd.control.control_messages import Reloaded
 from mocapd.control.reloads import Reloads
 from mocapd.errors import ConfigError, UnavailableError
 from tests.outputs.frames import eventually

@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.control.last_trouble import LastTrouble
-from mocapd.control.messages import (
+from mocapd.control.control_messages import (
     CalibrationReport,
     CameraStatusReport,
     OutputReport,
     StatusReport,
     Trouble,
 )
+from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.status_report import status_report
 from mocapd.outputs import registry
 from mocapd.outputs.registry import OutputEntry

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.doctor.checks.calibration_checks import check_calibration
 from mocapd.doctor.checks.camera_checks import check_bandwidth, check_rights, check_webcams
 from mocapd.doctor.checks.storage_checks import check_folder, check_ports

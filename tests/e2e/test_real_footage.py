@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.capture.file import FileSource
 from mocapd.config.sections import CameraSection
 from mocapd.errors import EndOfStream

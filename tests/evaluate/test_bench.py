@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.shape import BodyShape, mean_shape
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.evaluate.bench.bench_endurance import endure
 from mocapd.evaluate.bench.bench_input import CHUNK, BenchInput
 from mocapd.evaluate.bench.bench_step import REST, bench_tracker

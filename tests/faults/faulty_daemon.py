@@ -15,7 +15,7 @@ from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
 from mocapd.app.daemon.daemon_pictures import RecordingHeader
-from mocapd.boundary.messages import decode_json, decode_msgpack
+from mocapd.boundary.parsing import decode_json, decode_msgpack
 from mocapd.client import Link
 from mocapd.client import connect as connect_to_bus
 from mocapd.outputs.messages import CameraStatus

@@ -9,7 +9,7 @@ from random import Random
 from mocapd.outputs.vrchat.host_info import ask_host_info
 from mocapd.web.runtime_file import Place as PagePlace
 from mocapd.web.runtime_file import announce, begin_setup, running, withdraw
-from mocapd.web.status import SetupAnswer, Status
+from mocapd.web.status_page import SetupAnswer, Status
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.network import own_ports
 from tests.fuzz.row import Attempt, Place, WrongError, named

@@ -9,8 +9,8 @@ from random import Random
 import cv2
 
 from mocapd.boundary.files import is_file, is_folder, read_file, read_text, user_path
-from mocapd.boundary.messages import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
+from mocapd.boundary.parsing import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.pictures import (
     decode_camera_picture,
     decode_picture,

@@ -5,10 +5,10 @@ from random import Random
 
 import msgspec
 
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
+from mocapd.control.control_messages import Answer, Reloaded, StatusReport, Verb
 from mocapd.control.control_socket import LONGEST_REQUEST, ControlSocket
 from mocapd.control.line import read_line
-from mocapd.control.messages import Answer, Reloaded, StatusReport, Verb
 from mocapd.control.socket_place import short_address, socket_path
 from mocapd.errors import MalformedError
 from tests.control.reports import report

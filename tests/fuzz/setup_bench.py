@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.boundary.messages import decode_json
-from mocapd.calibration.record import Calibration
+from mocapd.boundary.parsing import decode_json
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.identity import parse_identity
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.clock import monotonic_ns
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import CannotCreateError

@@ -10,7 +10,7 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import PARENTS
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.capture.capture_folder import sources_in_step
 from mocapd.capture.file import FileSource
 from mocapd.clock import seconds

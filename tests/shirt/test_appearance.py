@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt_patches import standard_shirt
-from mocapd.shirt.segmentation import appearance as looks
-from mocapd.shirt.segmentation.appearance import ShirtAppearance
+from mocapd.shirt.segmentation import shirt_appearance as looks
+from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.types import Floats
 
 MODEL_MEAN = standard_shirt().srgb / 255.0

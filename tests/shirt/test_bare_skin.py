@@ -5,7 +5,7 @@ import numpy as np
 from mocapd.body.arrays import plain
 from mocapd.body.shirt_patches import standard_shirt
 from mocapd.fit.solver import Fitter
-from mocapd.shirt.segmentation import appearance as looks
+from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.bare_skin import (
     face_disc,
     hand_sized,

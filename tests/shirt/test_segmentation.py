@@ -5,8 +5,8 @@ import pytest
 
 from mocapd.body.arrays import plain
 from mocapd.body.shirt_patches import standard_shirt
-from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation import bare_skin
+from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     FAR,

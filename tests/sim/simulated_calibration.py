@@ -1,6 +1,6 @@
 """What a user's calibration of the simulated rig would know, without a film."""
 
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.sim.setup_record import SimSetup
 
 

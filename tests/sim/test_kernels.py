@@ -12,7 +12,7 @@ from mocapd.geometry import rotations
 from mocapd.sim.person.dress_kernels import Dress
 from mocapd.sim.person.figure import build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, skin_vertices, vertex_normals
-from mocapd.sim.person.legs import leg_rotations
+from mocapd.sim.person.leg_shape import leg_rotations
 from mocapd.sim.person_spec import Clothes
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.geometry.nominal_rig import nominal_rig

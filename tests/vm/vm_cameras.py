@@ -20,8 +20,8 @@ from pathlib import Path
 from types import FrameType
 
 from mocapd.capture.thread import CaptureThread
-from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
+from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import capture_nodes
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.frame_hub import FrameHub

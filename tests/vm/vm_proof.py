@@ -24,9 +24,9 @@ from mocapd.capture.capture_status import CaptureState
 from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.controls import Controls
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.listing import list_cameras
 from mocapd.capture.webcam.usb_devices import usb_webcams
 from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
+from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import capture_nodes
 from mocapd.clock import monotonic_ns
 from mocapd.errors import MocapdError

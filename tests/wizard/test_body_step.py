@@ -9,7 +9,7 @@ import pytest
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.body_shape.body_observations import BodyObservationParams, BodyObservations
-from mocapd.calibration.record import Calibration, ShirtColours, Wearer
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import PoseDatabase

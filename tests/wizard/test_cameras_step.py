@@ -8,8 +8,8 @@ import pytest
 from mocapd.capture.webcam.camera_controls import Control
 from mocapd.capture.webcam.controls import Controls
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep

@@ -7,7 +7,7 @@ import pytest
 
 from mocapd.calibration.calibration_file import read_calibration
 from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
-from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
 from mocapd.wizard.cameras.cameras_verbs import CAMERAS, Lock
 from mocapd.wizard.cameras.found_cameras import plugged_cameras, where_now

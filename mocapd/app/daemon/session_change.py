@@ -14,7 +14,7 @@ from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.app.terminal.logs import set_up_logs
 from mocapd.config.effective import Effective
 from mocapd.config.live_changes import taken_live
-from mocapd.control.messages import Reloaded
+from mocapd.control.control_messages import Reloaded
 from mocapd.control.reloads import Reloads
 from mocapd.errors import MocapdError
 from mocapd.service.service import Service, Snapshot

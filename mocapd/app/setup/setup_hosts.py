@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
     """The cameras of the configuration, else all that are plugged in. Raises MocapdError."""
-    from mocapd.capture.webcam.listing import list_cameras
+    from mocapd.capture.webcam.webcam_listing import list_cameras
     from mocapd.wizard.cameras.found_cameras import (
         configured_cameras,
         identities,

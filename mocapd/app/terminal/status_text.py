@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterable
 
-from mocapd.control.messages import CameraStatusReport, OutputReport, StatusReport
+from mocapd.control.control_messages import CameraStatusReport, OutputReport, StatusReport
 from mocapd.errors import one_line
 
 _STATES = {

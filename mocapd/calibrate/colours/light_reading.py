@@ -22,8 +22,8 @@ from mocapd.fit.solver import Fit, View
 from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.shirt.segmentation.appearance import fresh
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
+from mocapd.shirt.segmentation.shirt_appearance import fresh
 from mocapd.trackers.colour import detection
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Bytes, Camera

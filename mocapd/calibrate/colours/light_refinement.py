@@ -18,9 +18,9 @@ from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
-from mocapd.shirt.segmentation.appearance import ShirtAppearance
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
+from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.trackers.colour.params import Params
 from mocapd.types import Camera
 

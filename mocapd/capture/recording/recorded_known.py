@@ -12,8 +12,8 @@ import cv2
 import msgspec
 
 from mocapd.boundary.mcap_records import McapAttachment
-from mocapd.boundary.messages import decode_json
 from mocapd.boundary.numbers import finite_number
+from mocapd.boundary.parsing import decode_json
 from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError

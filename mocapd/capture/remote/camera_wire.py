@@ -10,7 +10,7 @@ from typing import Annotated, Literal, TypeVar
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.messages import decode_msgpack
+from mocapd.boundary.parsing import decode_msgpack
 from mocapd.capture.webcam.camera_controls import Control
 from mocapd.errors import MalformedError
 

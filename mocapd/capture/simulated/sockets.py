@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 
 from mocapd.boundary.files import read_file
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MalformedError, UnavailableError
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Protocol
 
-from mocapd.capture.webcam.node_access import opened_node
+from mocapd.capture.webcam.device_access import opened_node
 from mocapd.capture.webcam.v4l2_ioctl import ControlRange, get_control, query_control, set_control
 from mocapd.errors import UnavailableError
 

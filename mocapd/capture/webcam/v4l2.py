@@ -23,8 +23,8 @@ from mocapd.capture.webcam.controls import (
     apply_controls,
     apply_unknown_to_opencv,
 )
+from mocapd.capture.webcam.device_access import check_usable, opened_node
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.node_access import check_usable, opened_node
 from mocapd.capture.webcam.webcams import DEV, SYSFS, find_webcam
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, MalformedError, UnavailableError

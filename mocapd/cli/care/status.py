@@ -10,7 +10,7 @@ from mocapd.cli.watch import link_of
 
 if TYPE_CHECKING:
     from mocapd.client import Link
-    from mocapd.control.messages import StatusReport
+    from mocapd.control.control_messages import StatusReport
 
 # As of an init script's `status` (LSB), where 150 to 199 are the program's own.
 ABLE = 0

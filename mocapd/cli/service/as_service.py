@@ -27,6 +27,6 @@ def as_service(
 
     Example: sudo mocapd as-service calibrate
     """
-    from mocapd.app.install.as_service import become
+    from mocapd.app.install.service_user import become
 
     become(rig, words)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from mocapd.capture.kinds.source_kinds import is_settable
-from mocapd.capture.webcam.listing import CameraInfo
-from mocapd.control.messages import StatusReport
+from mocapd.capture.webcam.webcam_listing import CameraInfo
+from mocapd.control.control_messages import StatusReport
 from mocapd.doctor.facts import CameraFacts, UserFacts
 from mocapd.doctor.finding import Finding, bad, ok, warn
 from mocapd.wizard.cameras.camera_nodes import node_of

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from mocapd.control.messages import StatusReport
+from mocapd.control.control_messages import StatusReport
 from mocapd.doctor.facts import FolderFacts, PortFacts
 from mocapd.doctor.finding import Finding, bad, ok, warn
 

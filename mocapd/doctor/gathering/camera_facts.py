@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from mocapd.boundary.urls import without_password
-from mocapd.capture.webcam.listing import CameraInfo, list_cameras
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus, crowded_buses
 from mocapd.capture.webcam.v4l2 import WebcamSettings
+from mocapd.capture.webcam.webcam_listing import CameraInfo, list_cameras
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import CameraFacts
 from mocapd.session.saved_session import LoadedCalibration

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.calibration.from_origin import from_origin
-from mocapd.calibration.record import Calibration
 from mocapd.capture.kinds.source_kinds import is_simulated, open_origin
 from mocapd.session.tracker_setup import Progress
 from mocapd.types import FrameSet

@@ -12,7 +12,7 @@ from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.rays_in_other_kernels import distances_of_triangles, shown_on_rays
 from mocapd.fit.terms.distance_term import MeasuredDistances
-from mocapd.fit.terms.sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
+from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Ints

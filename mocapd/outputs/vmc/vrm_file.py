@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Meta
 
 from mocapd.boundary.files import read_beginning
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import InputError, MalformedError
 from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.outputs.vmc.bone_names import vrm1_name

@@ -15,7 +15,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, UnavailableError
 from mocapd.outputs.http_answer import read_body
 

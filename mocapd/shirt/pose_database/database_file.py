@@ -17,7 +17,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.boundary.messages import parse_json
+from mocapd.boundary.parsing import parse_json
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.file_lock import one_at_a_time
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME

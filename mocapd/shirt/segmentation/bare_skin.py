@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry.camera_model import project
-from mocapd.shirt.segmentation import appearance_kernels as kernels
+from mocapd.shirt.segmentation import shirt_appearance_kernels as kernels
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 Disc = tuple[float, float, float]  # x, y, radius [work px]

@@ -13,9 +13,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.white_balance import remember_illumination
-from mocapd.shirt.segmentation import appearance as looks
 from mocapd.shirt.segmentation import bare_skin
-from mocapd.shirt.segmentation.appearance import ShirtAppearance
+from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
@@ -31,6 +30,7 @@ from mocapd.shirt.segmentation.segmentation_kernels import (
     count_colours,
 )
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
+from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.types import Bytes, Camera, Floats, Ints, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background

@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local
 from mocapd.geometry import rotations
 from mocapd.sim.person.footsteps import FootTrack, foot_tracks
-from mocapd.sim.person.legs import leg_rotations
+from mocapd.sim.person.leg_shape import leg_rotations
 from mocapd.sim.person.poses import POSES, ArmDirections
 from mocapd.sim.person_spec import PoseKeyframe
 from mocapd.sim.scenario import Scenario

@@ -1,6 +1,6 @@
 """Make a colour tracker from what is known of rig, wearer and shirt, and the pose database."""
 
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.each import Each, in_turn
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase

@@ -1,6 +1,6 @@
 """Make a tracker of the published method from what is known of rig, wearer and shirt, and the pose database."""
 
-from mocapd.calibration.record import Calibration, ShirtColours
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.trackers.colour_paper.params import Params, published

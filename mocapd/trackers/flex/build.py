@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.each import Each, in_turn
 from mocapd.trackers.base import no_time_passes
 from mocapd.trackers.flex.params import Params

@@ -7,7 +7,7 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
 from mocapd.clock import seconds
 from mocapd.fit.solver import Fitter
-from mocapd.trackers.flex.confidence import joint_confidence
+from mocapd.trackers.flex.limb_confidence import joint_confidence
 from mocapd.trackers.flex.memory import Followed
 from mocapd.trackers.flex.params import Params
 from mocapd.trackers.flex.rescue.seen_pose import WHOLE

@@ -1,6 +1,6 @@
 """Make the published tracker from what is known of rig and person."""
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.trackers.flex_paper.params import Params
 from mocapd.trackers.flex_paper.tracker import FlexPaperTracker
 from mocapd.trackers.known import known_rig, stature_m

@@ -36,10 +36,10 @@ from mocapd.fit.mass_spring.simulation import (
 from mocapd.fit.mass_spring.skeleton_conversion import points_from_skeleton, skeleton_from_points
 from mocapd.geometry.camera_model import centre
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.trackers.flex_paper.confidence import joint_confidence, joint_uncertainty_m
 from mocapd.trackers.flex_paper.head_of_standing import StandingHead, head_of_standing
 from mocapd.trackers.flex_paper.paper_views import PaperViews
 from mocapd.trackers.flex_paper.params import Params
+from mocapd.trackers.flex_paper.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.trackers.flex_paper.stances import stances_of
 from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking

@@ -14,7 +14,7 @@ import msgspec
 from msgspec import Meta
 from starlette.websockets import WebSocket
 
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError, Problem
 from mocapd.web.host import Host
 from mocapd.web.links.socket_link import MOST_HZ, received, send_json, serve

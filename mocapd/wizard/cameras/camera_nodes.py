@@ -8,8 +8,8 @@ from pathlib import Path
 
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.kinds.source_kinds import identity_of
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.capture.webcam.webcams import SYSFS
 from mocapd.errors import Problem
 from mocapd.wizard.draft import DraftCamera

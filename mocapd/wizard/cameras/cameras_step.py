@@ -14,8 +14,8 @@ from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.light.light_check import light_problems
 from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.webcam.listing import CameraInfo
 from mocapd.capture.webcam.usb_bandwidth import Mode
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.clock import NS_PER_S
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.camera_trouble import too_few_cameras

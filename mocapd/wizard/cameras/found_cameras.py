@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.config.sections import CameraSection
 from mocapd.errors import UnavailableError
 from mocapd.session.camera_inputs import picture_size

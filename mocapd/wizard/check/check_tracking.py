@@ -6,7 +6,7 @@ from pathlib import Path
 
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub

@@ -11,7 +11,7 @@ from mocapd.calibrate.self_calibration.joint_solver import SelfCalibrationReport
 from mocapd.calibrate.self_calibration.patch_tracks import PatchTracks, place_nominally
 from mocapd.calibrate.self_calibration.self_calibration import extrinsics_from_body
 from mocapd.calibrate.self_calibration.walk_coverage import Coverage, WalkParams
-from mocapd.calibration.record import ShirtColours
+from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import from_camera

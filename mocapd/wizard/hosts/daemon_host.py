@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.calibration.record import ShirtColours
+from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.capture.kinds.source_kinds import is_simulated
 from mocapd.capture.recording.recorded_known import RecordedKnown
-from mocapd.capture.webcam.listing import list_cameras
+from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError

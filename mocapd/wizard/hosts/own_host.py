@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mocapd.capture.base import Source
 from mocapd.capture.recording.recorded_known import RecordedKnown
-from mocapd.capture.webcam.listing import CameraInfo
+from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import MocapdError
 from mocapd.latch import Latch
 from mocapd.pipeline.body_hub import BodySample

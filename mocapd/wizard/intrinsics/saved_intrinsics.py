@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from mocapd.boundary.files import MissingError, read_text
-from mocapd.boundary.messages import convert, parse_toml
+from mocapd.boundary.parsing import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
 from mocapd.capture.kinds.source_kinds import identity_of

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.app.install.as_service import become, call_like, main_pid, unit_of
+from mocapd.app.install.service_user import become, call_like, main_pid, unit_of
 from mocapd.errors import ConfigError, PermissionDeniedError, UnavailableError
 
 NO_PID = 2**22 + 1  # more than any machine gives

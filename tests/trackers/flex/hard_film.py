@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World

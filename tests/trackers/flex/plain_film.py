@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World

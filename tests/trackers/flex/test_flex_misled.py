@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.bump.changed_places import Places, places_of
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.clock import nanoseconds
 from mocapd.trackers.base import Track, Tracker
 from mocapd.trackers.flex.build import build_flex_tracker

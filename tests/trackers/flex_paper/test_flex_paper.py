@@ -9,7 +9,7 @@ from mocapd.fit.mass_spring.mass_spring_body import build_body
 from mocapd.fit.mass_spring.simulation import relaxed
 from mocapd.trackers.base import Track
 from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
-from mocapd.trackers.flex_paper.confidence import joint_confidence, joint_uncertainty_m
+from mocapd.trackers.flex_paper.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.trackers.flex_paper.stances import stances_of
 from mocapd.trackers.known import known_shape
 from mocapd.types import FrameSet, Tracking

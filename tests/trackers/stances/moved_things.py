@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 import numpy as np
 
-from mocapd.calibration.record import Calibration
+from mocapd.calibration.calibration_record import Calibration
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.scenario import Scenario, Thing
 from mocapd.sim.setup import setup_of

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibration.record import Calibration, Wearer
+from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME

@@ -9,7 +9,7 @@ import platformdirs
 
 from goalkeeper.core.scoring import Score
 from mocapd.boundary.files import read_text
-from mocapd.boundary.messages import decode_json
+from mocapd.boundary.parsing import decode_json
 from mocapd.errors import CannotCreateError, InputError, MocapdError
 from mocapd.whole_file import whole_file
 

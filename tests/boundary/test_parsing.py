@@ -5,7 +5,6 @@ import math
 import msgspec
 import pytest
 
-from mocapd.boundary import messages
 from mocapd.errors import MalformedError
 
 
@@ -28,18 +27,18 @@ class Command(msgspec.Struct):
 )
 def test_a_bad_json_message_is_malformed(data: bytes) -> None:
     with pytest.raises(MalformedError):
-        messages.decode_json(data, Command)
+        parsing.decode_json(data, Command)
 
 
 def test_a_good_json_message_is_its_value() -> None:
-    got = messages.decode_json(b'{"verb": "go", "args": {"a": [[1], [2]]}}', Command)
+    got = parsing.decode_json(b'{"verb": "go", "args": {"a": [[1], [2]]}}', Command)
     assert got == Command("go", {"a": [[1], [2]]})
 
 
 @pytest.mark.parametrize("data", [b"", b"\x91" * 100_000, b"\xd9\x05abc", b"\x81\xa1\xff\x01"])
 def test_bad_msgpack_is_malformed(data: bytes) -> None:
     with pytest.raises(MalformedError):
-        messages.decode_msgpack(data, Command)
+        parsing.decode_msgpack(data, Command)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +46,7 @@ def test_bad_msgpack_is_malformed(data: bytes) -> None:
 )
 def test_a_bad_json_file_is_malformed(text: str) -> None:
     with pytest.raises(MalformedError):
-        messages.parse_json(text)
+        parsing.parse_json(text)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +55,7 @@ def test_a_bad_json_file_is_malformed(text: str) -> None:
 )
 def test_a_bad_toml_file_is_malformed(text: str) -> None:
     with pytest.raises(MalformedError):
-        messages.parse_toml(text)
+        parsing.parse_toml(text)
 
 
 @pytest.mark.parametrize(
@@ -72,21 +71,21 @@ def test_a_bad_toml_file_is_malformed(text: str) -> None:
 )
 def test_a_dotted_key_of_many_parts_is_refused_before_it_is_parsed(text: str) -> None:
     with pytest.raises(MalformedError, match="a key of more than 32 parts"):
-        messages.parse_toml(text)
+        parsing.parse_toml(text)
 
 
 def test_a_dotted_key_of_few_parts_is_read() -> None:
-    assert messages.parse_toml("'a=1'.b.\"c.d\" = [1.5, 2.5]") == {
+    assert parsing.parse_toml("'a=1'.b.\"c.d\" = [1.5, 2.5]") == {
         "a=1": {"b": {"c.d": [1.5, 2.5]}}
     }
 
 
 def test_the_place_of_a_mistake_in_toml_is_told() -> None:
     with pytest.raises(MalformedError, match="line 2"):
-        messages.parse_toml("a = 1\nb = ?\n")
+        parsing.parse_toml("a = 1\nb = ?\n")
 
 
 @pytest.mark.parametrize("tree", [{}, {"verb": 10**400}, {"verb": math.inf}])
 def test_a_tree_of_another_form_is_malformed(tree: object) -> None:
     with pytest.raises(MalformedError):
-        messages.convert(tree, Command)
+        parsing.convert(tree, Command)

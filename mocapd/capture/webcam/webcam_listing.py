@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mocapd.capture.webcam.device_access import check_usable, opened_node
 from mocapd.capture.webcam.identity import WebcamIdentity
-from mocapd.capture.webcam.node_access import check_usable, opened_node
 from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
 from mocapd.capture.webcam.v4l2_ioctl import (
     CAP_VIDEO_CAPTURE,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.shirt.segmentation import appearance_kernels as kernels
+from mocapd.shirt.segmentation import shirt_appearance_kernels as kernels
 from mocapd.types import Floats, Singles
 
 N = 10
