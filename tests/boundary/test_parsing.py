@@ -5,6 +5,7 @@ import math
 import msgspec
 import pytest
 
+from mocapd.boundary import parsing
 from mocapd.errors import MalformedError
 
 
