@@ -41,7 +41,7 @@ class ViewWatch:
         self._is_collecting = bool(self._sizes)
         self._stopping = threading.Event()
         self._result = CheckResult()
-        self._thread = threading.Thread(target=self._run, name="views", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="views")
 
     def start(self) -> None:
         """Begin to collect; returns at once."""
