@@ -76,9 +76,7 @@ def test_a_dotted_key_of_many_parts_is_refused_before_it_is_parsed(text: str) ->
 
 
 def test_a_dotted_key_of_few_parts_is_read() -> None:
-    assert parsing.parse_toml("'a=1'.b.\"c.d\" = [1.5, 2.5]") == {
-        "a=1": {"b": {"c.d": [1.5, 2.5]}}
-    }
+    assert parsing.parse_toml("'a=1'.b.\"c.d\" = [1.5, 2.5]") == {"a=1": {"b": {"c.d": [1.5, 2.5]}}}
 
 
 def test_the_place_of_a_mistake_in_toml_is_told() -> None:
