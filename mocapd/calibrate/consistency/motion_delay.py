@@ -24,7 +24,11 @@ _FAST_S, _SLOW_S = 0.04, 0.27  # the band of motion that is compared
 _BLOCKS = 8
 _LEAST_S = 3.0  # of a common recording, besides what delays cut off
 _PEAK_S = 0.1  # about a peak of correlation, which is no rival of itself
-_LEAST_PEAK, _CLEAR = 0.35, 0.85  # correlation of two cameras that count, and of its next best at most
+_EDGE_S = 0.05  # a peak nearer to the last trial delay may lie beyond it
+_LEAST_PEAK, _CLEAR = (
+    0.35,
+    0.85,
+)  # correlation of two cameras that count, and of its next best at most
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,7 +141,8 @@ def _weights(lags_s: Floats, curves: Floats) -> Floats:
         k = int(curves[i, j].argmax())
         peak = float(curves[i, j, k])
         rival = float(curves[i, j][np.abs(lags_s - lags_s[k]) > _PEAK_S].max())
-        if peak > _LEAST_PEAK and rival < _CLEAR * peak:
+        inside = abs(lags_s[k]) < lags_s[-1] - _EDGE_S
+        if inside and peak > _LEAST_PEAK and rival < _CLEAR * peak:
             out[i, j] = out[j, i] = peak * (peak - max(rival, 0.0))
     return out
 
