@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.joint_scale import scaled_findings
 from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
     PersonFinder,
@@ -148,7 +149,10 @@ class CaptureCheck:
                 sum(1 for one in stretches if one[0]),
             )
         verdict = judge(cameras, stretches, times.moves_alike)
-        findings = with_the_room(cameras, [one.newest for one in there], verdict.findings)
+        pictures = [one.newest for one in there]
+        findings = with_the_room(cameras, pictures, verdict.findings)
+        if not findings and (scaled := scaled_findings(cameras, stretches)):
+            findings = with_the_room(cameras, pictures, scaled)
         if any(not one.is_mended for one in late):
             # views of different instants contradict each other for no other reason
             findings = tuple(one for one in findings if one.mistake not in _BY_TIME)

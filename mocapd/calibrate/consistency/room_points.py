@@ -105,11 +105,7 @@ def _best_change(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], index: int, flip: float
 ) -> PictureChange:
     """By RANSAC, how pictures of the one camera, mirrored first where flip is -1, have to be scaled and shifted."""
-    shown, lines = _equations(cameras, px, index)
-    shown = shown * np.array([flip, 1.0])
-    # s (l . p) + l_x c_x + l_y c_y + l_z = 0
-    A = np.concatenate([(lines[:, :2] * shown).sum(axis=1, keepdims=True), lines[:, :2]], axis=1)
-    b = -lines[:, 2]
+    A, b = epipolar_equations(cameras, px, index, flip)
     rng = np.random.default_rng(0)
     ids = rng.integers(0, len(A), (_TRIALS, 3))
     solved = _solved(A[ids], b[ids])
@@ -148,18 +144,20 @@ def _best_scale(
     return PictureChange(scaled, float(_TRIED_SCALES[k]), False, False, True, counts[k])
 
 
-def _equations(
-    cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], index: int
+def epipolar_equations(
+    cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], index: int, flip: float = 1.0
 ) -> tuple[Floats, Floats]:
-    """Of one camera, where matches are (N,2), normalised, and the epipolar lines (N,3) of the other one's, of unit
-    length."""
+    """A (N,3), b (N,): A (s, x, y) = b holds for matches (N,2) [px] if what the one camera shows, mirrored where flip is -1,
+    has to be scaled by s about its principal point and shifted by x, y [focal lengths]. Residuals are angles [rad]."""
     mine, other = cameras[index], cameras[1 - index]
     xy = normalised(other, px[1 - index])
     ray = np.concatenate([xy, np.ones((len(xy), 1))], axis=1) @ other.R
     normal = np.cross(np.broadcast_to(centre(other) - centre(mine), ray.shape), ray)
     lines = normal @ mine.R.T
     lines /= np.maximum(np.linalg.norm(lines, axis=1, keepdims=True), 1e-12)
-    return normalised(mine, px[index]), lines
+    shown = normalised(mine, px[index]) * np.array([flip, 1.0])
+    along = (lines[:, :2] * shown).sum(axis=1, keepdims=True)
+    return np.concatenate([along, lines[:, :2]], axis=1), -lines[:, 2]
 
 
 def _solved(A: Floats, b: Floats) -> Floats:
