@@ -153,6 +153,11 @@ class CaptureCheck:
         findings = with_the_room(cameras, pictures, verdict.findings)
         if not findings and (scaled := scaled_findings(cameras, stretches)):
             findings = with_the_room(cameras, pictures, scaled)
+        if not findings and not all(times.moves_alike):
+            # cameras in their places that show another time
+            findings = tuple(
+                one for one in verdict.findings if one.mistake is Mistake.CONTRADICTION
+            )
         if any(not one.is_mended for one in late):
             # views of different instants contradict each other for no other reason
             findings = tuple(one for one in findings if one.mistake not in _BY_TIME)

@@ -179,4 +179,5 @@ def _agree(A: Floats, b: Floats, solved: Floats) -> np.ndarray:
 def _fitting_anything(px: tuple[Floats, Floats]) -> int:
     """How many matches one fundamental matrix explains."""
     _, mask = cv2.findFundamentalMat(px[0], px[1], cv2.USAC_MAGSAC, _FREE_OFF_PX, 0.999, 5000)
-    return 0 if mask is None else int(np.count_nonzero(mask))
+    # None where nothing fits, whatever OpenCV's stubs say
+    return int(np.count_nonzero(np.asarray(mask) == 1))
