@@ -173,11 +173,11 @@ def test_views_of_two_rooms_contradict_each_other() -> None:
     assert verdict.off_m > 0.03
 
 
-def test_a_zoom_of_a_quarter_shows_in_where_joints_meet_and_none_does_not() -> None:
+def test_a_zoom_of_an_eighth_shows_in_where_joints_meet_and_none_does_not() -> None:
     cameras = RIGS["pair"]
     seen = stretches(cameras)
     assert scaled_findings(cameras, seen) == ()
-    larger = [[one[0], [zoomed(one[1][0], (320.0, 240.0), 1.25)]] for one in seen]
+    larger = [[one[0], [zoomed(one[1][0], (320.0, 240.0), 1.12)]] for one in seen]
     [finding] = scaled_findings(cameras, larger)
     assert finding.mistake is Mistake.ZOOMED
     assert "larger in those of 'right'" in finding.what

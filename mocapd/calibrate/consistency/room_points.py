@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from mocapd.calibrate.bump.changed_places import PlacesParams, fitting_points
 from mocapd.geometry.camera_model import centre, normalised
 from mocapd.types import Camera, Floats
 
@@ -21,8 +20,8 @@ _TRIALS = 400
 _SCALES = (0.35, 3.0)  # of pictures that somebody may have made so
 _SHIFT = 0.4  # of pictures, in focal lengths: one standard deviation before anything is known
 _LEAST_MATCHES = 12
-_LEAST, _TIMES = 18, 4.0  # matches that a change explains, and as many times as fit as given
-_LEAST_CENTRAL = 12  # of a change of one number
+_LEAST, _TIMES = 25, 6.0  # matches that a change explains, and as many times as fit as given
+_LEAST_CENTRAL = 20  # of a change of one number
 _SHARE = 0.25  # of all matches, that a change explains
 _TRIED_SCALES = np.exp(np.linspace(np.log(0.4), np.log(2.5), 185))
 _AS_WELL = 0.9  # of the matches that the best change explains: it may be the one as well
@@ -71,7 +70,7 @@ def judge_room(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> Roo
     matches = len(px[0])
     if matches < _LEAST_MATCHES:
         return RoomVerdict(matches, 0, 0, None)
-    given = fitting_points(cameras, px, PlacesParams())
+    given = _given(cameras, px)
     if given > matches / _TIMES:
         return RoomVerdict(matches, given, given, None)
     free = _fitting_anything(px)
@@ -79,6 +78,15 @@ def judge_room(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> Roo
     found += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
     sure = [one for one in found if _is_sure(one, matches, given)]
     return RoomVerdict(matches, given, free, _likeliest(sure) if sure else None)
+
+
+def _given(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> int:
+    """Matches on each other's epipolar lines, in either picture, in whatever unit and with whatever axes the rig is."""
+    off = []
+    for index in (0, 1):
+        A, b = epipolar_equations(cameras, px, index)
+        off.append(np.abs(A[:, 0] - b))
+    return int(np.count_nonzero(np.minimum(*off) < _OFF))
 
 
 def _is_sure(change: PictureChange, matches: int, given: int) -> bool:
