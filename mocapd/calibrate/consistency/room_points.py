@@ -25,11 +25,8 @@ _LEAST_CENTRAL = 20  # of a change of one number
 _SHARE = 0.25  # of all matches, that a change explains
 _TRIED_SCALES = np.exp(np.linspace(np.log(0.4), np.log(2.5), 185))
 _AS_WELL = 0.9  # of the matches that the best change explains: it may be the one as well
-_FREE_LEAST, _FREE_SHARE, _FREE_GIVEN = (
-    25,
-    0.6,
-    0.25,
-)  # matches of some geometry; of all; of these as given
+# Matches that some geometry of two cameras explains, as a share of all, and of these the share as given
+_FREE_LEAST, _FREE_SHARE, _FREE_GIVEN = 50, 0.6, 0.12
 _FREE_OFF_PX = 1.5
 
 
