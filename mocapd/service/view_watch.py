@@ -38,6 +38,7 @@ class ViewWatch:
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
         self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
+        self._newest: dict[str, Frame] = {}
         self._is_collecting = bool(self._sizes)
         self._stopping = threading.Event()
         self._result = CheckResult()
@@ -60,6 +61,7 @@ class ViewWatch:
         step = max(1, max(self._sizes[frame.camera]) // WORK_PX)
         small = np.ascontiguousarray(frame.pixels[step // 2 :: step, step // 2 :: step])
         self._waiting.append((frame.camera, frame.t_ns, small, float(step)))
+        self._newest[frame.camera] = frame
 
     @property
     def off_m(self) -> float:
@@ -106,6 +108,9 @@ class ViewWatch:
                 first_s = t_s if first_s is None else first_s
             if first_s is not None and (check.has_enough or t_s - first_s > self._longest_s):
                 self._is_collecting = False
+                for camera in self._sizes:
+                    if camera in self._newest:
+                        check.put_whole(self._newest.pop(camera))
                 return check.result()
         return None
 

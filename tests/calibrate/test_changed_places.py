@@ -4,11 +4,15 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 
 from mocapd.calibrate.bump.changed_places import Places, places_of
 from mocapd.calibrate.bump.places_watch import PlacesWatch
+from mocapd.calibrate.consistency.findings import Mistake
+from mocapd.calibrate.consistency.hypotheses import exchanged_finding
+from mocapd.calibrate.consistency.room_judge import with_the_room
 from mocapd.clock import nanoseconds
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World
@@ -53,6 +57,21 @@ def test_cameras_that_see_different_rooms_tell_nothing() -> None:
     dark = np.zeros_like(a)
     for other in (noise, dark, np.ascontiguousarray(a[::-1])):
         assert places_of(cameras, (a, other)) is Places.UNKNOWN
+
+
+def test_the_room_says_that_a_picture_was_cut_and_takes_back_what_it_contradicts() -> None:
+    cameras, (a, b) = room("close")
+    exchanged = exchanged_finding(*(camera.name for camera in cameras))
+    assert with_the_room(cameras, (a, b), ()) == ()
+    assert with_the_room(cameras, (a, b), (exchanged,)) == ()
+    assert with_the_room(cameras, (a, None), (exchanged,)) == (exchanged,)
+    [finding] = with_the_room(cameras, (b, a), ())
+    assert finding.mistake is Mistake.EXCHANGED
+    h, w = b.shape[:2]
+    cut = np.asarray(cv2.resize(b[: h * 3 // 4, : w * 3 // 4], (w, h)), np.uint8)
+    [finding] = with_the_room(cameras, (a, cut), ())
+    assert finding.mistake is Mistake.ZOOMED
+    assert "points of the room" in finding.what
 
 
 def newest(pictures: tuple[Bytes, Bytes], at_s: float) -> dict[str, Frame]:

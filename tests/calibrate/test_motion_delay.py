@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.consistency.findings import Mistake
+from mocapd.calibrate.consistency.findings import Finding, Mistake
 from mocapd.calibrate.consistency.motion_delay import MotionMeter, MotionSignal, camera_delays
-from mocapd.calibrate.consistency.time_judge import CameraTiming, late_findings
+from mocapd.calibrate.consistency.time_judge import CameraTiming, judge_times
 from mocapd.types import Floats
 
 HZ = 30.0
@@ -33,6 +33,10 @@ def timings(*signals: MotionSignal) -> list[CameraTiming]:
     return [CameraTiming(f"cam{k}", one, 1.0 / HZ) for k, one in enumerate(signals)]
 
 
+def late_findings(cameras: list[CameraTiming]) -> tuple[Finding, ...]:
+    return judge_times(cameras).findings
+
+
 @pytest.mark.parametrize("frames", [-10.0, -3.0, -1.0, 1.0, 2.5, 6.0, 10.0])
 def test_a_delay_is_found_to_a_quarter_of_a_frame(frames: float) -> None:
     [finding] = late_findings(timings(signal(0.0, 1), signal(frames / HZ, 2)))
@@ -54,6 +58,27 @@ def test_cameras_in_step_of_other_rates_or_that_see_other_things_give_no_finding
     noise = MotionSignal(signal(0.0, 1).times_s, np.random.default_rng(9).standard_normal(300))
     assert late_findings(timings(signal(0.0, 1), noise)) == ()
     assert camera_delays([signal(0.0, 1, 1.0), signal(0.0, 2, 1.0)]) == [None, None]
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_a_recording_of_another_rate_than_its_times_say_is_named(count: int) -> None:
+    slow = signal(0.0, 2, hz=24.0)
+    stamped = MotionSignal(np.arange(len(slow.times_s)) / HZ, slow.change)
+    right = [signal(0.0, 10 + k) for k in range(count - 1)]
+    [finding] = late_findings(timings(*right, stamped))
+    assert f"cam{count - 1}" in finding.cameras
+    assert count == 2 or len(finding.cameras) == 1
+    assert not finding.is_mended
+    assert "rate" in finding.what
+
+
+def test_a_camera_that_sees_something_else_hides_no_delay_of_the_others() -> None:
+    other = MotionSignal(signal(0.0, 1).times_s, np.random.default_rng(9).standard_normal(300))
+    verdict = judge_times(timings(signal(0.0, 1), other, signal(0.3, 2), signal(0.0, 3)))
+    [finding] = verdict.findings
+    assert finding.cameras == ("cam2",)
+    assert finding.late_s == pytest.approx(0.3, abs=0.01)
+    assert verdict.moves_alike == (True, False, True, True)
 
 
 def test_frames_that_were_dropped_on_the_way_are_not_one_delay() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.consistency.findings import Mistake
+from mocapd.calibrate.consistency.joint_scale import scaled_findings
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
 from mocapd.calibrate.consistency.view_agreement import mirrored, upside_down, zoomed
@@ -170,6 +171,36 @@ def test_views_of_two_rooms_contradict_each_other() -> None:
     verdict = judge(cameras, seen)
     assert verdict.findings
     assert verdict.off_m > 0.03
+
+
+def test_a_zoom_of_an_eighth_shows_in_where_joints_meet_and_none_does_not() -> None:
+    cameras = RIGS["pair"]
+    seen = stretches(cameras)
+    assert scaled_findings(cameras, seen) == ()
+    larger = [[one[0], [zoomed(one[1][0], (320.0, 240.0), 1.12)]] for one in seen]
+    [finding] = scaled_findings(cameras, larger)
+    assert finding.mistake is Mistake.ZOOMED
+    assert "larger in those of 'right'" in finding.what
+
+
+def test_views_that_disagree_a_little_contradict_where_nothing_moves_alike() -> None:
+    cameras = RIGS["pair"]
+    swung = [
+        cameras[0],
+        looking_at("right", np.array([1.35, 1.4, 2.6]), np.array([0.05, 0.93, 0.0])),
+    ]
+    assert judge(swung, stretches(cameras), (True, True)).findings == ()
+    [finding] = judge(swung, stretches(cameras), (False, False)).findings
+    assert finding.mistake is Mistake.CONTRADICTION
+    assert "does not move at the same times" in finding.what
+
+
+def test_who_bends_down_in_one_stretch_is_no_turned_picture() -> None:
+    cameras = RIGS["pair"][:1]
+    upright = [one[0][0] for one in stretches(cameras)]
+    bent = upside_down(upright[0], (640, 480))
+    assert turned_views(cameras, [[bent, *upright[1:]]]) == ()
+    assert turned_views(cameras, [[bent]]) == ()
 
 
 def test_people_who_lie_in_one_cameras_pictures_are_told_of() -> None:

@@ -45,16 +45,23 @@ def places_of(
 ) -> Places:
     """Of two cameras and what they deliver (h,w,3) BGR, each of its camera's size."""
     p = params if params is not None else PlacesParams()
-    here, there = _matches(pictures, p)
-    if len(here) < p.least:
+    features = room_features(pictures[0], p), room_features(pictures[1], p)
+    return places_by_matches(cameras, matching_points(features, p), p)
+
+
+def places_by_matches(
+    cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], params: PlacesParams
+) -> Places:
+    """The same of matches (N,2) and (N,2) [px] that are known."""
+    if len(px[0]) < params.least:
         return Places.UNKNOWN
 
     def decides(fitting: int, otherwise: int) -> bool:
-        return fitting >= p.least and fitting > p.times * (otherwise + 1)
+        return fitting >= params.least and fitting > params.times * (otherwise + 1)
 
     first, second = cameras
-    straight = _fitting(first, here, second, there, p)
-    crossed = _fitting(second, here, first, there, p)
+    straight = fitting_points((first, second), px, params)
+    crossed = fitting_points((second, first), px, params)
     if decides(straight, crossed):
         return Places.RIGHT
     if decides(crossed, straight):
@@ -62,23 +69,45 @@ def places_of(
     return Places.UNKNOWN
 
 
-def _matches(pictures: tuple[Bytes, Bytes], params: PlacesParams) -> tuple[Floats, Floats]:
-    """Places (N,2) [px] of what looks alike in both pictures, and in each like nothing else."""
+@dataclass(frozen=True, slots=True, eq=False)
+class RoomFeatures:
+    """Of one picture: where features are (N,2) [px], and what describes them (N,128)."""
+
+    px: Floats
+    described: Floats
+
+
+def room_features(picture: Bytes, params: PlacesParams) -> RoomFeatures:
+    """Of a picture (h,w,3) BGR."""
     found = cv2.SIFT.create(nfeatures=params.features)
     # without a feature there is no description, whatever OpenCV's stubs say
-    described: list[Any] = [
-        found.detectAndCompute(cv2.cvtColor(one, cv2.COLOR_BGR2GRAY), None) for one in pictures
-    ]
-    (a, of_a), (b, of_b) = described
-    if of_a is None or of_b is None or min(len(a), len(b)) < 2:
+    points, described = found.detectAndCompute(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), None)
+    rows: Any = described
+    if rows is None:
+        rows = np.empty((0, 128), np.float32)
+    return RoomFeatures(np.array([one.pt for one in points]).reshape(-1, 2), rows)
+
+
+def matching_points(
+    features: tuple[RoomFeatures, RoomFeatures], params: PlacesParams
+) -> tuple[Floats, Floats]:
+    """Places (N,2) [px] of what looks alike in both pictures, and in each like nothing else."""
+    a, b = features
+    if min(len(a.px), len(b.px)) < 2:
         return np.empty((0, 2)), np.empty((0, 2))
     matcher = cv2.BFMatcher(cv2.NORM_L2)
-    there = {m.queryIdx: m.trainIdx for m in _sure(matcher.knnMatch(of_a, of_b, k=2), params)}
-    back = {m.queryIdx: m.trainIdx for m in _sure(matcher.knnMatch(of_b, of_a, k=2), params)}
+    there = {
+        m.queryIdx: m.trainIdx
+        for m in _sure(matcher.knnMatch(a.described, b.described, k=2), params)
+    }
+    back = {
+        m.queryIdx: m.trainIdx
+        for m in _sure(matcher.knnMatch(b.described, a.described, k=2), params)
+    }
     pairs = [(i, j) for i, j in there.items() if back.get(j) == i]
     if not pairs:
         return np.empty((0, 2)), np.empty((0, 2))
-    return np.array([a[i].pt for i, _ in pairs]), np.array([b[j].pt for _, j in pairs])
+    return a.px[[i for i, _ in pairs]], b.px[[j for _, j in pairs]]
 
 
 def _sure(found: Sequence[Sequence[cv2.DMatch]], params: PlacesParams) -> list[cv2.DMatch]:
@@ -90,10 +119,11 @@ def _sure(found: Sequence[Sequence[cv2.DMatch]], params: PlacesParams) -> list[c
     ]
 
 
-def _fitting(
-    first: Camera, here: Floats, second: Camera, there: Floats, params: PlacesParams
+def fitting_points(
+    cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], params: PlacesParams
 ) -> int:
-    """How many points, seen by the first camera `here` and by the second `there` (N,2), lie before both."""
+    """How many matches (N,2) and (N,2) [px] of two cameras lie before both."""
+    (first, second), (here, there) = cameras, px
     a, b = rays(first, here)[1], rays(second, there)[1]
     apart = centre(second) - centre(first)
     normal = np.cross(np.broadcast_to(apart, a.shape), a)

@@ -6,13 +6,12 @@ moves. With one camera only what people look like in its pictures can be checked
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import numpy as np
 
-from mocapd.calibrate.bump.changed_places import Places, places_of
 from mocapd.calibrate.consistency.findings import Finding, Mistake
-from mocapd.calibrate.consistency.hypotheses import exchanged_finding
+from mocapd.calibrate.consistency.joint_scale import scaled_findings
 from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
     PersonFinder,
@@ -22,7 +21,8 @@ from mocapd.calibrate.consistency.person_views import (
     shrink,
 )
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
-from mocapd.calibrate.consistency.time_judge import CameraTiming, late_findings
+from mocapd.calibrate.consistency.room_judge import with_the_room
+from mocapd.calibrate.consistency.time_judge import CameraTiming, judge_times
 from mocapd.calibrate.consistency.world_judge import judge_world, turned_views
 from mocapd.clock import seconds
 from mocapd.types import Bytes, Camera, Floats, Frame, Rig
@@ -34,6 +34,7 @@ _PEOPLE = 2  # looked at in each stretch
 _MOVES = 0.7  # of the logarithm of change, above the quietest tenth of the pictures
 _ENOUGH_S = 12.0  # of motion
 _MOST_KEPT = 240  # pictures of a camera
+_BY_TIME = (Mistake.CONTRADICTION, Mistake.ZOOMED)
 # What a mistake that is not mended does to joints, at least, though views may still agree about them [m]
 _OFF_M = {
     Mistake.DELAY: 0.1,
@@ -97,6 +98,12 @@ class CaptureCheck:
             kept.newest = frame.pixels
             self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
 
+    def put_whole(self, frame: Frame) -> None:
+        """A whole picture of now, beside the smaller ones: the room is looked at in the newest."""
+        kept = self._kept.get(frame.camera)
+        if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
+            kept.newest = frame.pixels
+
     def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
         """The same of a picture that is smaller already, as by `shrink`."""
         kept, t_s = self._kept[camera], seconds(t_ns)
@@ -126,8 +133,9 @@ class CaptureCheck:
         if not there:
             return CheckResult()
         cameras = [one.camera for one in there]
-        late = late_findings([_timing(one) for one in there]) if len(there) > 1 else ()
-        late_s = {one.cameras[0]: one.late_s for one in late}
+        times = judge_times([_timing(one) for one in there])
+        late = times.findings
+        late_s = {one.cameras[0]: one.late_s for one in late if one.is_mended}
         stretches = self._stretches(there, [late_s.get(one.name, 0.0) for one in cameras])
         names = tuple(camera.name for camera in cameras)
         turned = turned_views(
@@ -140,8 +148,19 @@ class CaptureCheck:
                 _OFF_M[Mistake.TURNED] if turned else 0.0,
                 sum(1 for one in stretches if one[0]),
             )
-        verdict = judge(cameras, stretches)
-        findings = self._with_the_room(there, verdict.findings)
+        verdict = judge(cameras, stretches, times.moves_alike)
+        pictures = [one.newest for one in there]
+        findings = with_the_room(cameras, pictures, verdict.findings)
+        if not findings and (scaled := scaled_findings(cameras, stretches)):
+            findings = with_the_room(cameras, pictures, scaled)
+        if not findings and not all(times.moves_alike):
+            # cameras in their places that show another time
+            findings = tuple(
+                one for one in verdict.findings if one.mistake is Mistake.CONTRADICTION
+            )
+        if any(not one.is_mended for one in late):
+            # views of different instants contradict each other for no other reason
+            findings = tuple(one for one in findings if one.mistake not in _BY_TIME)
         if not findings:
             findings = judge_world(names, verdict.fits, self._stature_m)
         if turned and not any(
@@ -155,29 +174,6 @@ class CaptureCheck:
         return CheckResult(
             (*late, *findings), max(off_m, verdict.off_m if findings else 0.0), len(verdict.fits)
         )
-
-    def _with_the_room(
-        self, there: Sequence[_Kept], findings: tuple[Finding, ...]
-    ) -> tuple[Finding, ...]:
-        """What the room's own points say beside people: cameras that agree about them are in their places, and see as
-        calibrated; those that agree crosswise are exchanged."""
-        concerned = {name for one in findings for name in one.cameras}
-        out = list(findings)
-        for a, b in combinations(there, 2):
-            names = a.camera.name, b.camera.name
-            if (findings and not concerned & set(names)) or a.newest is None or b.newest is None:
-                continue
-            places = places_of((a.camera, b.camera), (a.newest, b.newest))
-            if places is Places.RIGHT:
-                out = [
-                    one
-                    for one in out
-                    if not set(names) <= set(one.cameras)
-                    and one.cameras not in ((names[0],), (names[1],))
-                ]
-            elif places is Places.CHANGED and not findings:
-                return (exchanged_finding(*names),)
-        return tuple(out)
 
     def _stretches(self, there: Sequence[_Kept], late_s: Sequence[float]) -> list[Stretch]:
         """The people in the stretches of time in which most moves, with the times that they should have."""

@@ -7,6 +7,7 @@ sure the best one is (jackknife).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import cv2
 import numpy as np
@@ -17,10 +18,17 @@ _WIDTH_PX = 160
 _NOISE = 4.0  # of a smoothed grey value, 0..255
 _QUIET = 200.0  # added before the logarithm: below it motion is noise
 _GRID_S = 1.0 / 120.0
-_MOST_S = 0.75
+_MOST_S = (0.75, 1.5)  # trial delays,
+_MOST_SHARE = 0.15  # of what is recorded in common
 _FAST_S, _SLOW_S = 0.04, 0.27  # the band of motion that is compared
 _BLOCKS = 8
-_LEAST_S = 3.0  # of a common recording
+_LEAST_S = 3.0  # of a common recording, besides what delays cut off
+_PEAK_S = 0.1  # about a peak of correlation, which is no rival of itself
+_EDGE_S = 0.05  # a peak nearer to the last trial delay may lie beyond it
+_LEAST_PEAK, _CLEAR = (
+    0.35,
+    0.85,
+)  # correlation of two cameras that count, and of its next best at most
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,25 +83,38 @@ class MotionMeter:
 
 
 def camera_delays(signals: Sequence[MotionSignal]) -> list[CameraDelay | None]:
-    """Of each camera, its delay against the others, whose median is none. None where nothing can be said."""
+    """Of each camera, its delay against the others, whose median is none. None where nothing can be said.
+
+    Only pairs of cameras that clearly move alike at one delay count. Cameras that no chain of such pairs joins with most
+    of the others see other things, and nothing is said of them.
+    """
     count = len(signals)
-    blocks = _pair_blocks(signals)
-    if blocks is None:
+    found = _pair_blocks(signals)
+    if found is None:
         return [None] * count
-    late = _solve(blocks.sum(axis=-1))
-    others = np.array([_solve(np.delete(blocks, k, axis=-1).sum(axis=-1)) for k in range(_BLOCKS)])
-    sd = np.sqrt((_BLOCKS - 1) / _BLOCKS * ((others - others.mean(axis=0)) ** 2).sum(axis=0))
+    lags_s, blocks = found
     curves = blocks.sum(axis=-1)
-    return [_judged(curves, late, i, float(sd[i])) for i in range(count)]
-
-
-def _judged(curves: Floats, late: Floats, i: int, sd_s: float) -> CameraDelay:
-    lags_s = _lags_s()
-    mine = np.mean(
-        [np.interp(lags_s, lags_s + late[j], curves[i, j]) for j in range(len(late)) if j != i],
-        axis=0,
+    weights = _weights(lags_s, curves)
+    joined = _largest_group(weights)
+    late = _solve(lags_s, curves, weights, joined)
+    others = np.array(
+        [
+            _solve(lags_s, np.delete(blocks, k, axis=-1).sum(axis=-1), weights, joined)
+            for k in range(_BLOCKS)
+        ]
     )
-    off = np.abs(lags_s - late[i]) > 0.1
+    sd = np.sqrt((_BLOCKS - 1) / _BLOCKS * ((others - others.mean(axis=0)) ** 2).sum(axis=0))
+    return [
+        _judged(lags_s, curves, weights, late, i, float(sd[i])) if joined[i] else None
+        for i in range(count)
+    ]
+
+
+def _judged(
+    lags_s: Floats, curves: Floats, weights: Floats, late: Floats, i: int, sd_s: float
+) -> CameraDelay:
+    mine = _about(lags_s, curves, weights, late, i)
+    off = np.abs(lags_s - late[i]) > _PEAK_S
     return CameraDelay(
         float(late[i]),
         sd_s,
@@ -103,37 +124,64 @@ def _judged(curves: Floats, late: Floats, i: int, sd_s: float) -> CameraDelay:
     )
 
 
-def _lags_s() -> Floats:
-    n = round(_MOST_S / _GRID_S)
-    return np.arange(-n, n + 1, dtype=np.float64) * _GRID_S
+def _about(lags_s: Floats, curves: Floats, weights: Floats, late: Floats, i: int) -> Floats:
+    """(L,): mean correlation of camera i with the others, which are late by `late` (N,), over its own delay."""
+    each = [
+        np.interp(lags_s, lags_s + late[j], curves[i, j], left=0.0, right=0.0)
+        for j in range(len(late))
+    ]
+    return np.asarray(np.average(each, axis=0, weights=weights[i]), np.float64)
 
 
-def _pair_blocks(signals: Sequence[MotionSignal]) -> Floats | None:
-    """(N,N,L,B): of camera i late by each lag against camera j, what each block of time adds to the correlation."""
+def _weights(lags_s: Floats, curves: Floats) -> Floats:
+    """(N,N): what each pair's curve counts, 0 where it has no clear peak."""
+    count = len(curves)
+    out = np.zeros((count, count))
+    for i, j in combinations(range(count), 2):
+        k = int(curves[i, j].argmax())
+        peak = float(curves[i, j, k])
+        rival = float(curves[i, j][np.abs(lags_s - lags_s[k]) > _PEAK_S].max())
+        inside = abs(lags_s[k]) < lags_s[-1] - _EDGE_S
+        if inside and peak > _LEAST_PEAK and rival < _CLEAR * peak:
+            out[i, j] = out[j, i] = peak * (peak - max(rival, 0.0))
+    return out
+
+
+def _largest_group(weights: Floats) -> np.ndarray:
+    """(N,): the cameras of the largest group that is joined by pairs of weight."""
+    count = len(weights)
+    reach = np.linalg.matrix_power((weights > 0.0) + np.eye(count), count) > 0.0
+    group = reach[int(reach.sum(axis=1).argmax())]
+    return group if group.sum() > 1 else np.zeros(count, bool)
+
+
+def _pair_blocks(signals: Sequence[MotionSignal]) -> tuple[Floats, Floats] | None:
+    """Lags (L,) [s] and (N,N,L,B): of camera i late by each lag against camera j, what each block of time adds to the
+    correlation."""
     if len(signals) < 2 or any(len(one.times_s) < 10 for one in signals):
         return None
-    begin = max(float(one.times_s[0]) for one in signals) + _MOST_S
-    end = min(float(one.times_s[-1]) for one in signals) - _MOST_S
-    if end - begin < _LEAST_S:
+    begin = max(float(one.times_s[0]) for one in signals)
+    end = min(float(one.times_s[-1]) for one in signals)
+    most_s = float(np.clip(_MOST_SHARE * (end - begin), *_MOST_S))
+    if end - begin - 2.0 * most_s < _LEAST_S:
         return None
-    grid_s = np.arange(begin - _MOST_S, end + _MOST_S, _GRID_S)
+    grid_s = np.arange(begin, end, _GRID_S)
     banded = [_band(np.interp(grid_s, one.times_s, one.change)) for one in signals]
-    n = round(_MOST_S / _GRID_S)
+    n = round(most_s / _GRID_S)
     inner = len(grid_s) - 2 * n
-    cuts = np.linspace(0, inner, _BLOCKS + 1).astype(int)
+    cuts = np.linspace(0, inner, _BLOCKS + 1).astype(int)[:-1]
     out = np.zeros((len(signals), len(signals), 2 * n + 1, _BLOCKS))
     for i, a in enumerate(banded):
+        # late by a lag: what it shows at t - lag the other one shows at t
+        moved = np.lib.stride_tricks.sliding_window_view(a, inner)[::-1]
         for j, b in enumerate(banded):
             if i == j:
                 continue
             still = b[n : n + inner]
-            for k in range(2 * n + 1):
-                # late by lag: what it shows at t - lag the other one shows at t
-                lag = k - n
-                moved = a[n - lag : n - lag + inner]
-                scale = max(float(np.sqrt((still**2).sum() * (moved**2).sum())), 1e-9)
-                out[i, j, k] = np.add.reduceat(still * moved, cuts[:-1]) / scale
-    return out
+            scale = np.maximum(np.sqrt((still**2).sum() * (moved**2).sum(axis=1)), 1e-9)
+            out[i, j] = np.add.reduceat(still * moved, cuts, axis=1) / scale[:, None]
+    lags_s = np.arange(-n, n + 1, dtype=np.float64) * _GRID_S
+    return lags_s, out
 
 
 def _band(values: Floats) -> Floats:
@@ -145,21 +193,15 @@ def _band(values: Floats) -> Floats:
     return np.asarray(smooth - drift, np.float64).reshape(-1)
 
 
-def _solve(curves: Floats) -> Floats:
-    """The delays (N,) [s] at which all pairs (N,N,L) correlate most: one camera after the other, from no delay on."""
-    lags_s, count = _lags_s(), len(curves)
-    late = np.zeros(count)
-    for _ in range(2 * count):
+def _solve(lags_s: Floats, curves: Floats, weights: Floats, joined: np.ndarray) -> Floats:
+    """The delays (N,) [s] at which pairs (N,N,L) correlate most: one camera after the other, from no delay on; 0 for
+    cameras that are not joined with the others."""
+    late = np.zeros(len(curves))
+    those = np.flatnonzero(joined)
+    for _ in range(2 * len(those)):
         best = (1e-6, 0, 0.0)
-        for i in range(1 if count == 2 else 0, count):
-            mine = np.mean(
-                [
-                    np.interp(lags_s, lags_s + late[j], curves[i, j], left=0.0, right=0.0)
-                    for j in range(count)
-                    if j != i
-                ],
-                axis=0,
-            )
+        for i in those[1:] if len(those) == 2 else those:
+            mine = _about(lags_s, curves, weights, late, i)
             k = int(mine.argmax())
             gain = float(mine[k] - np.interp(late[i], lags_s, mine))
             if gain > best[0]:
@@ -167,7 +209,9 @@ def _solve(curves: Floats) -> Floats:
         if best[0] <= 1e-3:
             break
         late[best[1]] = best[2]
-    return np.asarray(late - np.median(late) if count > 2 else late, np.float64)
+    if len(those) > 2:
+        late[those] -= np.median(late[those])
+    return late
 
 
 def _peak(lags_s: Floats, curve: Floats, k: int) -> float:

@@ -29,7 +29,8 @@ _AGREES = 1.0  # cost of two views that agree, whatever may be better
 _AGAINST = 0.2  # share of views that agree well as given, for a mistake to be one
 _RIVAL = 0.75  # of what the best zoom brings, another camera's that may be meant as well
 _OFTEN = 0.65  # share of stretches that an explanation must improve
-_CONTRADICT_DEG = 2.2
+# Views of people contradict each other beyond this for good: where the same moves in both, and where it does not
+_CONTRADICT_DEG, _STRANGE_DEG = 1.8, 1.15
 _LEAST_STRETCHES = 2
 _LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
 
@@ -44,8 +45,11 @@ class Verdict:
     off_m: float = 0.0
 
 
-def judge(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> Verdict:
-    """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common."""
+def judge(
+    cameras: Sequence[Camera], stretches: Sequence[Stretch], moves_alike: Sequence[bool] = ()
+) -> Verdict:
+    """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common. moves_alike: by
+    camera, whether what moves there moves in the others at the same time; all do by default."""
     table = _Table([[[thinned(one) for one in views] for views in seen] for seen in stretches])
     given = table.fits(as_given(cameras))
     if not given:
@@ -56,7 +60,7 @@ def judge(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> Verdict:
         assert best.mistake is not None
         finding = Finding(best.mistake, names, best.what, best.fix)
         return Verdict((finding,), tuple(table.fits(best).values()), _off_m(given.values()))
-    lone = _contradicting(cameras, given)
+    lone = _contradicting(cameras, given, moves_alike or (True,) * len(cameras))
     return Verdict(lone, tuple(given.values()), _off_m(given.values()) if lone else 0.0)
 
 
@@ -192,27 +196,31 @@ def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float
 
 
 def _contradicting(
-    cameras: Sequence[Camera], given: Mapping[_Pair, PairFit]
+    cameras: Sequence[Camera], given: Mapping[_Pair, PairFit], moves_alike: Sequence[bool]
 ) -> tuple[Finding, ...]:
-    """A camera that agrees with none of the others at any time."""
+    """A camera that agrees with none of the others at any time, for whatever reason."""
     out = []
     for i, camera in enumerate(cameras):
         mine = [fit for key, fit in given.items() if i in key[:2]]
         off_deg = np.array([fit.angle_deg for fit in mine])
         if len({key[2] for key in given if i in key[:2]}) < _LEAST_STRETCHES:
             continue
-        if np.percentile(off_deg, 25) > _CONTRADICT_DEG:
+        if np.percentile(off_deg, 25) > (_CONTRADICT_DEG if moves_alike[i] else _STRANGE_DEG):
             out.append((i, camera.name, float(np.median(off_deg))))
     if not out:
         return ()
     names = tuple(name for _, name, _ in out)
     off = max(off for _, _, off in out)
     others = "each other" if len(names) == len(cameras) else "the other cameras"
+    never = (
+        "" if all(moves_alike[i] for i, _, _ in out) else ", and does not move at the same times"
+    )
     return (
         Finding(
             Mistake.CONTRADICTION,
             names,
-            f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees and more",
+            f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees{never}; "
+            "no exchange, mirror or turn makes it agree",
             "are these the videos of this rig, of one room and one time? Calibrate again where a camera was moved",
         ),
     )

@@ -15,6 +15,14 @@ _LEAST_S = 0.018  # over half a frame at 30 Hz
 _SURE_SDS = 3.0
 _PART_S = 5.0  # of a recording, whose delay is found by itself
 _JUMP_S = 0.05  # by which a delay changes where frames were dropped
+_ALIKE = 0.55  # agreement of cameras that surely see the same move
+# A recording's rate over the rate that its times say, of those that people set
+_RATES = (0.5, 0.6, 2 / 3, 0.8, 5 / 6, 0.96, 25 / 24, 1.2, 1.25, 1.5, 5 / 3, 2.0)
+_RATE_AGREEMENT, _RATE_GAIN = (
+    0.6,
+    0.2,
+)  # of a rate that is believed, and more than the rates said bring
+_RATE_NEAR = 0.06  # of the logarithm: rates that are no rivals
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,13 +34,40 @@ class CameraTiming:
     period_s: float
 
 
-def late_findings(cameras: Sequence[CameraTiming]) -> tuple[Finding, ...]:
+@dataclass(frozen=True, slots=True, eq=False)
+class TimeVerdict:
+    """findings: of cameras whose times are wrong; moves_alike: by camera, whether what moves in its pictures moves in the
+    others' at the same instants, once their times are corrected."""
+
+    findings: tuple[Finding, ...]
+    moves_alike: tuple[bool, ...]
+
+
+def judge_times(cameras: Sequence[CameraTiming]) -> TimeVerdict:
     """Of each camera whose pictures are surely late or early; or, where that changes, that it does."""
+    delays = camera_delays([one.signal for one in cameras])
     jumps = _jumps(cameras)
+    rate = None if any(jumps) else _wrong_rate(cameras, delays)
+    if rate is not None:
+        return TimeVerdict((rate,), (True,) * len(cameras))
+    findings = _late_findings(cameras, delays, jumps)
+    concerned = {name for one in findings for name in one.cameras}
+    alike = tuple(
+        camera.name in concerned
+        or (delay is not None and _is_known(delay) and delay.agreement > _ALIKE)
+        for camera, delay in zip(cameras, delays, strict=True)
+    )
+    # of a pair the first camera is what delays are measured against
+    return TimeVerdict(findings, (all(alike),) * 2 if len(alike) == 2 else alike)
+
+
+def _late_findings(
+    cameras: Sequence[CameraTiming],
+    delays: Sequence[CameraDelay | None],
+    jumps: Sequence[tuple[float, float] | None],
+) -> tuple[Finding, ...]:
     out = []
-    for camera, delay, jump in zip(
-        cameras, camera_delays([one.signal for one in cameras]), jumps, strict=True
-    ):
+    for camera, delay, jump in zip(cameras, delays, jumps, strict=True):
         if jump is not None:
             out.append(_dropped(camera, *jump))
         elif delay is not None and _is_known(delay) and _is_late(delay):
@@ -53,6 +88,55 @@ def _is_late(delay: CameraDelay) -> bool:
         abs(delay.late_s) > max(_LEAST_S, _SURE_SDS * delay.sd_s)
         and delay.agreement_undelayed < delay.agreement - _GAIN
     )
+
+
+def _wrong_rate(
+    cameras: Sequence[CameraTiming], delays: Sequence[CameraDelay | None]
+) -> Finding | None:
+    """A camera that moves as the others do once its times are stretched, and does not as they are."""
+    signals = [one.signal for one in cameras]
+    before = _agreement(delays)
+    tried: list[tuple[float, int, float, CameraDelay]] = []
+    for i, delay in enumerate(delays):
+        if delay is not None and _is_known(delay) and delay.agreement > _RATE_AGREEMENT:
+            continue
+        for stretch in _RATES:
+            times_s = signals[i].times_s * stretch
+            changed = [*signals[:i], MotionSignal(times_s, signals[i].change), *signals[i + 1 :]]
+            after = camera_delays(changed)
+            mine = after[i]
+            if mine is not None:
+                tried.append((_agreement(after), i, stretch, mine))
+    if not tried:
+        return None
+    total, i, stretch, delay = max(tried, key=lambda one: one[0])
+    rivals = [
+        other.agreement
+        for _, k, by, other in tried
+        if k == i and abs(np.log(by / stretch)) > _RATE_NEAR
+    ]
+    was = delays[i]
+    if (
+        not _is_known(delay)
+        or delay.agreement < max(_RATE_AGREEMENT, _RATE_GAIN + (was.agreement if was else 0.0))
+        or total < before
+        or max(rivals, default=0.0) > _RIVAL * delay.agreement
+    ):
+        return None
+    # of two cameras either may be the wrong one
+    names = tuple(one.name for one in cameras) if len(cameras) == 2 else (cameras[i].name,)
+    return Finding(
+        Mistake.DELAY,
+        names,
+        f"what moves in the pictures of {cameras[i].name!r} takes {1.0 / stretch:.2f} times as long as the others show: "
+        "the rate that its times say is not the one at which it was recorded",
+        "record all cameras with their frames' own times, or store the video with its true rate",
+    )
+
+
+def _agreement(delays: Sequence[CameraDelay | None]) -> float:
+    """Of all cameras whose delay is known, summed."""
+    return sum(one.agreement for one in delays if one is not None and _is_known(one))
 
 
 def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:

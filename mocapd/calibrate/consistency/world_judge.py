@@ -14,6 +14,8 @@ from mocapd.vision.heatmaps.joint_network import JOINTS, STATURE_M
 _HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
 _UPRIGHT_DEG = 45.0  # people bend; not all the time
 _TURNED_DEG = 60.0
+_LEAST_ANGLES = 8  # of a view
+_OFTEN = 0.75  # of views
 _SIZES = (0.62, 1.5)  # of people against their stature, as the network's joints measure them
 _FLOOR_M = (-0.3, 0.5)  # where feet are, on the floor y = 0
 _AGREES = 1.3  # cost of views from which the world is judged
@@ -109,15 +111,16 @@ def turned_views(
     """Cameras in whose pictures people do not stand as the rig's vertical is seen there; people: of each camera."""
     out = []
     for camera, views in zip(cameras, people, strict=True):
-        turns = [angle for view in views for angle in _lean_deg(camera, view)]
-        if len(turns) < 20:
+        turns_deg = [
+            _median_deg(angles)
+            for view in views
+            if len(angles := _lean_deg(camera, view)) >= _LEAST_ANGLES
+        ]
+        turned = [one for one in turns_deg if abs(one) > _TURNED_DEG]
+        # who bends down is no turned picture: at other times the same picture is upright
+        if len(turned) < _LEAST or len(turned) < _OFTEN * len(turns_deg):
             continue
-        radians = np.radians(turns)
-        turn_deg = float(
-            np.degrees(np.arctan2(np.median(np.sin(radians)), np.median(np.cos(radians))))
-        )
-        if abs(turn_deg) < _TURNED_DEG:
-            continue
+        turn_deg = _median_deg(turned)
         quarters = round(turn_deg / 90.0) * 90
         out.append(
             Finding(
@@ -128,6 +131,11 @@ def turned_views(
             )
         )
     return tuple(out)
+
+
+def _median_deg(angles_deg: Sequence[float]) -> float:
+    radians = np.radians(angles_deg)
+    return float(np.degrees(np.arctan2(np.median(np.sin(radians)), np.median(np.cos(radians)))))
 
 
 def _lean_deg(camera: Camera, view: PersonView) -> list[float]:
