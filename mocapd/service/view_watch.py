@@ -13,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import WORK_PX
 from mocapd.clock import seconds
 from mocapd.types import Bytes, Frame, Rig
@@ -123,5 +123,5 @@ class ViewWatch:
             _log.info("what the cameras show agrees with their calibration again")
 
 
-def _key(finding: Finding) -> tuple[Mistake, tuple[str, ...]]:
+def _key(finding: CaptureFinding) -> tuple[Mistake, tuple[str, ...]]:
     return finding.mistake, finding.cameras

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.motion_delay import MotionMeter, MotionSignal, camera_delays
 from mocapd.calibrate.consistency.time_judge import CameraTiming, judge_times
 from mocapd.types import Floats
@@ -33,7 +33,7 @@ def timings(*signals: MotionSignal) -> list[CameraTiming]:
     return [CameraTiming(f"cam{k}", one, 1.0 / HZ) for k, one in enumerate(signals)]
 
 
-def late_findings(cameras: list[CameraTiming]) -> tuple[Finding, ...]:
+def late_findings(cameras: list[CameraTiming]) -> tuple[CaptureFinding, ...]:
     return judge_times(cameras).findings
 
 

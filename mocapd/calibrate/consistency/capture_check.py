@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.joint_scale import scaled_findings
 from mocapd.calibrate.consistency.motion_delay import MotionMeter
 from mocapd.calibrate.consistency.person_views import (
@@ -54,7 +54,7 @@ class CheckResult:
     """findings: what does not agree; off_m: by how much views contradict each other for good [m], 0 where they agree or
     all is mended; looked: stretches of time in which people were seen by two cameras, or by the only one."""
 
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[CaptureFinding, ...] = ()
     off_m: float = 0.0
     looked: int = 0
 

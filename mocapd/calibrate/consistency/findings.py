@@ -19,7 +19,7 @@ class Mistake(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CaptureFinding:
     """cameras: the names of those concerned, in the rig's order; what: the observation; fix: how to mend it. late_s: of a
     delay, by how much the one camera's times are too early; 0 otherwise."""
 

@@ -7,7 +7,7 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.view_agreement import mirrored, upside_down, zoomed
 from mocapd.geometry.camera_model import centre
@@ -113,9 +113,9 @@ def _exchanged(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
         yield Hypothesis(Mistake.EXCHANGED, placed, (unchanged,) * count, moved, what, fix)
 
 
-def exchanged_finding(a: str, b: str) -> Finding:
+def exchanged_finding(a: str, b: str) -> CaptureFinding:
     """Of two cameras, each of which shows what the other one should."""
-    return Finding(
+    return CaptureFinding(
         Mistake.EXCHANGED,
         (a, b),
         f"the pictures of {a!r} fit the place of {b!r}, and those of {b!r} that of {a!r}: they are exchanged",

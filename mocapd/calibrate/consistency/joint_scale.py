@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.rig_judge import Stretch
 from mocapd.calibrate.consistency.room_points import epipolar_equations
@@ -31,7 +31,9 @@ _BOTH = 0.17  # logarithms of the two cameras' scales, that are opposite, togeth
 _LEAST_STRETCHES = 2
 
 
-def scaled_findings(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> tuple[Finding, ...]:
+def scaled_findings(
+    cameras: Sequence[Camera], stretches: Sequence[Stretch]
+) -> tuple[CaptureFinding, ...]:
     """Of the two cameras that disagree most about the size of people; nothing where none surely do."""
     worst, which = _BOTH, None
     for i, j in combinations(range(len(cameras)), 2):
@@ -54,7 +56,7 @@ def scaled_findings(cameras: Sequence[Camera], stretches: Sequence[Stretch]) -> 
     first, second = ("larger", "smaller") if sense > 0.0 else ("smaller", "larger")
     a, b = cameras[i].name, cameras[j].name
     return (
-        Finding(
+        CaptureFinding(
             Mistake.ZOOMED,
             (a, b),
             f"people are {first} in the pictures of {a!r} than calibrated, or {second} in those of {b!r}",

@@ -51,15 +51,15 @@ class WorkPictures:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Room:
+class ViewedRoom:
     """A camera's empty room (h,w,3), and where it is known (h,w), 0 or 1."""
 
     picture: Bytes
     known: Bytes
 
-    def turned(self, turns: int) -> "Room":
+    def turned(self, turns: int) -> "ViewedRoom":
         """Turned left by so many quarters."""
-        return Room(_upright(self.picture, turns), _upright(self.known, turns))
+        return ViewedRoom(_upright(self.picture, turns), _upright(self.known, turns))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +110,7 @@ class PersonFinder:
         self._network = JointNetwork()
 
     def people(
-        self, work: WorkPictures, room: Room, most: int, turns: Sequence[int]
+        self, work: WorkPictures, room: ViewedRoom, most: int, turns: Sequence[int]
     ) -> list[PersonView]:
         """At most so many people in a few seconds of pictures, the likeliest first; `turns`: quarter turns to try."""
         lit = _relit(room, work.pictures[len(work.pictures) // 2])
@@ -122,7 +122,7 @@ class PersonFinder:
         return out
 
     def _follow(
-        self, work: WorkPictures, room: Room, box: Ints, turns: Sequence[int]
+        self, work: WorkPictures, room: ViewedRoom, box: Ints, turns: Sequence[int]
     ) -> PersonView | None:
         count, joints = len(work.pictures), len(JOINTS)
         best = min(
@@ -147,7 +147,7 @@ class PersonFinder:
         full_px = (px + 0.5) * work.smaller - 0.5
         return PersonView(work.times_s[there], full_px, spread[there], farther[there], best.turns)
 
-    def _begin(self, work: WorkPictures, room: Room, box: Ints, turns: int) -> _Start:
+    def _begin(self, work: WorkPictures, room: ViewedRoom, box: Ints, turns: int) -> _Start:
         """The surest crop in the picture of a box, once it is turned."""
         frame = int(box[0])
         picture, back = _upright(work.pictures[frame], turns), room.turned(turns)
@@ -173,7 +173,7 @@ class PersonFinder:
         return best
 
     def _look(
-        self, picture: Bytes, room: Room, side: float, middle: Floats
+        self, picture: Bytes, room: ViewedRoom, side: float, middle: Floats
     ) -> tuple[Floats, SeenJoints]:
         """Joints (J,2) in a picture's pixels, in the crop of this side about this middle."""
         scale = INPUT_PX / side
@@ -190,11 +190,11 @@ class PersonFinder:
         return (crop_px - corner) / scale, seen
 
 
-def room_of(work: WorkPictures) -> Room:
+def room_of(work: WorkPictures) -> ViewedRoom:
     """The room of some of a camera's pictures, spread over all of them."""
     ids = np.unique(np.linspace(0, len(work.pictures) - 1, _ROOM_PICTURES).astype(int))
     room, known = clip_background([work.pictures[i] for i in ids], work.times_s[ids])
-    return Room(room, known.astype(np.uint8))
+    return ViewedRoom(room, known.astype(np.uint8))
 
 
 class RoomsByLight:
@@ -203,9 +203,9 @@ class RoomsByLight:
     def __init__(self, work: WorkPictures) -> None:
         self._work = work
         self._light = np.log([float(one[::4, ::4].mean()) + 4.0 for one in work.pictures])
-        self._known: dict[int, Room] = {}
+        self._known: dict[int, ViewedRoom] = {}
 
-    def during(self, part: WorkPictures) -> Room:
+    def during(self, part: WorkPictures) -> ViewedRoom:
         """In the light of a few seconds of the same pictures."""
         light = float(
             np.median(np.log([float(one[::4, ::4].mean()) + 4.0 for one in part.pictures]))
@@ -222,7 +222,7 @@ class RoomsByLight:
         return self._known[key]
 
 
-def candidates(work: WorkPictures, room: Room) -> list[Ints]:
+def candidates(work: WorkPictures, room: ViewedRoom) -> list[Ints]:
     """Boxes (5,) = picture, x, y, width, height of what may be a person, the likeliest first."""
     count = len(work.pictures)
     out: list[tuple[float, Ints]] = []
@@ -241,17 +241,17 @@ def candidates(work: WorkPictures, room: Room) -> list[Ints]:
     return kept
 
 
-def _differs(picture: Bytes, room: Room) -> Bytes:
+def _differs(picture: Bytes, room: ViewedRoom) -> Bytes:
     """Where (h,w) a picture is not the room."""
     off = np.asarray(cv2.absdiff(picture, room.picture)).max(axis=-1)
     return np.asarray((off > _DIFFERS) | (room.known == 0), np.uint8)
 
 
-def _relit(room: Room, picture: Bytes) -> Room:
+def _relit(room: ViewedRoom, picture: Bytes) -> ViewedRoom:
     """The room in the light of a picture: a lamp that went off changes all of it."""
     now, then = picture.astype(np.float32) + 8.0, room.picture.astype(np.float32) + 8.0
     gain = np.median(now / then, axis=(0, 1))
-    return Room(np.clip(then * gain - 8.0, 0, 255).astype(np.uint8), room.known)
+    return ViewedRoom(np.clip(then * gain - 8.0, 0, 255).astype(np.uint8), room.known)
 
 
 def _pieces(mask: Bytes) -> list[tuple[float, Ints]]:

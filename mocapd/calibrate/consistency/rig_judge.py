@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.hypotheses import (
     Hypothesis,
     as_given,
@@ -36,32 +36,32 @@ _LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Verdict:
+class RigVerdict:
     """findings: what does not agree; fits: of the views, as they are mended by the best explanation; off_m: how far views are
     apart where nothing explains it [m]."""
 
-    findings: tuple[Finding, ...]
+    findings: tuple[CaptureFinding, ...]
     fits: tuple[PairFit, ...]
     off_m: float = 0.0
 
 
 def judge(
     cameras: Sequence[Camera], stretches: Sequence[Stretch], moves_alike: Sequence[bool] = ()
-) -> Verdict:
+) -> RigVerdict:
     """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common. moves_alike: by
     camera, whether what moves there moves in the others at the same time; all do by default."""
     table = _Table([[[thinned(one) for one in views] for views in seen] for seen in stretches])
     given = table.fits(as_given(cameras))
     if not given:
-        return Verdict((), ())
+        return RigVerdict((), ())
     best = _best_explanation(cameras, table, given)
     if best is not None:
         names = tuple(cameras[i].name for i in best.affected)
         assert best.mistake is not None
-        finding = Finding(best.mistake, names, best.what, best.fix)
-        return Verdict((finding,), tuple(table.fits(best).values()), _off_m(given.values()))
+        finding = CaptureFinding(best.mistake, names, best.what, best.fix)
+        return RigVerdict((finding,), tuple(table.fits(best).values()), _off_m(given.values()))
     lone = _contradicting(cameras, given, moves_alike or (True,) * len(cameras))
-    return Verdict(lone, tuple(given.values()), _off_m(given.values()) if lone else 0.0)
+    return RigVerdict(lone, tuple(given.values()), _off_m(given.values()) if lone else 0.0)
 
 
 class _Table:
@@ -197,7 +197,7 @@ def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float
 
 def _contradicting(
     cameras: Sequence[Camera], given: Mapping[_Pair, PairFit], moves_alike: Sequence[bool]
-) -> tuple[Finding, ...]:
+) -> tuple[CaptureFinding, ...]:
     """A camera that agrees with none of the others at any time, for whatever reason."""
     out = []
     for i, camera in enumerate(cameras):
@@ -216,7 +216,7 @@ def _contradicting(
         "" if all(moves_alike[i] for i, _, _ in out) else ", and does not move at the same times"
     )
     return (
-        Finding(
+        CaptureFinding(
             Mistake.CONTRADICTION,
             names,
             f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees{never}; "

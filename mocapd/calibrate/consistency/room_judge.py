@@ -10,15 +10,17 @@ from mocapd.calibrate.bump.changed_places import (
     places_by_matches,
     room_features,
 )
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.hypotheses import exchanged_finding
 from mocapd.calibrate.consistency.room_points import PictureChange, RoomVerdict, judge_room
 from mocapd.types import Bytes, Camera
 
 
 def with_the_room(
-    cameras: Sequence[Camera], pictures: Sequence[Bytes | None], findings: tuple[Finding, ...]
-) -> tuple[Finding, ...]:
+    cameras: Sequence[Camera],
+    pictures: Sequence[Bytes | None],
+    findings: tuple[CaptureFinding, ...],
+) -> tuple[CaptureFinding, ...]:
     """The findings by people, without those that the room's points contradict; where there were none, the room's own.
 
     pictures (h,w,3) BGR: what each camera shows at one time, None where that is not known.
@@ -52,10 +54,10 @@ def with_the_room(
     return tuple(out) if worst is None else (_finding(*worst),)
 
 
-def _finding(verdict: RoomVerdict, names: tuple[str, str]) -> Finding:
+def _finding(verdict: RoomVerdict, names: tuple[str, str]) -> CaptureFinding:
     change = verdict.change
     if change is None:
-        return Finding(
+        return CaptureFinding(
             Mistake.CONTRADICTION,
             names,
             f"of {verdict.free} points of the room that {names[0]!r} and {names[1]!r} both see, {verdict.given} fit the rig",
@@ -65,7 +67,7 @@ def _finding(verdict: RoomVerdict, names: tuple[str, str]) -> Finding:
     shown = f"the pictures of {' or '.join(map(repr, those))}"
     because = f"so {change.count} of {verdict.matches} points of the room fit, and {verdict.given} as given"
     mistake, what, fix = _change_words(change)
-    return Finding(mistake, those, f"{shown} are {what}: {because}", fix)
+    return CaptureFinding(mistake, those, f"{shown} are {what}: {because}", fix)
 
 
 def _change_words(change: PictureChange) -> tuple[Mistake, str, str]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.motion_delay import CameraDelay, MotionSignal, camera_delays
 
 # of a delay that is believed: of agreement at least, of the next best agreement at most, and how sure
@@ -39,7 +39,7 @@ class TimeVerdict:
     """findings: of cameras whose times are wrong; moves_alike: by camera, whether what moves in its pictures moves in the
     others' at the same instants, once their times are corrected."""
 
-    findings: tuple[Finding, ...]
+    findings: tuple[CaptureFinding, ...]
     moves_alike: tuple[bool, ...]
 
 
@@ -65,7 +65,7 @@ def _late_findings(
     cameras: Sequence[CameraTiming],
     delays: Sequence[CameraDelay | None],
     jumps: Sequence[tuple[float, float] | None],
-) -> tuple[Finding, ...]:
+) -> tuple[CaptureFinding, ...]:
     out = []
     for camera, delay, jump in zip(cameras, delays, jumps, strict=True):
         if jump is not None:
@@ -92,7 +92,7 @@ def _is_late(delay: CameraDelay) -> bool:
 
 def _wrong_rate(
     cameras: Sequence[CameraTiming], delays: Sequence[CameraDelay | None]
-) -> Finding | None:
+) -> CaptureFinding | None:
     """A camera that moves as the others do once its times are stretched, and does not as they are."""
     signals = [one.signal for one in cameras]
     before = _agreement(delays)
@@ -125,7 +125,7 @@ def _wrong_rate(
         return None
     # of two cameras either may be the wrong one
     names = tuple(one.name for one in cameras) if len(cameras) == 2 else (cameras[i].name,)
-    return Finding(
+    return CaptureFinding(
         Mistake.DELAY,
         names,
         f"what moves in the pictures of {cameras[i].name!r} takes {1.0 / stretch:.2f} times as long as the others show: "
@@ -167,9 +167,9 @@ def _between(signal: MotionSignal, low_s: float, high_s: float) -> MotionSignal:
     return MotionSignal(signal.times_s[inside], signal.change[inside])
 
 
-def _late(camera: CameraTiming, delay: CameraDelay) -> Finding:
+def _late(camera: CameraTiming, delay: CameraDelay) -> CaptureFinding:
     frames, sense = abs(delay.late_s) / camera.period_s, "later" if delay.late_s > 0 else "earlier"
-    return Finding(
+    return CaptureFinding(
         Mistake.DELAY,
         (camera.name,),
         f"the pictures of {camera.name!r} are {frames:.1f} frames ({1e3 * abs(delay.late_s):.0f} ms) {sense} than their "
@@ -179,9 +179,9 @@ def _late(camera: CameraTiming, delay: CameraDelay) -> Finding:
     )
 
 
-def _dropped(camera: CameraTiming, first_s: float, last_s: float) -> Finding:
+def _dropped(camera: CameraTiming, first_s: float, last_s: float) -> CaptureFinding:
     frames = abs(last_s - first_s) / camera.period_s
-    return Finding(
+    return CaptureFinding(
         Mistake.DELAY,
         (camera.name,),
         f"the pictures of {camera.name!r} go out of step by {frames:.0f} frames ({1e3 * abs(last_s - first_s):.0f} ms) "

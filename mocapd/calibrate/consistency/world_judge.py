@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mocapd.calibrate.consistency.findings import Finding, Mistake
+from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.view_agreement import PairFit
 from mocapd.geometry.camera_model import normalised
@@ -39,7 +39,7 @@ _COLUMNS = {  # of R, for the axis that is up in the given world: y up is wanted
 
 def judge_world(
     names: tuple[str, ...], fits: Sequence[PairFit], stature_m: float | None
-) -> tuple[Finding, ...]:
+) -> tuple[CaptureFinding, ...]:
     """Of views that agree, what is implausible about the people that they show."""
     wide = [
         one
@@ -58,7 +58,7 @@ def judge_world(
     floors = [one.floor_m for one in wide if np.isfinite(one.floor_m)]
     if len(floors) > 1 and not _FLOOR_M[0] < float(np.median(floors)) < _FLOOR_M[1]:
         return (
-            Finding(
+            CaptureFinding(
                 Mistake.AXES,
                 names,
                 f"feet are {float(np.median(floors)):+.1f} m from the rig's floor",
@@ -68,18 +68,18 @@ def judge_world(
     return ()
 
 
-def _tilted(names: tuple[str, ...], up: Floats) -> Finding:
+def _tilted(names: tuple[str, ...], up: Floats) -> CaptureFinding:
     k = int(np.abs(up).argmax())
     axis = ("+" if up[k] > 0 else "-") + "xyz"[k]
     if abs(up[k]) > 0.8 and axis in _COLUMNS:
-        return Finding(
+        return CaptureFinding(
             Mistake.AXES,
             names,
             f"people stand along the {axis} axis of the rig's world",
             f"mocapd takes +y up: write the columns of each R as {_COLUMNS[axis]}",
         )
     lean_deg = float(np.degrees(np.arccos(np.clip(up[1], -1.0, 1.0))))
-    return Finding(
+    return CaptureFinding(
         Mistake.AXES,
         names,
         f"people lean by {lean_deg:.0f} degrees in the rig's world",
@@ -87,17 +87,17 @@ def _tilted(names: tuple[str, ...], up: Floats) -> Finding:
     )
 
 
-def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> Finding:
+def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> CaptureFinding:
     unit = min(_KNOWN_FACTORS, key=lambda name: abs(np.log(size / _KNOWN_FACTORS[name])))
     tall = f"people are about {size * (stature_m or STATURE_M):.2g} m tall in the rig's world"
     if abs(np.log(size / _KNOWN_FACTORS[unit])) < np.log(_NEAR):
-        return Finding(
+        return CaptureFinding(
             Mistake.UNIT,
             names,
             f"{tall}: 't' looks like {unit}",
             f"'t' is in metres: multiply it by {1.0 / _KNOWN_FACTORS[unit]:.4g}",
         )
-    return Finding(
+    return CaptureFinding(
         Mistake.UNIT,
         names,
         tall,
@@ -107,7 +107,7 @@ def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> Find
 
 def turned_views(
     cameras: Sequence[Camera], people: Sequence[Sequence[PersonView]]
-) -> tuple[Finding, ...]:
+) -> tuple[CaptureFinding, ...]:
     """Cameras in whose pictures people do not stand as the rig's vertical is seen there; people: of each camera."""
     out = []
     for camera, views in zip(cameras, people, strict=True):
@@ -123,7 +123,7 @@ def turned_views(
         turn_deg = _median_deg(turned)
         quarters = round(turn_deg / 90.0) * 90
         out.append(
-            Finding(
+            CaptureFinding(
                 Mistake.TURNED,
                 (camera.name,),
                 f"people in the pictures of {camera.name!r} are turned by {quarters} degrees against the rig's vertical",
