@@ -26,7 +26,8 @@ class Affine:
 
     def apply(self, points_m: Floats) -> Floats:
         """Points (...,4,3) of b in a [m]; a batch (K,) goes along the axis before the points."""
-        out: Floats = points_m @ np.swapaxes(self.L, -1, -2) + self.t_m[..., None, :]
+        # one by one, not as products of small matrices, which take twice as long
+        out: Floats = np.einsum("...cj,...ij->...ci", points_m, self.L) + self.t_m[..., None, :]
         return out
 
     def inverse(self) -> "Affine":
