@@ -27,6 +27,7 @@ from mocapd.calibrate.extrinsics.corner_noise import (
     motion_deviations_px,
     usual_deviations_px,
 )
+from mocapd.calibrate.extrinsics.lower_triangles import lower_triangle, solved_lower
 from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
 from mocapd.calibrate.extrinsics.sparse_least_squares import least_squares_steps
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
@@ -174,7 +175,9 @@ def adjust_bundle(
     """
     params = params or BundleParams()
     one_sided = followed_from_one_side(indices, params.longest_gap)
-    corner_px = usual_deviations_px(scene, seen, params.corner_px)
+    corner_px = np.full(len(seen.camera), params.corner_px)
+    if params.longest_gap >= _FOLLOWED:
+        corner_px = usual_deviations_px(scene, seen, params.corner_px)
     gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
     scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
     every = np.ones(len(seen.camera), bool)
@@ -193,7 +196,8 @@ def adjust_bundle(
     )
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
     used = error_px <= np.maximum(params.outlier_sigmas * corner_px, params.least_outlier_px)
-    used &= ~in_wrong_views(scene, seen, corner_px)
+    if params.longest_gap >= _FOLLOWED:
+        used &= ~in_wrong_views(scene, seen, corner_px)
     problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
     scene = _solve(problem, robust=False)
     return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
@@ -246,12 +250,52 @@ def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundlePara
 
 
 def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
-    """robust: far corners count less and less, but no prior does."""
+    """robust: far corners count less and less, but of a recording in motion no prior does."""
+    if problem.params.longest_gap < _FOLLOWED:
+        return _solve_at_rest(problem, robust)
     corners = 2 * len(problem.corner_px) if robust else 0
     x = least_squares_steps(
         problem.error, problem.slope, problem.columns, corners, problem.params.evaluations
     )
     return with_steps(problem.scene, *problem.steps(x))
+
+
+def _solve_at_rest(problem: _Problem, robust: bool) -> ReprojectionProblem:
+    """Positions one by one, often few and with an initial scene that is far off: trust regions find the way from
+    there, which damping alone does not.
+
+    Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
+
+    In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
+    along the valleys of focal length and depth.
+    """
+    start = problem.slope(np.zeros(problem.columns))
+    L = lower_triangle((start.T @ start).toarray())
+
+    def step(y: Floats) -> Floats:
+        return solved_lower(L, y, 1)
+
+    def slope(y: Floats) -> "scipy.sparse.linalg.LinearOperator":
+        J = problem.slope(step(y))
+        return scipy.sparse.linalg.LinearOperator(
+            J.shape,
+            matvec=lambda v: J @ step(v.ravel()),
+            rmatvec=lambda u: solved_lower(L, J.T @ u.ravel(), 0),
+        )
+
+    solution = scipy.optimize.least_squares(
+        lambda y: problem.error(step(y)),
+        np.zeros(problem.columns),
+        jac=slope,
+        method="trf",
+        tr_solver="lsmr",
+        # full Gauss-Newton steps
+        tr_options={"regularize": False, "atol": 1e-7, "btol": 1e-7, "maxiter": 800},
+        loss="soft_l1" if robust else "linear",
+        ftol=1e-5,
+        max_nfev=problem.params.evaluations,
+    )
+    return with_steps(problem.scene, *problem.steps(step(solution.x)))
 
 
 def _deviations(problem: _Problem) -> tuple[Floats, Floats, Floats | None]:

@@ -51,7 +51,8 @@ def align_views(
     followed = any(track.followed for track in tracks.values())
     period_s = max(track.step_s for track in tracks.values())
     start_s = min(clocks[times.reference].stamps_s.values())
-    in_step = times.farthest_s < IN_STEP * period_s
+    # parts of a frame show only where motion is followed
+    in_step = all(t.followed for t in tracks.values()) and times.farthest_s < IN_STEP * period_s
     instants = gather(views, times.times_s, period_s, start_s, most, in_step)
     return AlignedViews(instants, times, _FOLLOWED_GAP if followed else 1.5)
 
