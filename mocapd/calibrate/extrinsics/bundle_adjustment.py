@@ -190,12 +190,10 @@ def adjust_bundle(
     for _ in range(2 if gentle is not params else 0):
         right = ~in_wrong_views(scene, seen, _deviation_px(scene, seen, one_sided, params))
         scene = _moved(_Problem(scene, seen, corner_px, size_px, params), indices, right)
-    corner_px = np.hypot(
-        corner_deviations_px(scene, seen, params.least_corner_px),
-        motion_deviations_px(scene, seen, one_sided),
-    )
+    corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
     used = error_px <= np.maximum(params.outlier_sigmas * corner_px, params.least_outlier_px)
+    corner_px = np.hypot(corner_px, motion_deviations_px(scene, seen, one_sided))
     if params.longest_gap >= _FOLLOWED:
         used &= ~in_wrong_views(scene, seen, corner_px)
     problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
