@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
+from mocapd.calibrate.board.board_motion import followed_from_one_side
 from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
     ReprojectionProblem,
@@ -14,7 +15,7 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     residuals_px,
     with_steps,
 )
-from mocapd.calibrate.extrinsics.bundle_adjustment import adjust_bundle
+from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams, adjust_bundle
 from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import (
     guess_world,
@@ -136,6 +137,27 @@ def test_a_chain_of_cameras_is_solved_on_the_floor() -> None:
     area = play_area_error(found, seen.of(bundle.used))
     assert area is not None
     assert area.median_cm < 0.1
+
+
+def test_a_view_that_is_off_as_a_whole_is_left_out_as_a_whole() -> None:
+    """A picture of another moment: its corners are off by less than single ones may be."""
+    rig = cameras(3)
+    names = [c.name for c in rig]
+    views = views_of(rig, 20, {})
+    scene, indices = initial_scene(names, lenses_near(rig), views, BOARD_M)
+    seen = observations(names, views, indices, BOARD_M)
+    spoilt = (seen.camera == 1) & (seen.view == 7)
+    seen = replace(seen, pixels=seen.pixels + 1.2 * spoilt[:, None])
+    params = BundleParams(longest_gap=2.6)
+    apart = [9 * index for index in indices]
+    bundle = adjust_bundle(scene, apart, seen, np.array([[640.0, 480.0]] * 3), params)
+    assert not bundle.used[spoilt].any()
+    assert bundle.used[~spoilt].mean() > 0.99
+
+
+def test_motion_followed_from_one_side_is_that_of_the_ends() -> None:
+    one_sided = followed_from_one_side([4, 0, 1, 2, 9, 3], 1.5)
+    np.testing.assert_array_equal(one_sided, [True, True, False, False, True, False])
 
 
 def test_cameras_that_share_no_position_are_named() -> None:

@@ -30,12 +30,12 @@ def lenses(rig: tuple[Camera, ...], off: float = 1.01) -> dict[str, Intrinsics]:
 
 
 def aligned(
-    clocks: Mapping[str, Clock], rig: tuple[Camera, ...] = RIG, seed: int = 3
+    clocks: Mapping[str, Clock], rig: tuple[Camera, ...] = RIG, seed: int = 3, most: int = 200
 ) -> AlignedViews:
     session = Session(rig, clocks, seconds_s=5.0, speed_mps=0.3, seed=seed)
     sightings, stamps = record(session)
     views = {one.recording.name: one.views for one in sightings}
-    return align_views(views, lenses(rig), stamps, BOARD_M, 200)
+    return align_views(views, lenses(rig), stamps, BOARD_M, most)
 
 
 @pytest.mark.parametrize(
@@ -55,6 +55,16 @@ def test_cameras_in_step_stay_as_they_are(seed: int) -> None:
     for name, own in found.instants.lags.items():
         assert max(map(abs, own.values())) < 1e-9, name
         assert all(instant == index for instant, index in found.instants.source[name].items())
+
+
+@pytest.mark.parametrize(("late_frames", "step"), [(0.0, 3), (0.5, 1)])
+def test_positions_are_spread_evenly_unless_motion_must_be_followed(
+    late_frames: float, step: int
+) -> None:
+    found = aligned({"cam1": Clock(late_frames / 30.0)}, most=60)
+    instants = sorted(found.instants.source["cam0"])
+    assert 40 <= len(instants) <= 60
+    assert np.median(np.diff(instants)) == step
 
 
 def test_frames_that_the_stamps_show_as_lost_are_no_trouble() -> None:

@@ -154,7 +154,7 @@ def _as_dict(found: "FolderCalibration") -> dict[str, object]:
         },
         "refused": {
             name: {
-                "no_board": one.pictures - one.views - len(one.refused_views),
+                "no_board": one.no_board,
                 "views": list(one.refused_views),
                 "corners": one.refused_corners,
             }

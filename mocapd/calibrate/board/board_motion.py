@@ -3,12 +3,23 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.calibrate.extrinsics.board_reprojection import ReprojectionProblem
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 _REACH = 2  # positions to either side
+
+
+def followed_from_one_side(indices: Sequence[int], longest_gap: float) -> NDArray[np.bool_]:
+    """(V,): positions without a neighbour within `longest_gap` [frames] on one of their sides: their motion is not
+    known as well."""
+    order = np.argsort(indices)
+    near = np.diff(np.asarray(indices, dtype=float)[order]) <= longest_gap
+    out = np.ones(len(order), bool)
+    out[order] = ~(np.append(False, near) & np.append(near, False)) if len(order) else out
+    return out
 
 
 def board_paths(scene: ReprojectionProblem, indices: Sequence[int], longest_gap: float) -> Floats:

@@ -26,6 +26,9 @@ class Affine:
 
     def apply(self, points_m: Floats) -> Floats:
         """Points (...,4,3) of b in a [m]; a batch (K,) goes along the axis before the points."""
+        if self.L.ndim == 2:  # one product, not one for each board, which takes three times as long
+            flat: Floats = points_m.reshape(-1, 3) @ self.L.T + self.t_m
+            return flat.reshape(points_m.shape)
         out: Floats = points_m @ np.swapaxes(self.L, -1, -2) + self.t_m[..., None, :]
         return out
 

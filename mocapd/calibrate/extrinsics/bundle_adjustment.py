@@ -12,7 +12,7 @@ import scipy  # its parts when they are used: they take long to import
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.back_side import OFFSET, GluingPrior
-from mocapd.calibrate.board.board_motion import board_paths
+from mocapd.calibrate.board.board_motion import board_paths, followed_from_one_side
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
@@ -21,15 +21,20 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     residuals_px,
     with_steps,
 )
-from mocapd.calibrate.extrinsics.corner_noise import corner_deviations_px, usual_deviations_px
+from mocapd.calibrate.extrinsics.corner_noise import (
+    corner_deviations_px,
+    in_wrong_views,
+    motion_deviations_px,
+    usual_deviations_px,
+)
+from mocapd.calibrate.extrinsics.lower_triangles import lower_triangle, solved_lower
 from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
+from mocapd.calibrate.extrinsics.sparse_least_squares import least_squares_steps
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Floats, Ints
 
-# of the diagonal, tried in turn: the matrix only shapes the steps, the solution is the same
-_RIDGES = (1e-9, 1e-6, 1e-3)
 _FOLLOWED = 2.0  # longest gap [frames] from which on the board's motion is followed
 _HELD_FOCAL, _HELD_MIDDLE, _HELD_DIST = 0.02, 0.006, (0.05, 0.1, 0.002, 0.002, 0.1)
 _STRETCH = 5  # positions next to each other, whose errors may be of one cause
@@ -41,7 +46,6 @@ class BundleParams:
 
     corner_px: float = 1.0  # deviation of a corner as first assumed; then it is measured,
     least_corner_px: float = 0.1  # and is never below this
-    soft: float = 1.0  # residuals above so many deviations count less and less (soft l1)
     outlier_sigmas: float = 5.0  # a corner is dropped above so many robust deviations,
     least_outlier_px: float = 1.5  # but never below this
     delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
@@ -170,28 +174,62 @@ def adjust_bundle(
     outliers.
     """
     params = params or BundleParams()
+    one_sided = followed_from_one_side(indices, params.longest_gap)
     corner_px = np.full(len(seen.camera), params.corner_px)
+    if params.longest_gap >= _FOLLOWED:
+        corner_px = usual_deviations_px(scene, seen, params.corner_px)
     gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
     scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+    every = np.ones(len(seen.camera), bool)
     for done in range(params.most_rounds):
         before = scene.delay
-        scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
-        # one deviation for all: as long as delays are not settled, what moves is off for that reason
-        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
-        scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
+        scene = _moved(_Problem(scene, seen, corner_px, size_px, gentle), indices, every)
         settled = np.abs(scene.delay - before).max(initial=0.0) < params.settled_frames
         if done + 1 >= params.rounds and settled:
             break
-    if gentle is not params:
-        scene = replace(scene, path=board_paths(scene, indices, params.longest_gap))
-        corner_px = usual_deviations_px(scene, seen, params.least_corner_px)
-        scene = _solve(_Problem(scene, seen, corner_px, size_px, params), robust=True)
+    for _ in range(2 if gentle is not params else 0):
+        right = ~in_wrong_views(scene, seen, _deviation_px(scene, seen, one_sided, params))
+        scene = _moved(_Problem(scene, seen, corner_px, size_px, params), indices, right)
     corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
     error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
     used = error_px <= np.maximum(params.outlier_sigmas * corner_px, params.least_outlier_px)
+    corner_px = np.hypot(corner_px, motion_deviations_px(scene, seen, one_sided))
+    if params.longest_gap >= _FOLLOWED:
+        used &= ~in_wrong_views(scene, seen, corner_px)
     problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
     scene = _solve(problem, robust=False)
     return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
+
+
+def _deviation_px(
+    scene: ReprojectionProblem,
+    seen: Observations,
+    one_sided: NDArray[np.bool_],
+    params: BundleParams,
+) -> Floats:
+    """(N,): one deviation for all corners - as long as delays are not settled, what moves is off for that reason - and
+    that of the motion."""
+    usual_px = usual_deviations_px(scene, seen, params.least_corner_px)
+    return np.hypot(usual_px, motion_deviations_px(scene, seen, one_sided))
+
+
+def _moved(
+    problem: _Problem, indices: Sequence[int], right: NDArray[np.bool_]
+) -> ReprojectionProblem:
+    """Solved from the observations (N,) that are right, along the motion of the board in the solution before."""
+    scene, seen, params = problem.scene, problem.seen, problem.params
+    placed = np.unique(seen.view[right])
+    numbers = [indices[v] for v in placed.tolist()]
+    boards = replace(scene, scene_from_board=scene.scene_from_board[placed])
+    path = np.zeros_like(scene.path)
+    path[placed] = board_paths(boards, numbers, params.longest_gap)
+    one_sided = np.ones(len(indices), bool)
+    one_sided[placed] = followed_from_one_side(numbers, params.longest_gap)
+    scene = replace(scene, path=path)
+    corner_px = _deviation_px(scene, seen, one_sided, params)
+    return _solve(
+        _Problem(scene, seen.of(right), corner_px[right], problem.size_px, params), robust=True
+    )
 
 
 def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundleParams) -> BundleParams:
@@ -210,23 +248,37 @@ def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundlePara
 
 
 def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
-    """Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
+    """robust: far corners count less and less, but of a recording in motion no prior does."""
+    if problem.params.longest_gap < _FOLLOWED:
+        return _solve_at_rest(problem, robust)
+    corners = 2 * len(problem.corner_px) if robust else 0
+    x = least_squares_steps(
+        problem.error, problem.slope, problem.columns, corners, problem.params.evaluations
+    )
+    return with_steps(problem.scene, *problem.steps(x))
+
+
+def _solve_at_rest(problem: _Problem, robust: bool) -> ReprojectionProblem:
+    """Positions one by one, often few and with an initial scene that is far off: trust regions find the way from
+    there, which damping alone does not.
+
+    Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
 
     In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
     along the valleys of focal length and depth.
     """
     start = problem.slope(np.zeros(problem.columns))
-    L = _lower((start.T @ start).toarray())
+    L = lower_triangle((start.T @ start).toarray())
 
     def step(y: Floats) -> Floats:
-        return _solved_lower(L, y, 1)
+        return solved_lower(L, y, 1)
 
     def slope(y: Floats) -> "scipy.sparse.linalg.LinearOperator":
         J = problem.slope(step(y))
         return scipy.sparse.linalg.LinearOperator(
             J.shape,
             matvec=lambda v: J @ step(v.ravel()),
-            rmatvec=lambda u: _solved_lower(L, J.T @ u.ravel(), 0),
+            rmatvec=lambda u: solved_lower(L, J.T @ u.ravel(), 0),
         )
 
     solution = scipy.optimize.least_squares(
@@ -238,39 +290,10 @@ def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
         # full Gauss-Newton steps
         tr_options={"regularize": False, "atol": 1e-7, "btol": 1e-7, "maxiter": 800},
         loss="soft_l1" if robust else "linear",
-        f_scale=problem.params.soft,
         ftol=1e-5,
         max_nfev=problem.params.evaluations,
     )
     return with_steps(problem.scene, *problem.steps(step(solution.x)))
-
-
-def _solved_lower(L: Floats, b: Floats, transposed: int) -> Floats:
-    """inv(L) b, or inv(L^T) b, for a lower triangle without zeros on its diagonal.
-
-    LSMR asks for thousands of these, small ones: scipy's function of LAPACK's with checks around it takes five
-    times as long.
-    """
-    x: Floats = scipy.linalg.lapack.dtrtrs(L, b, lower=1, trans=transposed)[0]
-    return x
-
-
-def _lower(normal: Floats) -> Floats:
-    """L (n,n) of the normal matrix, or of one a little stiffer where that is singular to rounding.
-
-    A position that lost all its corners as outliers has no rows: it stays where it is.
-    """
-    diagonal = np.where(np.diag(normal) > 0.0, np.diag(normal), 1.0)
-    for ridge in _RIDGES:
-        stiff = normal.copy()
-        stiff[np.diag_indices(len(normal))] = (1.0 + ridge) * diagonal
-        # info: 0, or the minor that is not positive
-        L, info = scipy.linalg.lapack.dpotrf(stiff, lower=True, clean=True)
-        if info == 0:
-            lower: Floats = L
-            return lower
-    scales: Floats = np.diag(np.sqrt(diagonal))
-    return scales
 
 
 def _deviations(problem: _Problem) -> tuple[Floats, Floats, Floats | None]:

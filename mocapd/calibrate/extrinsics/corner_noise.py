@@ -1,6 +1,7 @@
 """How far off the corners are: by themselves, and more so the faster they move where a camera's time is not even."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
@@ -13,6 +14,8 @@ from mocapd.types import Floats
 _UNEVEN_FRAMES = (0.0, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.0)  # tried
 _CORNERS_PX = 2.0 ** np.arange(-1.0, 1.01, 0.25)  # tried, times the usual one
 _TAIL = 4.0  # degrees of freedom: outliers count little
+_WRONG = 4.0  # deviations of the middle corner of a view, above which all of the view is wrong
+_ONE_SIDED = 0.2  # error of the board's motion where it is followed from one side, as a part of it
 _GAIN = 10.0  # of log likelihood, in pictures, before time is called uneven
 
 
@@ -48,6 +51,32 @@ def corner_deviations_px(scene: ReprojectionProblem, seen: Observations, least_p
         uneven = int(np.argmax(best))
         if best[uneven] > best[0] + _GAIN:
             out[own] = deviation[int(np.argmax(logs[:, uneven])), uneven]
+    return out
+
+
+def motion_deviations_px(
+    scene: ReprojectionProblem, seen: Observations, one_sided: NDArray[np.bool_]
+) -> Floats:
+    """(N,): of corners from where the board's motion leads from its position's instant to that of the picture, where
+    (V,) it is followed from one side."""
+    way_frames = np.abs(scene.delay[seen.camera] + seen.lag)
+    out: Floats = _ONE_SIDED * corner_speeds_px(scene, seen) * way_frames * one_sided[seen.view]
+    return out
+
+
+def in_wrong_views(
+    scene: ReprojectionProblem, seen: Observations, deviation_px: Floats
+) -> NDArray[np.bool_]:
+    """(N,): corners of a view - one camera's of one position - of which half are far off, also by what is usual in
+    that camera: a pose or a motion of the board that is wrong, and no error of single corners."""
+    error = np.linalg.norm(residuals_px(scene, seen), axis=1) / deviation_px
+    out = np.zeros(len(error), bool)
+    for camera in np.unique(seen.camera):
+        own = np.flatnonzero(seen.camera == camera)
+        limit = _WRONG * max(1.0, float(np.median(error[own])) / 1.18)
+        for view in np.unique(seen.view[own]):
+            corners = own[seen.view[own] == view]
+            out[corners] = np.median(error[corners]) > limit
     return out
 
 

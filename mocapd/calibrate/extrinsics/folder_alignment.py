@@ -9,7 +9,7 @@ from mocapd.calibrate.board.back_side import usual_back
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.board.recordings import RecordingTimes
 from mocapd.calibrate.extrinsics.board_track import BoardTrack, board_track
-from mocapd.calibrate.extrinsics.instants import Instants, gather
+from mocapd.calibrate.extrinsics.instants import IN_STEP, Instants, gather
 from mocapd.calibrate.extrinsics.pose_graph import camera_from_board, seen_poses
 from mocapd.calibrate.extrinsics.time_alignment import AlignedTimes, align_times
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
@@ -51,7 +51,9 @@ def align_views(
     followed = any(track.followed for track in tracks.values())
     period_s = max(track.step_s for track in tracks.values())
     start_s = min(clocks[times.reference].stamps_s.values())
-    instants = gather(views, times.times_s, period_s, start_s, most)
+    # parts of a frame show only where motion is followed
+    in_step = all(t.followed for t in tracks.values()) and times.farthest_s < IN_STEP * period_s
+    instants = gather(views, times.times_s, period_s, start_s, most, in_step)
     return AlignedViews(instants, times, _FOLLOWED_GAP if followed else 1.5)
 
 

@@ -46,15 +46,17 @@ class FolderParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraReport:
-    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, pictures with the board,
-    `backs` of them with its back. `delay_frames`: how much later than the first camera it exposes pictures of one
-    stamp, at first where frames are lost; `place_cm`: how near it is to where it is said to be."""
+    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, `views` in the joint solution,
+    `backs` of the pictures show the board's back, `no_board` of them no board. `delay_frames`: how much later than the
+    first camera it exposes pictures of one stamp, at first where frames are lost; `place_cm`: how near it is to where
+    it is said to be."""
 
     rms_px: float
     held_out_px: float
     views: int
     backs: int
     pictures: int
+    no_board: int
     covered: float
     delay_frames: float
     focal_deviation: float
@@ -252,6 +254,7 @@ def _report(
         fit.views,
         sum(view.back for view in one.views.values()),
         one.pictures,
+        one.pictures - len(one.views),
         covered(list(one.views.values()), one.recording.size_px),
         delay_frames,
         fit.focal_deviation,

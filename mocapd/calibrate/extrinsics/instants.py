@@ -8,6 +8,9 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.types import Floats, Ints
 
+IN_STEP = (
+    0.1  # instants, up to which pictures are taken for simultaneous without following the board
+)
 _BURST = 5  # positions next to each other, from which the motion of the one in the middle is known
 
 
@@ -36,9 +39,11 @@ def gather(
     period_s: float,
     start_s: float,
     most: int,
+    in_step: bool,
 ) -> Instants:
     """Instants every `period_s` from `start_s` on, each picture with the nearest; of several pictures of one camera
-    the nearest. More than `most` instants are thinned to bursts, so that motion can still be followed."""
+    the nearest. More than `most` instants are thinned: evenly, which shows the board at the most places, where the
+    cameras are in_step; else to bursts, so that motion can be followed."""
     lags: dict[str, dict[int, float]] = {name: {} for name in views}
     source: dict[str, dict[int, int]] = {name: {} for name in views}
     for name, own in views.items():
@@ -51,7 +56,8 @@ def gather(
             if abs(lag) < abs(lags[name].get(instant, np.inf)):
                 lags[name][instant], source[name][instant] = lag, index
     every = np.array(sorted({instant for own in lags.values() for instant in own}), dtype=np.int64)
-    kept = set(_thinned(every, most).tolist())
+    late = max((abs(lag) for own in lags.values() for lag in own.values()), default=0.0)
+    kept = set(_thinned(every, most, in_step and late < IN_STEP).tolist())
     return Instants(
         {
             name: {i: views[name][k] for i, k in sorted(own.items()) if i in kept}
@@ -63,10 +69,12 @@ def gather(
     )
 
 
-def _thinned(instants: Ints, most: int) -> Ints:
-    """All, or bursts of a few next to each other, evenly over the recording."""
+def _thinned(instants: Ints, most: int, in_step: bool) -> Ints:
+    """All, or so many evenly over the recording, not in_step in bursts of a few next to each other."""
     if len(instants) <= most:
         return instants
+    if in_step:
+        return instants[:: -(-len(instants) // most)]
     bursts = max(1, most // _BURST)
     starts: Floats = np.linspace(0, len(instants) - _BURST, bursts)
     rows = np.round(starts).astype(np.int64)[:, None] + np.arange(_BURST)

@@ -82,7 +82,9 @@ class _Trials:
         """(T,K): of the corners, as each camera sees what the other one says; NaN without a partner."""
         in_a = self.a.pixels(a_from_b.apply(self.points_m)) - self.seen_px
         in_b = self.b.pixels(a_from_b.inverse().apply(self.a.points_m))[:, None] - self.seen_b_px
-        square = 0.5 * (np.square(in_a) + np.square(in_b)).sum(axis=3).mean(axis=2)
+        # mean of four corners and two cameras; einsum is much faster than sums along short axes
+        square = np.einsum("tkci,tkci->tk", in_a, in_a) + np.einsum("tkci,tkci->tk", in_b, in_b)
+        square *= 1.0 / 8.0
         out: Floats = np.where(self.known, np.sqrt(square), np.nan)
         return out
 
@@ -152,7 +154,7 @@ def _fitting(trials: _Trials, rows: Ints) -> list[tuple[float, Affine]]:
     for _ in range(3):
         a_from_b = aligned(a_m, b_m, weight)
         off_px = trials.a.pixels(a_from_b.apply(b_m)) - trials.seen_px[rows]
-        error = np.linalg.norm(off_px, axis=3).mean(axis=2)
+        error = np.sqrt(np.einsum("tkci,tkci->tkc", off_px, off_px)).mean(axis=2)
         error[~known] = np.nan
         middle = np.nanmedian(error, axis=0)
         square = np.square(np.where(known, error, np.inf) / (_LOOSE * middle + 1e-9))

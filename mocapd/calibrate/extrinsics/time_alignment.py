@@ -27,13 +27,15 @@ TIME_FIX = (
 class AlignedTimes:
     """times_s[camera][picture] [s] in the reference camera's time, of pictures whose time is known.
 
-    offset_s: by camera, how much later its clock says the same (the first stretch, where it jumps); `maps` has all.
+    `maps`: by camera, from its stamps to that time. farthest_s: largest offset between two cameras of which their
+    motion is sure, also of those that are too small to be mended.
     """
 
     reference: str
     times_s: Mapping[str, Mapping[int, float]]
     maps: Mapping[str, ClockMap]
     period_s: Mapping[str, float]
+    farthest_s: float
 
     def troubles(self, later_s: Mapping[str, float] | None = None) -> tuple[str, ...]:
         """What the stamps do not say, camera by camera. later_s: how much later [s] each exposes than was found here."""
@@ -85,8 +87,11 @@ def align_times(
             index: float(t) for index, t, good in zip(indices, at_s, known, strict=True) if good
         }
         merged[name] = _merged(maps[name])
+    farthest_s = max(
+        (float(np.abs(o.offset_s).max()) for o in pairs.values() if o.sure), default=0.0
+    )
     return AlignedTimes(
-        reference, times, merged, {name: track.period_s for name, track in tracks.items()}
+        reference, times, merged, {n: track.period_s for n, track in tracks.items()}, farthest_s
     )
 
 
