@@ -63,8 +63,10 @@ def solved(
     spec: BoardSpec = SPEC,
     floor: int | None = HELD,
     gluing: GluingPrior | None = None,
+    place_cm: float = 10.0,
 ) -> WorldExtrinsics:
-    params = BoardExtrinsicsParams(bundle=BundleParams(gluing=gluing or GluingPrior()))
+    bundle = BundleParams(gluing=gluing or GluingPrior())
+    params = BoardExtrinsicsParams(bundle=bundle, place_cm=place_cm)
     sizes_px = [camera.size_px for camera in RIG]
     found = solve_extrinsics(NAMES, sizes_px, true_lenses(RIG), views, spec, params)
     return place_in_world(found, floor, "the floor", params)
@@ -212,7 +214,8 @@ def test_the_back_is_measured_since_a_thickness_or_gluing_taken_for_granted_cost
     off_cm = {}
     for how, mean_m in (("measured", None), ("thickness known", thickness_m), ("taken as 0", 0.0)):
         known = None if mean_m is None else GluingPrior((0.0, 0.0, 0.0, mean_m), (1e-7,) * 4)
-        error_m, scale = off_m(RIG, solved(views, gluing=known).rig)
+        # what is taken for granted wrongly is refused otherwise
+        error_m, scale = off_m(RIG, solved(views, gluing=known, place_cm=100.0).rig)
         off_cm[how] = 100.0 * error_m.max()
         glued = "1.4 mm askew" if askew else "in register"
         told = f"{1000 * thickness_m:g} mm, {glued}, {how}"

@@ -75,7 +75,8 @@ def _track(
     outline_m = np.array(
         [[x, y, 0.0] for y in (low[1], high[1]) for x in (low[0], high[0])], dtype=float
     )
-    at_s = np.array(sorted(stamps_s.values()))
-    step_s = float(np.median(np.diff(at_s))) if len(at_s) > 1 else clock.period_s
+    # the pictures that were looked at, of which some show no board: pictures of a folder are one position each
+    every = int(np.gcd.reduce(np.diff(sorted(stamps_s)))) if len(stamps_s) > 1 else 1
+    step_s = every * clock.period_s
     focal_px = float(np.mean(np.diag(intrinsics.K)[:2]))
     return board_track(poses, stamps_s, outline_m, focal_px, clock.period_s, step_s)

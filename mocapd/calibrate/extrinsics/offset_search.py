@@ -265,7 +265,10 @@ def _between_trials_s(trials: _Trials, path: _Path) -> float:
             b_m = trials.points_m[rows, at][:, None]
             a_from_b = aligned(trials.a.points_m, b_m, weight[:, None])[0]
         square = np.square(trials.error_px(a_from_b)[rows, at] / path.scale_px)
-        fits.append(float(np.nanmean(np.minimum(square, _WRONG))))
+        known = square[np.isfinite(square)]
+        if not len(known):
+            return 0.0
+        fits.append(float(np.minimum(known, _WRONG).mean()))
     before, here, after = fits
     bend = before - 2.0 * here + after
     if bend <= 0.0:
