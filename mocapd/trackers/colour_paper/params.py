@@ -25,7 +25,7 @@ class Params:
     stride_px: int = 2  # every second pixel each way is classified
 
     # 0: the paper's colour model. Cloth in real folds and lamps spreads wider than five even images
-    # show (shirt/colour/colour_model.py); `tolerant` has both, and thresholds that let in as much background
+    # show (shirt/colour/colour_model.py); `tolerating` has both, and thresholds that let in as much background
     shading_sigma: float = 0.0
     noise_sigma: float = 0.0
     threshold: float = 3.0  # T of step 1 [standard deviations]
@@ -44,10 +44,9 @@ class Params:
     min_agreement: float = 0.35  # share of rendered samples that are classified alike
 
 
-def published(baseline: bool = False, tolerant: bool = False) -> Params:
-    """The paper's method or its baseline; tolerant: see below."""
-    params = Params(pose_prior=not baseline, adaptive_white_balance=not baseline)
-    return tolerating(params) if tolerant else params
+def published(baseline: bool = False) -> Params:
+    """The paper's method or its baseline."""
+    return Params(pose_prior=not baseline, adaptive_white_balance=not baseline)
 
 
 def tolerating(params: Params) -> Params:
