@@ -5,8 +5,8 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.published.hecht2009.params import Params as Hecht2009Params
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex_paper.params import Params as PaperParams
 from mocapd.trackers.steadying import Following
 
 _SOFT_M, _SOFT_RAD = 1e3, 1e3  # standard deviations that hold nothing
@@ -86,23 +86,23 @@ FLEX_ABLATIONS: Mapping[str, Callable[[Params], Params]] = MappingProxyType(
 )
 
 
-def _no_depth_noise(params: PaperParams) -> PaperParams:
+def _no_depth_noise(params: Hecht2009Params) -> Hecht2009Params:
     return replace(params, motion=replace(params.motion, depth_noise=False))
 
 
-def _no_particle_constraints(params: PaperParams) -> PaperParams:
+def _no_particle_constraints(params: Hecht2009Params) -> Hecht2009Params:
     return replace(params, particle_constraints=False)
 
 
-def _no_occlusion(params: PaperParams) -> PaperParams:
+def _no_occlusion(params: Hecht2009Params) -> Hecht2009Params:
     return replace(params, score=replace(params.score, occlusion=False))
 
 
-def _no_appearance(params: PaperParams) -> PaperParams:
+def _no_appearance(params: Hecht2009Params) -> Hecht2009Params:
     return replace(params, score=replace(params.score, appearance=False))
 
 
-FLEX_PAPER_ABLATIONS: Mapping[str, Callable[[PaperParams], PaperParams]] = MappingProxyType(
+HECHT2009_ABLATIONS: Mapping[str, Callable[[Hecht2009Params], Hecht2009Params]] = MappingProxyType(
     {
         "no depth noise": _no_depth_noise,
         "no particle constraints": _no_particle_constraints,

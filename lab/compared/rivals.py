@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from lab.compared.ablations import FLEX_ABLATIONS, FLEX_PAPER_ABLATIONS
+from lab.compared.ablations import FLEX_ABLATIONS, HECHT2009_ABLATIONS
 from lab.compared.compare import BASELINE
 from mocapd.calibration.calibration_record import Calibration
+from mocapd.published.hecht2009.params import Params as Hecht2009Params
+from mocapd.published.wang2011.params import published
 from mocapd.session.side_by_side import each_camera
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.trackers.colour_paper.params import published
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex_paper.params import Params as PaperParams
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 
@@ -35,16 +35,16 @@ def ready_rival(rival: Rival, resources: Resources, calibration: Calibration) ->
 RIVALS: Mapping[str, Mapping[str, Rival]] = MappingProxyType(
     {
         "colour": {
-            "paper": Rival("colour_paper", published()),
-            BASELINE: Rival("colour_paper", published(baseline=True)),
+            "paper": Rival("wang2011", published()),
+            BASELINE: Rival("wang2011", published(baseline=True)),
         },
         "flex": {
-            "paper": Rival("flex_paper", PaperParams()),
+            "paper": Rival("hecht2009", Hecht2009Params()),
             **{label: Rival("flex", edit(Params())) for label, edit in FLEX_ABLATIONS.items()},
         },
-        "flex_paper": {
-            label: Rival("flex_paper", edit(PaperParams()))
-            for label, edit in FLEX_PAPER_ABLATIONS.items()
+        "hecht2009": {
+            label: Rival("hecht2009", edit(Hecht2009Params()))
+            for label, edit in HECHT2009_ABLATIONS.items()
         },
     }
 )

@@ -31,14 +31,14 @@ from mocapd.evaluate.capture_eval import CaptureResult, Evidence
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
+from mocapd.published.wang2011.classify_kernels import sum_colours
+from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
 from mocapd.shirt.colour.whitening import fold
 from mocapd.trackers.colour.params import Params
-from mocapd.trackers.colour_paper.classify_kernels import sum_colours
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet
-from mocapd.vision.distance_maps import DistanceMaps
 
 _PRIOR_WEIGHT = 6.0  # C = 6 / s, s being the side of the shirt's square
 _WHOLE = np.ones((3, 3), np.uint8)

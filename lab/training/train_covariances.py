@@ -22,11 +22,8 @@ from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
 from mocapd.body.shirt_patches import N_LABELS
 from mocapd.geometry import rotations
-from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
-from mocapd.shirt.pose_database.pose_sampling import SamplingParams, poses_from_cube, random_cube
-from mocapd.trackers.colour_paper.paper_drawing import (
+from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.drawing import (
     Grid,
     PatchRenderer,
     Posture,
@@ -34,12 +31,15 @@ from mocapd.trackers.colour_paper.paper_drawing import (
     posture,
     project_body,
 )
-from mocapd.trackers.colour_paper.paper_segmenter import Sight
-from mocapd.trackers.colour_paper.params import Params
-from mocapd.trackers.colour_paper.patch_kernels import classified_patches
-from mocapd.trackers.colour_paper.placement import blended_local, constraints, guess, place
+from mocapd.published.wang2011.params import Params
+from mocapd.published.wang2011.patch_kernels import classified_patches
+from mocapd.published.wang2011.placement import blended_local, constraints, guess, place
+from mocapd.published.wang2011.segmenter import Sight
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.pose_database.database_file import load_or_build
+from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
+from mocapd.shirt.pose_database.pose_sampling import SamplingParams, poses_from_cube, random_cube
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.distance_maps import DistanceMaps
 from mocapd.vision.raster_kernels import label_triangles
 
 _FRAME_S = 1.0 / 30.0

@@ -86,7 +86,9 @@ def bench_command(
     own = effective.tracker
     with ProgressBars() as progress:
         played = open_input(capture, effective.cache_dir, own.stature_m, progress)
-        bench = Bench(played, tracker, effective.cache_dir, own.tracking, progress)
+        bench = Bench(
+            played, own.name if tracker else None, effective.cache_dir, own.tracking, progress
+        )
         if live:
             command = _daemon_command(capture, config, settings)
             found = bench.live(command, seconds, _watching() if watched else None)

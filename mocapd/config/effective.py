@@ -4,6 +4,7 @@ Precedence: flag > environment MOCAPD_* > config file > built-in. No part ever s
 `service.py` hands each its own section.
 """
 
+import logging
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +19,9 @@ from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
 from mocapd.errors import ConfigError
+from mocapd.trackers.registry import RENAMED
+
+_log = logging.getLogger(__name__)
 
 BUILT_IN = "built-in"
 
@@ -72,8 +76,8 @@ def load_config(
     """Read every source and check every value.
 
     `flags`: key paths to their text, as `--set` gives them. `file`: the config file, which must
-    exist. Raises ConfigError naming the place, the key, the value and the mend; InputError when the
-    file cannot be read.
+    exist. A tracker's former name becomes the present one, with a warning in the log. Raises ConfigError
+    naming the place, the key, the value and the mend; InputError when the file cannot be read.
     """
     env = os.environ if env is None else env
     if file is None and env.get("MOCAPD_CONFIG"):
@@ -85,6 +89,7 @@ def load_config(
     found: Found = _from_file(read_toml(file), known) if file else {}
     found |= _from_env(env, known)
     found |= _from_flags(flags or {}, known)
+    _rename_tracker(found)
     values = {path: value for path, (value, _) in found.items()}
     settings = tuple(
         Setting(key, *found.get(path, (key.default, BUILT_IN))) for path, key in known.items()
@@ -137,6 +142,19 @@ def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
             raise _unknown(path, known, "command line")
         found[path] = _from_text(known[path], text, "command line")
     return found
+
+
+def _rename_tracker(found: Found) -> None:
+    """Replace a former name of a tracker by the present one."""
+    name, origin = found.get("tracker.name", ("", ""))
+    if name in RENAMED:
+        found["tracker.name"] = (RENAMED[name], origin)
+        _log.warning(
+            "%s: tracker.name: %r is now named %r; the next release no longer accepts the old name",
+            origin,
+            name,
+            RENAMED[name],
+        )
 
 
 def _unknown(path: str, known: Mapping[str, Key], where: str) -> ConfigError:

@@ -20,7 +20,7 @@ def _predictions(outputs: Iterable[str]) -> Mapping[str, str]:
 _STUDY = "it served studies only, which lab/compared/ablations.py now does: leave it out"
 
 REMOVED: Mapping[str, str] = {
-    "tracker.variant": 'the published method is a tracker now: tracker.name = "colour_paper"',
+    "tracker.variant": 'the published method is a tracker now: tracker.name = "wang2011"',
     "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
     "tracker.confirm_s": "no other value did better: leave it out",
     "tracker.auto.trackers": 'name one tracker: tracker.name = "colour" for the shirt, "flex" for any clothes',

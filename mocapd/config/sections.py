@@ -81,7 +81,7 @@ class BundlerSection:
 class TrackerSection:
     """Which tracker, and what it needs to know of the wearer.
 
-    name: auto, the best of what can run; or one: colour, flex, colour_paper (as published), canned (moves by itself)
+    name: auto, the best of what can run; or one: colour, flex, canned (moves by itself), wang2011, hecht2009 (as published)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
     stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]

@@ -133,12 +133,6 @@ def _colour(calibration: Calibration, params: Any, resources: Resources) -> Trac
     )
 
 
-def _colour_paper(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.trackers.colour_paper.build import build_paper_tracker
-
-    return build_paper_tracker(calibration, _database(resources), params, resources.tracking)
-
-
 def _flex(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
     from mocapd.trackers.flex.build import build_flex_tracker
 
@@ -147,10 +141,16 @@ def _flex(calibration: Calibration, params: Any, resources: Resources) -> Tracke
     )
 
 
-def _flex_paper(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
+def _wang2011(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
+    from mocapd.published.wang2011.build import build_wang2011_tracker
 
-    return build_flex_paper_tracker(calibration, params, resources.tracking)
+    return build_wang2011_tracker(calibration, _database(resources), params, resources.tracking)
+
+
+def _hecht2009(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
+    from mocapd.published.hecht2009.build import build_hecht2009_tracker
+
+    return build_hecht2009_tracker(calibration, params, resources.tracking)
 
 
 def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
@@ -196,26 +196,31 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),
-        "colour_paper": TrackerEntry(
-            _colour_paper,
-            _rig_lacks,
-            sees=True,
-            reads_shirt=True,
-            make_caches=_database,
-            caches=(CACHE_NAME,),
-        ),
         "flex": TrackerEntry(
             _flex,
             _pair_lacks,
             sees=True,
             reads_outline=True,
         ),
-        "flex_paper": TrackerEntry(
-            _flex_paper,
+        "hecht2009": TrackerEntry(
+            _hecht2009,
             _pair_lacks,
             sees=True,
         ),
+        "wang2011": TrackerEntry(
+            _wang2011,
+            _rig_lacks,
+            sees=True,
+            reads_shirt=True,
+            make_caches=_database,
+            caches=(CACHE_NAME,),
+        ),
     }
+)
+
+# Names of earlier versions, accepted for one release: the configuration puts the present name in their place.
+RENAMED: Mapping[str, str] = MappingProxyType(
+    {"colour_paper": "wang2011", "flex_paper": "hecht2009"}
 )
 
 

@@ -20,6 +20,7 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.outputs.registry import OscSection, zenoh_section
 from mocapd.pipeline.bundler import BundlerParams
 from mocapd.session.camera_inputs import bundler_params
+from mocapd.trackers.registry import RENAMED, TRACKERS
 
 
 @pytest.fixture
@@ -314,6 +315,31 @@ def test_sections_of_a_table_stand_beside_the_keys_of_the_section_that_holds_the
     assert keys["tracker.colour.learn"].help == "whether it learns"
     whole = build(_Whole, {"tracker.name": "canned", "tracker.canned.count": 3})
     assert whole.tracker.own == {"colour": _Colour(), "canned": _Waves(3)}
+
+
+@pytest.mark.parametrize(("former", "present"), list(RENAMED.items()))
+def test_a_former_name_of_a_tracker_is_taken_for_the_present_one_with_one_warning(
+    file: Path, caplog: pytest.LogCaptureFixture, former: str, present: str
+) -> None:
+    loaded = load(file, f'[tracker]\nname = "{former}"\n')
+    assert loaded.config.tracker.name == present
+    assert next(s.value for s in loaded.settings if s.key.path == "tracker.name") == present
+    (line,) = caplog.messages
+    assert line.startswith(f"{file}:2: ")
+    assert repr(former) in line
+    assert repr(present) in line
+
+
+def test_every_former_name_of_a_tracker_leads_to_one_that_exists() -> None:
+    assert set(RENAMED.values()) <= set(TRACKERS)
+    assert not set(RENAMED) & set(TRACKERS)
+
+
+def test_the_present_name_of_a_tracker_brings_no_warning(
+    file: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert load(file, '[tracker]\nname = "wang2011"\n').config.tracker.name == "wang2011"
+    assert not caplog.messages
 
 
 @pytest.mark.parametrize("key", REMOVED)

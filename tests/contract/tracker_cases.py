@@ -7,15 +7,15 @@ from functools import cache
 import numpy as np
 
 from mocapd.calibration.calibration_record import Calibration, Wearer
+from mocapd.published.hecht2009.build import build_hecht2009_tracker
+from mocapd.published.wang2011.build import build_wang2011_tracker
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.colour_paper.build import build_paper_tracker
 from mocapd.trackers.flex.build import build_flex_tracker
-from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
 from mocapd.trackers.supervisor.kinds import KINDS
@@ -158,7 +158,7 @@ CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "auto": auto_case,
     "canned": canned_case,
     "colour": lambda: shirt_case(build_colour_tracker),
-    "colour_paper": lambda: shirt_case(build_paper_tracker),
+    "wang2011": lambda: shirt_case(build_wang2011_tracker),
     "flex": lambda: plain_case(build_flex_tracker),
-    "flex_paper": lambda: plain_case(build_flex_paper_tracker),
+    "hecht2009": lambda: plain_case(build_hecht2009_tracker),
 }

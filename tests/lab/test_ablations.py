@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lab.compared.ablations import FLEX_ABLATIONS, FLEX_PAPER_ABLATIONS
+from lab.compared.ablations import FLEX_ABLATIONS, HECHT2009_ABLATIONS
 from lab.compared.rivals import RIVALS, ready_rival
+from mocapd.published.hecht2009.params import Params as Hecht2009Params
 from mocapd.trackers.flex.params import Params
-from mocapd.trackers.flex_paper.params import Params as PaperParams
 from mocapd.trackers.registry import TRACKERS, Resources
 from mocapd.types import Rig, Tracking
 from tests.trackers.flex.plain_film import N_EMPTY, plain_film
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.kernels
 def test_each_ablation_differs_from_the_tracker_and_from_the_others() -> None:
     for usual, edits in (
         (Params(), FLEX_ABLATIONS.values()),
-        (PaperParams(), FLEX_PAPER_ABLATIONS.values()),
+        (Hecht2009Params(), HECHT2009_ABLATIONS.values()),
     ):
         different = [usual, *(edit(usual) for edit in edits)]  # type: ignore[arg-type]
         assert all(one not in different[:n] for n, one in enumerate(different))

@@ -96,7 +96,7 @@ def test_the_page_and_its_plots_are_the_same_bytes_twice(tmp_path: Path) -> None
 
 def test_against_other_ways_there_is_nothing_of_the_shirts_paper(tmp_path: Path) -> None:
     compared = {"full": [result_of("desk", 0.02)], "no occlusion": [result_of("desk", 0.05)]}
-    others = EvaluationResults("flex_paper", "full", compared["full"], compared, ())
+    others = EvaluationResults("hecht2009", "full", compared["full"], compared, ())
     written = write_page(tmp_path, others, "python -m lab.evaluation desk")
     assert [path.name for path in written] == ["evaluation.md", "eval_confidence.png"]
     text = written[0].read_text()

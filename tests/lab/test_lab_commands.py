@@ -24,7 +24,7 @@ def capture(cache_home: Path) -> Path:
 def test_the_published_tracker_is_set_beside_itself_without_each_of_its_steps(
     capture: Path, clean_env: dict[str, str], tmp_path: Path
 ) -> None:
-    words = ("small", "--tracker", "flex_paper", "--compare", "--out", tmp_path)
+    words = ("small", "--tracker", "hecht2009", "--compare", "--out", tmp_path)
     outcome = lab(clean_env, "evaluation", *words, cwd=capture.parent)
     assert outcome.code == 0, outcome.err
     compared = next(line for line in outcome.out.splitlines() if line.startswith("| RMS"))
@@ -32,7 +32,7 @@ def test_the_published_tracker_is_set_beside_itself_without_each_of_its_steps(
         "full", "no depth noise", "no particle constraints", "no occlusion", "no appearance",
     ]  # fmt: skip
     text = (tmp_path / "evaluation.md").read_text()
-    assert "python -m lab.evaluation small --tracker flex_paper --compare --out " in text
+    assert "python -m lab.evaluation small --tracker hecht2009 --compare --out " in text
 
 
 def test_only_trackers_that_have_rivals_are_compared(

@@ -26,11 +26,11 @@ from mocapd.fit.motion_state import (
 )
 from mocapd.fit.solver import Fitter
 from mocapd.geometry.rotations import IDENTITY_XYZW, exp
+from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.session.offline import RecordedTrack
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.whitening import fold
 from mocapd.types import Bytes
-from mocapd.vision.distance_maps import DistanceMaps
 from tests.geometry.rigs import ring
 
 pytestmark = pytest.mark.kernels

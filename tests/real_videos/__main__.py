@@ -27,7 +27,7 @@ is not known: it can only be said whether what is found lies where somebody is.
 
 ## A face, and the head that has it
 Ten clips of people who sign before one webcam (Intel, `intel_asl`, [CC BY 4.0](https://creativecommons.org/licenses/by/4.0/);
-pictures made smaller, boxes and outlines drawn into them). The head's tracker of `flex_paper` begins anew with each clip.
+pictures made smaller, boxes and outlines drawn into them). The head's tracker of `hecht2009` begins anew with each clip.
 *Face*: frames in which the cascade sees the face where the head is; *head*: frames in which a head is known, with its face or
 by its colours and outline alone. Every frame of the clips shows the face, in some a hand hides its chin.
 

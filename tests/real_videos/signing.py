@@ -10,10 +10,10 @@ import numpy as np
 from mocapd.capture.file import FileSource
 from mocapd.clock import seconds
 from mocapd.errors import EndOfStream
-from mocapd.fit.head.head_shape import ellipse_of, head_size
-from mocapd.fit.head.head_track import HeadPicture, HeadTrack
-from mocapd.fit.head.head_tracker import HeadTracker
 from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
+from mocapd.published.hecht2009.head.head_track import HeadPicture, HeadTrack
+from mocapd.published.hecht2009.head.head_tracker import HeadTracker
 from mocapd.types import Bytes, Camera, Frame
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 from tests.real_videos.contact_sheet import LEFT, MIDDLE

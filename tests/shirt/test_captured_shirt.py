@@ -15,7 +15,7 @@ from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.strokes import read_labelled, stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.types import Bytes
-from tests.vision.naive import NAMES
+from tests.shirt.example_colours import NAMES
 
 pytestmark = pytest.mark.kernels
 

@@ -7,7 +7,7 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.shirt.colour.colour_model import MIN_STANDARD_DEVIATION, fit_colour_model
 from mocapd.shirt.colour.strokes import stroke_colours, stroke_means
 from mocapd.types import Bytes
-from tests.vision.naive import MEANS, NAMES, example_model
+from tests.shirt.example_colours import MEANS, NAMES, example_model
 
 PATCH = 24
 

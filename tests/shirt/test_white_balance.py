@@ -10,7 +10,7 @@ from mocapd.shirt.colour.white_balance import (
     shade_precision,
     solve_white_balance,
 )
-from tests.vision.naive import MEANS, example_model, example_white_balance
+from tests.shirt.example_colours import MEANS, example_model, example_white_balance
 
 TRUE_W = example_white_balance()
 IMAGE = MEANS @ np.linalg.inv(TRUE_W).T

@@ -10,9 +10,9 @@ import pytest
 from mocapd.calibrate.bump.changed_places import Places, places_of
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.clock import nanoseconds
+from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.trackers.base import Track, Tracker
 from mocapd.trackers.flex.build import build_flex_tracker
-from mocapd.trackers.flex_paper.build import build_flex_paper_tracker
 from mocapd.trackers.known import known_shape
 from mocapd.types import FrameSet, Tracking
 from tests.trackers.flex.hard_film import CLOSE_PAIR, N_EMPTY, HardFilm, hard_film
@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.kernels, pytest.mark.long]
 
 Build = Callable[[Calibration], Tracker]
 BOTH = pytest.mark.parametrize(
-    "build", [build_flex_tracker, build_flex_paper_tracker], ids=["flex", "flex_paper"]
+    "build", [build_flex_tracker, build_hecht2009_tracker], ids=["flex", "hecht2009"]
 )
 
 

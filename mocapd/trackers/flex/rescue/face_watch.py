@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from mocapd.body.head_proportions import FACE_WIDTH, MIDDLE
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.head.head_shape import FACE_WIDTH, MIDDLE
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations

@@ -1,0 +1,18 @@
+"""Make the published tracker from what is known of rig and person."""
+
+from mocapd.calibration.calibration_record import Calibration
+from mocapd.published.hecht2009.params import Params
+from mocapd.published.hecht2009.tracker import Hecht2009Tracker
+from mocapd.trackers.known import known_rig, stature_m
+from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.vision.face.lbp_cascade import frontal_faces
+
+
+def build_hecht2009_tracker(
+    calibration: Calibration,
+    params: Params | None = None,
+    tracking: TrackingStateParams | None = None,
+) -> Hecht2009Tracker:
+    """The tracker. Raises ConfigError naming what is missing."""
+    rig, stature = known_rig(calibration), stature_m(calibration)
+    return Hecht2009Tracker(rig, stature, frontal_faces(), params or Params(), tracking)

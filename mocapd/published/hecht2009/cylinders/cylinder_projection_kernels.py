@@ -1,0 +1,106 @@
+"""Frusta as quadrilaterals in a picture: the simplified projection of [Hecht et al. 2009, figure 2].
+
+The outline of a round part around the axis a b is seen at right angles to the plane through the camera and the axis: its
+normal n gives the corners a + r n, b + r n, b - r n, a - r n, which are projected. The long edges are the first to the
+second and the fourth to the third. What a round end adds is left out.
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
+
+Array = NDArray[np.float64]
+
+NEAREST_M = 0.1  # depth of what is drawn at all
+_ALONG_RAY = (
+    1e-6  # sine of the angle between the rays to both ends, below which the axis has no direction
+)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def to_camera_frame(camera: WorkCamera, point: Array, out: Array) -> None:
+    """A world point (3,) in the camera's frame, out (3,) [m]."""
+    R, t, _, _, _ = camera
+    for i in range(3):
+        out[i] = R[i, 0] * point[0] + R[i, 1] * point[1] + R[i, 2] * point[2] + t[i]
+
+
+@njit(cache=True, nogil=True, inline="always", error_model="numpy")
+def pixel_at(
+    K: Array, dist: Array, far_r2: float, X: float, Y: float, Z: float
+) -> tuple[float, float]:
+    """Work pixel of a point before the camera, in the camera's frame [m]."""
+    x, y = X / Z, Y / Z
+    r2 = x * x + y * y
+    # far outside as the point of the same direction at the rim, moved outwards in proportion
+    inner, share = r2, 1.0
+    if r2 > far_r2:
+        inner, share = far_r2, np.sqrt(far_r2 / r2)
+    radial = 1.0 + inner * (dist[0] + inner * (dist[1] + inner * dist[4]))
+    u = x * radial + share * (2.0 * dist[2] * x * y + dist[3] * (r2 + 2.0 * x * x))
+    v = y * radial + share * (dist[2] * (r2 + 2.0 * y * y) + 2.0 * dist[3] * x * y)
+    return K[0] * u + K[2], K[1] * v + K[3]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def project_frustum(
+    camera: WorkCamera, a: Array, b: Array, radius_a: float, radius_b: float, quad: Array
+) -> bool:
+    """Corners quad (4,2) [work px] of a part between a and b (3,), points of the camera's frame [m]. False: an end is not
+    before the camera, and quad is as it was."""
+    if a[2] < NEAREST_M or b[2] < NEAREST_M:
+        return False
+    _, _, K, dist, far_r2 = camera
+    nx = a[1] * b[2] - a[2] * b[1]
+    ny = a[2] * b[0] - a[0] * b[2]
+    nz = a[0] * b[1] - a[1] * b[0]
+    size = np.sqrt(nx * nx + ny * ny + nz * nz)
+    if size < _ALONG_RAY * a[2] * b[2]:
+        # the axis runs along the ray: any direction across it will do
+        nx, ny, nz = a[2], 0.0, -a[0]
+        size = np.sqrt(nx * nx + nz * nz)
+    nx, ny, nz = nx / size, ny / size, nz / size
+    for k in range(4):
+        first = k % 3 == 0
+        p = a if first else b
+        r = radius_a if first else radius_b
+        if k > 1:
+            r = -r
+        quad[k, 0], quad[k, 1] = pixel_at(
+            K, dist, far_r2, p[0] + r * nx, p[1] + r * ny, p[2] + r * nz
+        )
+    return True
+
+
+@njit(cache=True, nogil=True)
+def project_limbs(
+    points: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
+) -> None:
+    """Both parts of N limbs: points (N,3,3) [m, world], radii (2,2) of each part's ends [m].
+
+    quads (N,2,4,2) [work px]; depths (N,2,2): of each part's ends [m]; quads of what is not before the camera: NaN.
+    """
+    p = np.empty((3, 3))
+    for n in range(points.shape[0]):
+        for i in range(3):
+            to_camera_frame(camera, points[n, i], p[i])
+        for f in range(2):
+            depths[n, f, 0], depths[n, f, 1] = p[f, 2], p[f + 1, 2]
+            if not project_frustum(camera, p[f], p[f + 1], radii[f, 0], radii[f, 1], quads[n, f]):
+                quads[n, f] = np.nan
+
+
+@njit(cache=True, nogil=True)
+def project_parts(
+    ends: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
+) -> None:
+    """Parts of one body: ends (C,2,3) [m, world], radii (C,2) [m]; quads (C,4,2), depths (C,2) as of `project_limbs`."""
+    a, b = np.empty(3), np.empty(3)
+    for c in range(ends.shape[0]):
+        to_camera_frame(camera, ends[c, 0], a)
+        to_camera_frame(camera, ends[c, 1], b)
+        depths[c, 0], depths[c, 1] = a[2], b[2]
+        if not project_frustum(camera, a, b, radii[c, 0], radii[c, 1], quads[c]):
+            quads[c] = np.nan

@@ -1,0 +1,99 @@
+"""What each body part looks like: ten reference colours along its axis, learned and then fixed [Hecht et al. 2009, III.B].
+
+Each camera has colours of its own: two webcams show one sleeve differently, and see other sides of it. A ring of a part is
+fixed once it was seen well for long enough, so that a part which was hidden at first is learned when it appears.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.published.hecht2009.cylinders.limb_params import LimbAppearanceParams
+from mocapd.published.hecht2009.cylinders.occlusion_kernels import OcclusionModel
+from mocapd.published.hecht2009.cylinders.part_colour_kernels import observe_colours
+from mocapd.types import Bytes, Floats, Singles
+
+RINGS = 10
+_SAMPLES = 2, 6  # of a ring, along and across
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AppearanceModel:
+    """Of V cameras and C parts: colour (V,C,10,3) BGR 0..255 at the middles of ten rings from start to end; seen_s
+    (V,C,10): for how long each was seen, counted by how surely and how much of it."""
+
+    colour: Singles
+    seen_s: Floats
+
+    @classmethod
+    def unknown(cls, n_views: int, n_parts: int) -> "AppearanceModel":
+        """Before anything was seen."""
+        return cls(
+            np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
+        )
+
+    def is_fixed(self, params: LimbAppearanceParams) -> bool:
+        """Whether no ring in any view changes any more."""
+        return bool((self.seen_s >= params.enough_s).all())
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RingColours:
+    """One picture's mean colour (C,10,3) BGR of each ring, and the share (C,10) of its samples that count."""
+
+    colour: Singles
+    share: Floats
+
+
+def observe(
+    quads: Floats,
+    depths_m: Floats,
+    colour: Bytes,
+    mask: Bytes,
+    occlusion: OcclusionModel,
+    hidden_by_m: float,
+) -> RingColours:
+    """The rings of parts (C,4,2) [work px], (C,2) [m] in a work picture (h,w,3); mask (h,w): not 0 where somebody is."""
+    mean, share = np.empty((len(quads), RINGS, 3), np.float32), np.empty((len(quads), RINGS))
+    observe_colours(
+        quads, depths_m, colour, mask, occlusion, _SAMPLES, hidden_by_m, mean, share
+    )  # fmt: skip
+    return RingColours(mean, share)
+
+
+def learn(
+    model: AppearanceModel,
+    view: int,
+    observed: RingColours,
+    confidence: Floats,
+    dt_s: float,
+    params: LimbAppearanceParams,
+) -> AppearanceModel:
+    """The running average with one more picture of camera `view`, taken dt_s after the one before.
+
+    confidence (C,2): 0..1 of both ends of each part, interpolated along it.
+    """
+    s = (np.arange(RINGS) + 0.5) / RINGS
+    local = confidence[:, :1] * (1.0 - s) + confidence[:, 1:] * s
+    seen = model.seen_s[view]
+    gain = np.where(seen < params.enough_s, np.clip(local, 0.0, 1.0) * observed.share * dt_s, 0.0)
+    colours, seen_s = model.colour.copy(), model.seen_s.copy()
+    rate = gain / np.maximum(seen + gain, 1e-12)
+    colours[view] += rate[..., None] * (observed.colour - colours[view])
+    seen_s[view] += gain
+    return replace(model, colour=colours, seen_s=seen_s)
+
+
+def reference_colours(model: AppearanceModel, along: int) -> Singles:
+    """Colours (V,C,along,3) at the middles of as many rows, interpolated between rings; at the ends, and between rings that
+    were never seen, that of the nearest one which was. NaN: no ring of the part was."""
+    n_views, n_parts, _, _ = model.colour.shape
+    rows = (np.arange(along) + 0.5) / along * RINGS - 0.5
+    out = np.full((n_views, n_parts, along, 3), np.nan, np.float32)
+    for v in range(n_views):
+        for c in range(n_parts):
+            known = np.flatnonzero(model.seen_s[v, c] > 0.0)
+            if len(known):
+                for k in range(3):
+                    out[v, c, :, k] = np.interp(rows, known, model.colour[v, c, known, k])
+    return out

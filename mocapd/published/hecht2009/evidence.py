@@ -1,0 +1,193 @@
+"""What each camera shows: its work picture, edges and motion, what stands before its background, and what hides what."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from mocapd.clock import seconds
+from mocapd.fit.body_drawing import image_scales
+from mocapd.geometry.camera_model import project
+from mocapd.published.hecht2009.cylinders.limb_score import LimbView
+from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion
+from mocapd.published.hecht2009.cylinders.part_colours import AppearanceModel, RingColours, observe
+from mocapd.published.hecht2009.cylinders.work_camera import work_camera
+from mocapd.published.hecht2009.head.head_track import HeadPicture
+from mocapd.published.hecht2009.mass_spring.frusta import NAMES
+from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
+from mocapd.published.hecht2009.params import Params
+from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
+from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
+from mocapd.vision.frame_size import check_frame_size
+from mocapd.vision.room_background import RoomBackground
+
+_ALONG = (np.arange(6) + 0.5) / 6.0  # where a part is looked at, from start to end
+
+
+class CameraEvidence:
+    """One camera: its newest evidence at work size (h,w)."""
+
+    def __init__(self, index: int, camera: Camera, image_scale: int, params: Params) -> None:
+        self.index, self.camera, self.image_scale, self._params = index, camera, image_scale, params
+        w, h = (n // image_scale for n in camera.size_px)
+        self._size_px = w, h
+        self._scale = np.array([w, h]) / camera.size_px
+        self.work_camera = work_camera(camera, (w, h))
+        self._now, self._last = (WorkPicture.allocate(h, w) for _ in range(2))
+        self._edges = MotionEdges.allocate(h, w)
+        self.background = RoomBackground(h, w, params.background)
+        self.before = np.zeros((h, w), np.uint8)
+        self._body = np.zeros((h, w), np.uint8)
+        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self._occlusion = allocate_occlusion(len(NAMES), (w, h), params.score.cell_px)
+        self._pixels: Bytes | None = None
+        self.offset_s = 0.0
+        self._quads, self._depths_m = np.empty((len(NAMES), 4, 2)), np.empty((len(NAMES), 2))
+
+    def reset(self) -> None:
+        """Forget the background and the last picture."""
+        self.background.reset()
+        self.before[:] = 0
+        self._body[:] = 0
+        self._pixels = None
+
+    @property
+    def present(self) -> bool:
+        """Whether the camera took part in the last frame set."""
+        return self._pixels is not None
+
+    def look(self, pixels: Bytes | None, offset_s: float) -> None:
+        """Take a frame's pixels (h,w,3), or none. Raises ConfigError when it is not of its calibration's size."""
+        had = self._pixels is not None
+        self._pixels, self.offset_s = pixels, offset_s
+        if pixels is None:
+            return
+        check_frame_size(self.camera.name, pixels, self.camera.size_px)
+        self._now, self._last = self._last, self._now
+        self._now.fill(pixels)
+        self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
+
+    def stand_before(self, uncovered: bool) -> None:
+        """Renew what stands before the background; uncovered: and take for background what was uncovered."""
+        self.background.follow_light(self._now.colour, self._body)
+        self.before = self.background.before(self._now.colour)
+        if uncovered:
+            no_arms = np.zeros_like(self._body)
+            self.background.take_uncovered(self._now.colour, self.before, self._body, no_arms)
+
+    def mark_body(self, ends_m: Floats | None, radii_m: Floats) -> None:
+        """Where the parts of ends (C,2,3) and radii (C,2) [m] are, widened, nothing is learned as background, and they hide
+        each other; None: nobody is known."""
+        self._body[:] = 0
+        if ends_m is None:
+            return
+        self._quads, self._depths_m = fill_occlusion(
+            self._occlusion, self.work_camera, ends_m, radii_m
+        )
+        for quad in self._quads:
+            if np.isfinite(quad).all():
+                corners = np.clip(np.rint(quad), -10_000, 10_000).astype(np.int32)
+                cv2.fillConvexPoly(self._body, corners, 1)
+        self._body = np.asarray(cv2.dilate(self._body, self._beside), np.uint8)
+
+    def mark_unknown(self) -> None:
+        """What stands before a known background may be somebody."""
+        if not self.background.is_new:
+            known = ((self.before > 0) & (self.before != UNKNOWN)).astype(np.uint8)
+            self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
+
+    def learn_background(self) -> None:
+        """Follow the background where nobody is marked."""
+        self.background.learn(self._now.colour, self._body)
+
+    def seed_background(self) -> None:
+        """Take what is beside the marked body for the background."""
+        self.background.seed(self._now.colour, self._body)
+
+    def person(self) -> Bytes:
+        """(h,w): 255 where somebody or dark cloth stands before the background, or nobody knows it."""
+        return np.where((self.before > 0) & (self.before != SHADOW), 255, 0).astype(np.uint8)
+
+    def head_picture(self) -> HeadPicture:
+        """The frame as the head's tracker asks for it."""
+        if self._pixels is None:
+            return HeadPicture(None)
+        foreground = None
+        if not self.background.is_new:
+            size = self.camera.size_px
+            foreground = np.asarray(
+                cv2.resize(self.person(), size, interpolation=cv2.INTER_NEAREST), np.uint8
+            )
+        return HeadPicture(self._pixels, self.offset_s, foreground)
+
+    def limb_view(self, reference: Singles) -> LimbView:
+        """The evidence as the limbs' filters ask for it; reference (C,along,3): colours of the parts."""
+        return LimbView(
+            self.index, self.work_camera, self._now.colour, self._edges.edges, self._edges.motion, reference,
+            self._occlusion,
+        )  # fmt: skip
+
+    def observed(self) -> RingColours:
+        """The colours of the marked parts where somebody stands before the background."""
+        return observe(
+            self._quads, self._depths_m, self._now.colour, self.person(), self._occlusion,
+            self._params.score.hidden_by_m,
+        )  # fmt: skip
+
+    def share_before(self, ends_m: Floats) -> Floats:
+        """How much (C,) of each part's axis (C,2,3) [m] stands before the background, 0..1; NaN where that is not known."""
+        along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
+        xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
+        w, h = self._size_px
+        inside = np.asarray(np.isfinite(xy).all(axis=1))
+        inside &= (np.nan_to_num(xy) >= 0.0).all(axis=1) & (np.nan_to_num(xy) < (w, h)).all(axis=1)
+        at = np.where(inside[:, None], np.nan_to_num(xy), 0.0).astype(int)
+        there = self.before[at[:, 1], at[:, 0]]
+        inside &= there != UNKNOWN
+        hit = (there > 0) & (there != SHADOW) & inside
+        inside, hit = inside.reshape(-1, len(_ALONG)), hit.reshape(-1, len(_ALONG))
+        counted = inside.sum(axis=1)
+        return np.where(counted > 0, hit.sum(axis=1) / np.maximum(counted, 1), np.nan)
+
+
+class RigEvidence:
+    """All cameras of a rig, and the looks of the parts in each."""
+
+    def __init__(self, rig: Rig, params: Params) -> None:
+        scales = image_scales(rig.cameras, params.work_width_px)
+        self.each = [
+            CameraEvidence(i, camera, scale, params)
+            for i, (camera, scale) in enumerate(zip(rig.cameras, scales, strict=True))
+        ]
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget backgrounds and looks."""
+        for view in self.each:
+            view.reset()
+        self.forget_person()
+
+    def forget_person(self) -> None:
+        """Forget what the person looks like."""
+        self.appearance = AppearanceModel.unknown(len(self.each), len(NAMES))
+
+    def look(self, frames: FrameSet) -> None:
+        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        for view in self.each:
+            frame = frames.frames.get(view.camera.name)
+            if frame is None:
+                view.look(None, 0.0)
+            else:
+                view.look(frame.pixels, seconds(frame.t_ns - frames.t_ns))
+
+    @property
+    def present(self) -> Sequence[CameraEvidence]:
+        """Those that took part in the last frame set."""
+        return [view for view in self.each if view.present]
+
+    def share_before(self, ends_m: Floats) -> Floats:
+        """How much (C,) of each part stands before the backgrounds, the mean of cameras that tell; NaN where none does."""
+        shares = np.array([view.share_before(ends_m) for view in self.present])
+        seen = np.isfinite(shares)
+        total = np.where(seen, shares, 0.0).sum(axis=0)
+        return np.where(seen.any(axis=0), total / np.maximum(seen.sum(axis=0), 1), np.nan)

@@ -1,0 +1,152 @@
+"""The head's particles: moved, drawn anew where the measurements are, weighed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.types import Floats
+
+_SD_FLOOR_M = 0.004  # of the cloud along any direction, so that its density can be written down
+
+_FAR_SDS = 4.0
+_WIDE_M = 0.5  # spread of a place of which nothing is known but what is measured
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cloud:
+    """Places (P,3) [m] and velocities (P,3) [m/s] of the head's middle, all of one weight."""
+
+    place_m: Floats
+    velocity_m_s: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeadObservations:
+    """Gaussians in space: means (O,3) [m] and inverse covariances (O,3,3) [1/m^2], which may leave directions open."""
+
+    means_m: Floats
+    information: Floats
+
+
+def along_ray(from_m: Floats, ray: Floats, sigma_across_m: float) -> tuple[Floats, Floats]:
+    """Somewhere on the ray from a point (3,) along a unit vector (3,)."""
+    return from_m, (np.eye(3) - np.outer(ray, ray)) / sigma_across_m**2
+
+
+def at_distance(
+    from_m: Floats, ray: Floats, distance_m: float, sigma_m: float
+) -> tuple[Floats, Floats]:
+    """At this distance from a point (3,), seen along a unit vector (3,)."""
+    return from_m + distance_m * ray, np.outer(ray, ray) / sigma_m**2
+
+
+def observations(parts: list[tuple[Floats, Floats]]) -> HeadObservations:
+    """What `along_ray` and `at_distance` say, together."""
+    if not parts:
+        return HeadObservations(np.zeros((0, 3)), np.zeros((0, 3, 3)))
+    means, information = (np.ascontiguousarray(np.stack(a)) for a in zip(*parts, strict=True))
+    return HeadObservations(means, information)
+
+
+def cloud_at(
+    middle_m: Floats, covariance_m2: Floats, params: HeadParams, rng: np.random.Generator
+) -> Cloud:
+    """A head at rest somewhere about here."""
+    place = rng.multivariate_normal(middle_m, covariance_m2, params.particles, method="eigh")
+    return Cloud(place, rng.normal(0.0, 0.3, (params.particles, 3)))
+
+
+def predicted(cloud: Cloud, dt_s: float, params: HeadParams, rng: np.random.Generator) -> Cloud:
+    """After dt: constant velocity, pushed about."""
+    push = rng.normal(0.0, params.push_sd_m_s2, cloud.place_m.shape)
+    jitter = rng.normal(0.0, params.jitter_sd_m * np.sqrt(30.0 * dt_s), cloud.place_m.shape)
+    place = cloud.place_m + cloud.velocity_m_s * dt_s + 0.5 * push * dt_s**2 + jitter
+    return Cloud(place, cloud.velocity_m_s + push * dt_s)
+
+
+def moments(place_m: Floats, weight: Floats | None = None) -> tuple[Floats, Floats]:
+    """Mean (3,) and covariance (3,3) of places (P,3)."""
+    w = np.full(len(place_m), 1.0 / len(place_m)) if weight is None else weight
+    mean = w @ place_m
+    away = place_m - mean
+    return mean, (away * w[:, None]).T @ away + _SD_FLOOR_M**2 * np.eye(3)
+
+
+def updated(mean_m: Floats, covariance_m2: Floats, seen: HeadObservations) -> tuple[Floats, Floats]:
+    """Mean and covariance with all measurements taken as Gaussian."""
+    prior = np.linalg.inv(covariance_m2)
+    information = prior + seen.information.sum(axis=0)
+    right = prior @ mean_m + np.einsum("oij,oj->i", seen.information, seen.means_m)
+    covariance = np.linalg.inv(information)
+    return covariance @ right, covariance
+
+
+def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
+    """Whether some measurement is too far from all particles to be of the same head, by chance."""
+    mean, covariance = moments(cloud.place_m)
+    for at, information in zip(seen.means_m, seen.information, strict=True):
+        # across what the measurement tells of, with the cloud's own spread on top
+        values, axes = np.linalg.eigh(information)
+        for value, axis in zip(values, axes.T, strict=True):
+            if value > 1e-6:
+                spread = np.sqrt(1.0 / value + axis @ covariance @ axis)
+                if abs(axis @ (mean - at)) > _FAR_SDS * spread:
+                    return True
+    return False
+
+
+def cloud_about(
+    seen: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
+) -> Cloud:
+    """Particles where the measurements are, what they leave open as it was; their velocity is not known."""
+    mean, _ = moments(before.place_m)
+    middle, covariance = updated(mean, _WIDE_M**2 * np.eye(3), seen)
+    return cloud_at(middle, covariance, params, rng)
+
+
+def proposed(
+    cloud: Cloud, seen: HeadObservations, params: HeadParams, rng: np.random.Generator
+) -> tuple[Cloud, Floats]:
+    """Some of the particles drawn where the measurements are; with the logarithm (P,) of the weights that make up for it.
+
+    Importance sampling from a mixture (Isard and Blake, ICondensation, ECCV 1998), the cloud's own density taken as
+    Gaussian. Their velocities follow from the cloud's correlation of place and velocity.
+    """
+    n = round(params.measured_share * len(cloud.place_m)) if len(seen.means_m) else 0
+    if n == 0:
+        return cloud, np.zeros(len(cloud.place_m))
+    mean, covariance = moments(cloud.place_m)
+    fused_mean, fused = updated(mean, covariance, seen)
+    place, velocity = cloud.place_m.copy(), cloud.velocity_m_s.copy()
+    place[:n] = rng.multivariate_normal(fused_mean, fused, n, method="eigh")
+    away = cloud.place_m - mean
+    spread = cloud.velocity_m_s - cloud.velocity_m_s.mean(axis=0)
+    slope = np.linalg.solve(covariance, away.T @ spread / len(away))
+    velocity[:n] += (place[:n] - cloud.place_m[:n]) @ slope
+    prior = _log_density(place, mean, covariance)
+    measured = _log_density(place, fused_mean, fused)
+    share = n / len(place)
+    mixture = np.logaddexp(np.log1p(-share) + prior, np.log(share) + measured)
+    return Cloud(place, velocity), prior - mixture
+
+
+def _log_density(place_m: Floats, mean_m: Floats, covariance_m2: Floats) -> Floats:
+    """Of a Gaussian, without the factor that all share but for the determinant."""
+    away = place_m - mean_m
+    far2 = np.einsum("pi,ij,pj->p", away, np.linalg.inv(covariance_m2), away)
+    return np.asarray(-0.5 * far2 - 0.5 * np.log(np.linalg.det(covariance_m2)))
+
+
+def weights(log_weight: Floats) -> Floats:
+    """That add up to one, from logarithms (P,)."""
+    w = np.exp(log_weight - log_weight.max())
+    return np.asarray(w / w.sum())
+
+
+def resampled(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
+    """As many particles of one weight, by systematic resampling."""
+    n = len(weight)
+    at = (rng.random() + np.arange(n)) / n
+    chosen = np.minimum(np.searchsorted(np.cumsum(weight), at), n - 1)
+    return Cloud(cloud.place_m[chosen], cloud.velocity_m_s[chosen])

@@ -1,0 +1,156 @@
+"""A head found by its outline, where a background is known: for faces that the detector does not see.
+
+The top of somebody before the background is a head when it is as high and as narrow as one at a distance on which the
+cameras agree.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import cv2
+import numpy as np
+
+from mocapd.body.head_proportions import FACE_WIDTH
+from mocapd.geometry.camera_model import centre, normalised
+from mocapd.geometry.triangulation import triangulate
+from mocapd.published.hecht2009.head.face_placing import Depth, PlacedFace
+from mocapd.published.hecht2009.head.head_colours import unknown_colours
+from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.head.head_particle_kernels import score_heads
+from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
+from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
+from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, ray_through
+from mocapd.published.hecht2009.head.stereo_distance import (
+    WIDEST_RAD,
+    swept_distance,
+    view_angle_rad,
+)
+from mocapd.types import Floats
+from mocapd.vision.face.face_detection import FaceBox
+
+_SMALL = 4  # by which the foreground is reduced
+_LEAST_SHARE = 0.01  # of the picture that somebody takes
+_TOP_ROWS = 4  # of the reduced foreground, whose middle is the crown's
+_DISTANCES = 32
+_LEAST_SCORE = 0.75  # of a head before the background alone, at best 1 and its edge
+_TOPS = 3  # sizes that are tried
+_PATCH = 0.7  # of the head's half height
+_SIGMA_SHARE = 0.4  # of a head's half height: how well its outline says where it is
+
+
+def outlined_head(
+    views: Sequence[HeadView], stature_m: float, params: HeadParams
+) -> tuple[int, FaceBox, PlacedFace] | None:
+    """Camera index, box about the face that is not seen, and the place of the head; None where views do not agree.
+
+    A whole person may fit a near head as well as the head fits a far one: the distance decides.
+    """
+    tops = [(view, box) for view in views for box in _tops(view, stature_m, params)]
+    low, high = params.size_share
+    for view, box in tops:
+        for other in views:
+            placed = _beside(view, other, box, stature_m, params)
+            if placed is not None and low < placed.size_share < high:
+                return view.index, box, placed
+    for (one, a), (other, b) in combinations(tops, 2):
+        placed = _met(one, a, other, b, stature_m, params)
+        if placed is not None:
+            return one.index, a, placed
+    return None
+
+
+def _met(
+    one: HeadView, a: FaceBox, other: HeadView, b: FaceBox, stature_m: float, params: HeadParams
+) -> PlacedFace | None:
+    """Where two tops meet in space, each of a head's size there."""
+    if one.index == other.index or not have_baseline(one.camera, other.camera):
+        return None
+    xy = np.stack([normalised(one.camera, _middle(a)), normalised(other.camera, _middle(b))])
+    point_m, residual_m = triangulate([one.camera, other.camera], xy)
+    if not np.isfinite(point_m).all() or residual_m.max() > params.meeting_m:
+        return None
+    shares = [
+        float(np.linalg.norm(point_m - centre(view.camera))) / _apparent_m(view, box, stature_m)
+        for view, box in ((one, a), (other, b))
+    ]
+    low, high = params.size_share
+    if not low < min(shares) <= max(shares) < high:
+        return None
+    sigma_m = _SIGMA_SHARE * head_size(stature_m).height_m
+    return PlacedFace(point_m, sigma_m, Depth.MEETING, {}, shares[0])
+
+
+def _middle(box: FaceBox) -> Floats:
+    return np.array([box.x_px, box.y_px])
+
+
+def _apparent_m(view: HeadView, box: FaceBox, stature_m: float) -> float:
+    depth_m = FACE_WIDTH * stature_m * float(view.camera.K[0, 0]) / box.size_px
+    _, ray = ray_through(view, _middle(box))
+    return depth_m / max(float((view.camera.R @ ray)[2]), 0.1)
+
+
+def _beside(
+    view: HeadView, other: HeadView, box: FaceBox, stature_m: float, params: HeadParams
+) -> PlacedFace | None:
+    """Where a camera close beside sees the same."""
+    if other.index == view.index or not have_baseline(view.camera, other.camera):
+        return None
+    apparent_m, size = _apparent_m(view, box, stature_m), head_size(stature_m)
+    from_m, ray = ray_through(view, _middle(box))
+    if view_angle_rad(view.camera, other.camera, from_m + apparent_m * ray) > WIDEST_RAD:
+        return None
+    half_px = _PATCH * size.height_m * box.size_px / (FACE_WIDTH * stature_m)
+    found = swept_distance(
+        view.stereo, other.stereo, _middle(box), half_px, (params.nearest_m, params.farthest_m),
+        size.length_m,
+    )  # fmt: skip
+    if found is None:
+        return None
+    point_m = from_m + found.distance_m * ray
+    return PlacedFace(point_m, found.sigma_m, Depth.STEREO, {}, found.distance_m / apparent_m)
+
+
+def _tops(view: HeadView, stature_m: float, params: HeadParams) -> list[FaceBox]:
+    """Heads at the top of the largest thing before the background, of the sizes that fit, the best first."""
+    if not view.has_foreground:
+        return []
+    h, w = view.foreground.shape
+    small = cv2.resize(view.foreground, (w // _SMALL, h // _SMALL), interpolation=cv2.INTER_AREA)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats((small > 127).astype(np.uint8))
+    area = stats[1:, cv2.CC_STAT_AREA]
+    if not len(area) or area.max() < _LEAST_SHARE * small.size:
+        return []
+    rows, columns = np.nonzero(labels == 1 + int(np.argmax(area)))
+    top = int(rows.min())
+    crown = np.array([columns[rows < top + _TOP_ROWS].mean(), top]) * _SMALL + 0.5 * (_SMALL - 1)
+    return _fitted(view, crown, stature_m, params)
+
+
+def _fitted(view: HeadView, crown: Floats, stature_m: float, params: HeadParams) -> list[FaceBox]:
+    """Of heads at all distances with their crown there, the one that the foreground fits best."""
+    size = head_size(stature_m)
+    focal_px = float(view.camera.K[1, 1])
+    depths_m = np.geomspace(params.nearest_m, params.farthest_m, _DISTANCES)
+    pixels = crown + np.stack([np.zeros(_DISTANCES), size.height_m * focal_px / depths_m], axis=-1)
+    from_m, rays = ray_through(view, pixels)
+    middles_m = np.ascontiguousarray(
+        from_m + (depths_m / (rays @ view.camera.R[2]))[:, None] * rays
+    )
+    outline = ellipse_of(view.camera, middles_m[_DISTANCES // 2], size)
+    if outline is None:
+        return []
+    score = np.empty(_DISTANCES)
+    score_heads(
+        middles_m, np.array([size.width_m, size.height_m]), INSIDE, OUTLINE, view.stereo.arrays,
+        view.pixels, unknown_colours().head_odds, 1.0, view.foreground, outline.up, params.edge_weight,
+        params.full_edge, score,
+    )  # fmt: skip
+    around = np.concatenate([[-np.inf], score, [-np.inf]])
+    peaks = (score >= around[:-2]) & (score >= around[2:]) & (score > _LEAST_SCORE)
+    places = np.flatnonzero(peaks)
+    sides = FACE_WIDTH * stature_m * float(view.camera.K[0, 0]) / depths_m
+    return [
+        FaceBox(float(pixels[i, 0]), float(pixels[i, 1]), float(sides[i]), 0)
+        for i in places[np.argsort(-score[places])][:_TOPS]
+    ]

@@ -1,0 +1,313 @@
+"""The head from frame to frame: found by its face, followed by a particle filter in all views, lost and found again.
+
+Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009,
+section III.B, in world coordinates and with every camera at once: each particle is a head in space, weighed by the
+colours and outline that it explains in each picture, by faces seen, and by its distance from a close pair.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.body.arrays import camera_arrays
+from mocapd.geometry.camera_model import centre, project
+from mocapd.published.hecht2009.head.face_placing import Depth, PlacedFace
+from mocapd.published.hecht2009.head.face_search import FaceCandidate, FaceSearch
+from mocapd.published.hecht2009.head.head_cloud import (
+    Cloud,
+    cloud_about,
+    cloud_at,
+    is_far,
+    moments,
+    observations,
+    predicted,
+    proposed,
+    resampled,
+    weights,
+)
+from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGuess
+from mocapd.published.hecht2009.head.head_outline import outlined_head
+from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.head.head_particle_kernels import score_observations
+from mocapd.published.hecht2009.head.head_shape import face_of, joint_of
+from mocapd.published.hecht2009.head.head_track import (
+    HeadPicture,
+    HeadState,
+    HeadTrack,
+    StereoFault,
+)
+from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, head_views
+from mocapd.types import Camera, Floats
+from mocapd.vision.face.face_detection import FaceBox
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+_START_ACROSS = 0.25  # of the box's side: spread of the first particles across the ray
+_SEARCH_AGAIN_S = 1.0  # without its face before another one is looked for
+_HAND_OVER_S = 2.0  # without its face before another one, as near, is followed instead
+_AS_NEAR = 1.25
+_ALONE_S = (
+    0.4  # without its face in some view before it is looked for there along another view's ray
+)
+_CHECK_S = 0.25  # from one such look to the next
+_APART_M = 0.3  # a face that is farther from the tracked head belongs to another
+
+
+class HeadTracker:
+    """Holds the particles, the colours of the head and the search for faces; nothing else is kept between steps."""
+
+    def __init__(
+        self,
+        cameras: Sequence[Camera],
+        stature_m: float,
+        cascade: CascadeArrays,
+        params: HeadParams | None = None,
+        seed: int = 0,
+    ) -> None:
+        """cascade: of frontal faces; seed: of everything random, so that the same pictures give the same track."""
+        self._params = params or HeadParams()
+        self._cameras, self._stature_m, self._seed = tuple(cameras), stature_m, seed
+        self._arrays = [camera_arrays(camera) for camera in cameras]
+        self._search = FaceSearch(cascade, stature_m, self._params)
+        self._evidence = HeadEvidence(len(self._cameras), cascade, stature_m, self._params)
+        apart = [have_baseline(a, b) for i, a in enumerate(cameras) for b in cameras[:i]]
+        self._fault = StereoFault.NONE if all(apart) else StereoFault.NO_BASELINE
+        self.reset()
+
+    def reset(self, near_m: Floats | None = None) -> None:
+        """Forget the head; near_m (3,): the middle of one that another tracker knows, to start from."""
+        self._rng = np.random.default_rng(self._seed)
+        self._search.reset()
+        self._evidence.reset()
+        self._cloud: Cloud | None = None
+        self._faceless_s = self._unsupported_s = 0.0
+        self._outlines_m: list[Floats] = []
+        self._since_check_s = 0.0
+        self._box_age_s = [0.0] * len(self._cameras)
+        self._yaw_rad: float | None = None
+        self._near_m = near_m
+        if near_m is not None:
+            self._cloud = cloud_at(near_m, 0.05**2 * np.eye(3), self._params, self._rng)
+
+    def step(self, pictures: Sequence[HeadPicture], dt_s: float) -> HeadTrack:
+        """The head in these pictures, one for each camera, dt after those before."""
+        views = head_views(self._cameras, self._arrays, pictures)
+        self._search.remember(views, dt_s)
+        if self._near_m is not None and views:
+            # what stands there is the head, with no face seen of it
+            self._evidence.learn_first(
+                views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
+            )
+            self._faceless_s = self._params.facing_s + 1e-6
+            self._near_m = None
+        if self._cloud is not None:
+            track = self._tracked(self._cloud, views, dt_s)
+            if self._faceless_s > _SEARCH_AGAIN_S and self._is_doubtful(track):
+                self._search.step(views, dt_s)
+                self._hand_over(track, views)
+            else:
+                self._search.candidates.clear()
+            if track is not None:
+                return track
+        else:
+            self._search.step(views, dt_s)
+        return self._found(views)
+
+    def _found(self, views: Sequence[HeadView]) -> HeadTrack:
+        """The best face that is seen; it is tracked from now on when it is alive and of a head's size."""
+        if self._search.swapped:
+            return HeadTrack(HeadState.LOST, fault=StereoFault.SWAPPED)
+        known = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
+        if not known:
+            return self._outlined(views)
+        best, placed = min(known, key=lambda c: (c[0].alive is not True, self._away_m(c[0], c[1])))
+        if self._may_start(best):
+            self._start(best, placed, views)
+            return self._told(HeadState.TRACKED, best, placed)
+        return self._told(HeadState.FOUND, best, placed)
+
+    def _outlined(self, views: Sequence[HeadView]) -> HeadTrack:
+        """Somebody before a known background, whose head stays one over some looks, though no face is seen."""
+        seen = outlined_head(views, self._stature_m, self._params)
+        lost = HeadTrack(HeadState.LOST, fault=self._fault)
+        if seen is None:
+            self._outlines_m = []
+            return lost
+        index, box, placed = seen
+        last = self._outlines_m[-1] if self._outlines_m else placed.middle_m
+        if float(np.linalg.norm(placed.middle_m - last)) > _APART_M:
+            self._outlines_m = []
+        self._outlines_m.append(placed.middle_m)
+        if len(self._outlines_m) < self._params.outline_looks:
+            return lost
+        of = FaceCandidate(index, box, 0.0, len(self._outlines_m), True, placed, 0.0)
+        self._start(of, placed, views)
+        self._faceless_s = self._params.facing_s + 1e-6
+        return replace(self._told(HeadState.TRACKED, of, placed), yaw_rad=None)
+
+    def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
+        """Seen more than once, of a head's size, and at a distance on which a pair agrees; one camera, or two in one
+        place, go by the size."""
+        alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
+        is_placed = alone or placed.depth is not Depth.SIZE
+        often = of.looks >= self._params.least_looks
+        return often and is_placed and self._is_head_sized(placed)
+
+    def _is_head_sized(self, of: PlacedFace) -> bool:
+        low, high = self._params.size_share
+        return low < of.size_share < high
+
+    def _may_start(self, of: FaceCandidate) -> bool:
+        return of.unseen_s == 0.0 and of.alive is True
+
+    def _away_m(self, of: FaceCandidate, placed: PlacedFace) -> float:
+        return float(np.linalg.norm(placed.middle_m - centre(self._cameras[of.view])))
+
+    def _across_m(self, share: float, of: FaceCandidate, placed: PlacedFace) -> float:
+        """A share of the face's side, at its distance."""
+        focal_px = float(self._cameras[of.view].K[0, 0])
+        return share * of.box.size_px * self._away_m(of, placed) / focal_px
+
+    def _start(self, of: FaceCandidate, placed: PlacedFace, views: Sequence[HeadView]) -> None:
+        ray = placed.middle_m - centre(self._cameras[of.view])
+        ray = ray / np.linalg.norm(ray)
+        along = np.outer(ray, ray)
+        across_m = self._across_m(_START_ACROSS, of, placed)
+        covariance = placed.sigma_along_m**2 * along + across_m**2 * (np.eye(3) - along)
+        self._cloud = cloud_at(placed.middle_m, covariance, self._params, self._rng)
+        self._faceless_s = self._unsupported_s = 0.0
+        self._evidence.reset()
+        self._evidence.learn_first(views, placed)
+        self._outlines_m = []
+        self._search.candidates.clear()
+
+    def _told(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
+        yaw = self._towards_rad(placed.middle_m, of.view)
+        boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
+        return HeadTrack(
+            state, joint_of(placed.middle_m, self._stature_m, yaw), placed.middle_m,
+            face_of(placed.middle_m, self._stature_m, yaw), np.zeros(3), placed.sigma_along_m,
+            self._across_m(self._params.face_sd, of, placed), yaw, boxes, 0.0, self._fault,
+        )  # fmt: skip
+
+    def _towards_rad(self, middle_m: Floats, camera: int) -> float:
+        """The yaw of a head that looks at a camera."""
+        way = centre(self._cameras[camera]) - middle_m
+        return float(np.arctan2(way[0], way[2]))
+
+    def _tracked(self, before: Cloud, views: Sequence[HeadView], dt_s: float) -> HeadTrack | None:
+        """The filter's step; None, and no cloud is left, when nothing has agreed for too long."""
+        params = self._params
+        cloud = predicted(before, dt_s, params, self._rng)
+        guess = self._guess(cloud)
+        seen = self._evidence.seen(views, guess)
+        measured = observations(seen.parts)
+        if seen.is_complete and is_far(cloud, measured):
+            # a face and its distance together say where the head is: the particles were drawn away from it
+            cloud = cloud_about(measured, cloud, params, self._rng)
+        cloud, log_weight = proposed(cloud, measured, params, self._rng)
+        log_weight += self._evidence.log_likelihood(views, cloud, guess.middle_m)
+        score_observations(
+            np.ascontiguousarray(cloud.place_m), measured.means_m, measured.information,
+            params.outlier, log_weight,
+        )  # fmt: skip
+        weight = weights(log_weight)
+        middle, covariance = moments(cloud.place_m, weight)
+        velocity = weight @ cloud.velocity_m_s
+        self._cloud = resampled(cloud, weight, self._rng)
+        has_face = any(box is not None for box in seen.boxes)
+        self._check_place(views, seen.boxes, dt_s)
+        support = self._evidence.support(views, middle, velocity)
+        self._faceless_s = 0.0 if has_face else self._faceless_s + dt_s
+        agrees = has_face or support >= params.least_support
+        self._unsupported_s = 0.0 if agrees else self._unsupported_s + dt_s
+        lost = self._unsupported_s > params.coast_s or not self._in_reach(middle)
+        if lost or self._search.swapped:
+            self._cloud = None
+            return None
+        self._evidence.learn(views, middle, velocity, seen.boxes, dt_s)
+        facing = self._faceless_s <= params.facing_s
+        self._yaw_rad = self._evidence.yaw_rad(views, middle, velocity) if facing else None
+        return self._track(middle, velocity, covariance, seen.boxes, support)
+
+    def _check_place(
+        self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
+    ) -> None:
+        """A face that only some views still see where it should be is looked for along its ray in the others."""
+        self._since_check_s += dt_s
+        for i, box in enumerate(boxes):
+            self._box_age_s[i] = 0.0 if box is not None else self._box_age_s[i] + dt_s
+        if max(self._box_age_s) < _ALONE_S or self._since_check_s < _CHECK_S:
+            return
+        for view in views:
+            box = boxes[view.index]
+            if box is None:
+                continue
+            self._since_check_s = 0.0
+            placed = self._search.placed(view, box, views)
+            if placed.depth is Depth.MEETING and self._is_head_sized(placed):
+                covariance = placed.sigma_along_m**2 * np.eye(3)
+                self._cloud = cloud_at(placed.middle_m, covariance, self._params, self._rng)
+
+    def _track(
+        self,
+        middle: Floats,
+        velocity: Floats,
+        covariance: Floats,
+        boxes: tuple[FaceBox | None, ...],
+        support: float,
+    ) -> HeadTrack:
+        along, across = self._spread(middle, covariance)
+        yaw = self._yaw_rad
+        return HeadTrack(
+            HeadState.TRACKED, joint_of(middle, self._stature_m, yaw), middle,
+            face_of(middle, self._stature_m, yaw), velocity, along,
+            across, yaw, boxes, support, self._fault,
+        )  # fmt: skip
+
+    def _nearest(self, middle: Floats) -> int:
+        """The camera that stands nearest."""
+        return int(np.argmin([np.linalg.norm(centre(c) - middle) for c in self._cameras]))
+
+    def _spread(self, middle: Floats, covariance: Floats) -> tuple[float, float]:
+        """Standard deviations along the nearest camera's ray and across it [m]."""
+        ray = middle - centre(self._cameras[self._nearest(middle)])
+        ray = ray / np.linalg.norm(ray)
+        along = float(ray @ covariance @ ray)
+        across = 0.5 * (float(np.trace(covariance)) - along)
+        return float(np.sqrt(along)), float(np.sqrt(max(across, 0.0)))
+
+    def _guess(self, cloud: Cloud) -> HeadGuess:
+        middle, covariance = moments(cloud.place_m)
+        return HeadGuess(
+            middle, cloud.velocity_m_s.mean(axis=0), self._spread(middle, covariance)[0]
+        )
+
+    def _in_reach(self, middle: Floats) -> bool:
+        """Whether some camera sees the place, not too near and not too far."""
+        for camera in self._cameras:
+            away_m = float(np.linalg.norm(centre(camera) - middle))
+            x, y = project(camera, middle)
+            inside = 0 <= x < camera.size_px[0] and 0 <= y < camera.size_px[1]
+            if inside and 0.5 * self._params.nearest_m < away_m < 1.3 * self._params.farthest_m:
+                return True
+        return False
+
+    def _is_doubtful(self, track: HeadTrack | None) -> bool:
+        """Whether what is followed may be no head."""
+        return track is not None and track.support < self._params.learn_support
+
+    def _hand_over(self, track: HeadTrack | None, views: Sequence[HeadView]) -> None:
+        """Follow another face instead, when the tracked head has long shown none and that one is as near."""
+        if track is None or track.middle_m is None or self._faceless_s < _HAND_OVER_S:
+            return
+        mine_m = min(float(np.linalg.norm(track.middle_m - centre(c))) for c in self._cameras)
+        for candidate in self._search.candidates:
+            placed = candidate.placed
+            if placed is None or not self._is_head(candidate, placed):
+                continue
+            apart_m = float(np.linalg.norm(placed.middle_m - track.middle_m))
+            as_near = self._away_m(candidate, placed) < _AS_NEAR * mine_m
+            if self._may_start(candidate) and apart_m > _APART_M and as_near:
+                self._start(candidate, placed, views)
+                return

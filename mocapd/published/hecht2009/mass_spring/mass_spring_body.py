@@ -1,0 +1,123 @@
+"""The flexible body of one shape: masses, springs, limits and cross-sections, ready for the kernels."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mocapd.body.arrays import plain
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.published.hecht2009.mass_spring.angular_limits import hinges, swings
+from mocapd.published.hecht2009.mass_spring.body_points import (
+    ANKLE,
+    ELBOW,
+    HEAD,
+    KNEE,
+    LIMBS,
+    N_POINTS,
+    WRIST,
+    rest_points,
+)
+from mocapd.published.hecht2009.mass_spring.frusta import Frusta, build_frusta, trunk_ellipses
+from mocapd.published.hecht2009.mass_spring.solver_kernels import Active, PointConstraints
+from mocapd.published.hecht2009.mass_spring.springs import Compliances, Springs, build_springs
+from mocapd.types import Floats, Ints, Skeleton
+
+# Parts of the body's mass at the points, after the segments of Winter, Biomechanics of Human Movement, table 4.1: trunk
+# 0.50 (shared by shoulders, waist, hips), arm 0.05, leg 0.16; the head's is not asked for.
+_MASS_SHARES = np.array([0.0, 0.05, *[0.095, 0.025, 0.015, 0.10, 0.12, 0.08, 0.04] * 2])
+_MASS_PER_STATURE3 = 13.0  # [kg/m^3]: 70 kg at 1.75 m (Rohrer)
+_FLOOR_GIVE_M = 0.01
+_ARMS = np.array([[ELBOW[s], WRIST[s]] for s in (0, 1)])
+_PAIRS = np.array([KNEE, ANKLE])
+
+
+@dataclass(frozen=True, slots=True)
+class Softness:
+    """How the body is built. soft_waist: see `build_springs`; knee_gap_m, ankle_gap_m: the least distance of left and right
+    along the hip line: ankles pass each other closely when walking; passing_m: farther from each other than that, across
+    the hip line, legs may cross (two filters on one leg are near to each other, crossed legs are not); inf as in the paper:
+    never."""
+
+    soft_waist: bool = False
+    compliances: Compliances = field(default_factory=Compliances)
+    knee_gap_m: float = 0.05
+    ankle_gap_m: float = 0.03
+    passing_m: float = 0.12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MassSpringBody:
+    """A flexible body. P = 16 points, S springs.
+
+    rest_m (16,3): the T-pose; mass_kg (16,): the base masses, that of the head infinite; built_m (S,): the lengths that the
+    shape gives, lengths_m (S,): those in force; everybody: all constraints; limbs: those that touch each of LIMBS.
+    """
+
+    shape: BodyShape
+    softness: Softness
+    skeleton: Skeleton
+    rest_m: Floats
+    mass_kg: Floats
+    springs: Springs
+    built_m: Floats
+    lengths_m: Floats
+    frusta: Frusta
+    constraints: PointConstraints
+    everybody: Active
+    limbs: dict[str, Active]
+
+    def sized(self, shape: BodyShape) -> "MassSpringBody":
+        """The same body in another shape, with that one's lengths."""
+        return build_body(shape, self.softness)
+
+    def with_lengths(self, lengths_m: Floats) -> "MassSpringBody":
+        """The same body with other lengths (S,) of its springs [m], see `springs.adapted_lengths`."""
+        lengths = np.ascontiguousarray(lengths_m, dtype=float)
+        return replace(
+            self, lengths_m=lengths, constraints=self.constraints._replace(lengths=lengths)
+        )
+
+
+def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpringBody:
+    """The body of a shape, its springs at rest in the T-pose."""
+    softness = softness if softness is not None else Softness()
+    skeleton = skeleton_of(shape)
+    rest = rest_points(shape, skeleton)
+    springs = build_springs(softness.soft_waist, softness.compliances)
+    lengths = springs.lengths_of(rest)
+    mass = _MASS_SHARES * _MASS_PER_STATURE3 * shape.stature_m**3
+    mass[HEAD] = np.inf
+    constraints = PointConstraints(
+        springs.ends, lengths, springs.compliance, plain(swings()), plain(hinges()),
+        trunk_ellipses(shape, skeleton, rest), _ARMS, _PAIRS,
+        np.array([[gap, softness.passing_m] for gap in (softness.knee_gap_m, softness.ankle_gap_m)]),
+        _clearance(shape, rest),
+    )  # fmt: skip
+    everybody = _active(springs, constraints, frozenset(range(N_POINTS)))
+    limbs = {name: _active(springs, constraints, frozenset(limb)) for name, limb in LIMBS.items()}
+    return MassSpringBody(
+        shape, softness, skeleton, rest, mass, springs, lengths, lengths,
+        build_frusta(shape, skeleton, rest), constraints, everybody, limbs,
+    )  # fmt: skip
+
+
+def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
+    """The ankles' height when standing, a little less, as floor and stature are known to a centimetre and a leg would bend
+    by 15 degrees for that; knees, hands and the rest may lie on the floor."""
+    out = np.full(N_POINTS, 0.03 * shape.stature_m)
+    out[list(ANKLE)] = rest_m[list(ANKLE), 1] - _FLOOR_GIVE_M
+    return out
+
+
+def _active(springs: Springs, constraints: PointConstraints, points: frozenset[int]) -> Active:
+    """The constraints that may move one of the points."""
+
+    def touching(moved: Ints) -> Ints:
+        rows = [k for k, ends in enumerate(moved.tolist()) if points & set(ends)]
+        return np.array(rows, dtype=np.int64)
+
+    return Active(
+        touching(springs.ends), touching(swings().points),
+        touching(hinges().points[:, 1:]),  # a hinge moves its middle and its end
+        touching(constraints.arms), touching(constraints.pairs), np.array(sorted(points)),
+    )  # fmt: skip

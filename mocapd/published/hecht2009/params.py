@@ -1,0 +1,54 @@
+"""The numbers of the published tracker without a shirt, with units and reasons."""
+
+from dataclasses import dataclass, field
+
+from mocapd.published.hecht2009.cylinders.limb_params import (
+    LimbAppearanceParams,
+    LimbMotionParams,
+    LimbScoreParams,
+)
+from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.mass_spring.simulation import SimulationParams
+from mocapd.published.hecht2009.motion_edges import MotionEdgeParams
+from mocapd.vision.room_background import BackgroundParams
+
+
+@dataclass(frozen=True, slots=True)
+class Params:
+    """Parameters of the published tracker."""
+
+    particles: int = 200  # of each limb [Hecht 2009, section IV.A]
+    particle_constraints: bool = True
+    seed: int = 0
+    head: HeadParams = field(default_factory=HeadParams)
+    motion: LimbMotionParams = field(default_factory=LimbMotionParams)
+    score: LimbScoreParams = field(default_factory=LimbScoreParams)
+    appearance: LimbAppearanceParams = field(default_factory=LimbAppearanceParams)
+    edges: MotionEdgeParams = field(default_factory=MotionEdgeParams)
+    background: BackgroundParams = field(default_factory=BackgroundParams)
+    simulation: SimulationParams = field(default_factory=SimulationParams)
+    work_width_px: int = 320
+    # m = m_base + m_variable exp(s sigma) [Hecht 2009, section III]
+    variable_kg: float = 30.0
+    falloff_per_m: float = -12.0
+    sure_m: float = 0.10  # spread of a point at which it teaches 1/e as much of its colour
+
+    # starting from the body that hangs from the head
+    match_edge: float = 0.45  # mean edge penalty 0..1 of the limbs that hang where somebody stands
+    match_before: float = 0.6  # share of the body that stands before the background
+    # how far arms are raised sideways where they are looked for at the start: people show a T-pose, or hold hands apart
+    raised_rad: tuple[float, ...] = (0.0, 0.2, 0.4, 0.8, 1.2, 1.57)
+    rehang_m: float = 0.3  # of the head's way from one picture to the next: somebody else's
+    rehang_rad: float = 0.6  # by which the face may turn from where the body was hung
+
+    # losing
+    most_edge: float = 0.65  # mean edge penalty of a body that is believed
+    least_before: float = 0.4  # share of a believed body that stands before the background
+    too_old_s: float = 1.0  # a pose is not carried on over a longer gap
+
+    # background
+    beside_px: int = 15  # about the body nothing is learned as background [work px]
+    uncovered_turns: int = 10  # from one look for what was uncovered to the next
+    absorb_turns: int = (
+        13  # of so many looks one learns what stands before, too, while nobody is known
+    )

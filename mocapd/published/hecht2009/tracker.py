@@ -1,0 +1,396 @@
+"""The published tracker without a shirt: a mass-spring body hangs from a tracked head, its limbs led by particle filters.
+
+Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.shape import BodyShape, mean_shape
+from mocapd.body.skeleton import joint_positions
+from mocapd.clock import nanoseconds, seconds
+from mocapd.fit.fit_params import TICK_S
+from mocapd.geometry.camera_model import centre
+from mocapd.published.hecht2009.cylinders.limb_particles import LimbCloud, start_cloud, step_cloud
+from mocapd.published.hecht2009.cylinders.limb_score import EDGE, LimbView, limb_penalties
+from mocapd.published.hecht2009.cylinders.occlusion import part_ends
+from mocapd.published.hecht2009.cylinders.part_colours import learn, reference_colours
+from mocapd.published.hecht2009.evidence import RigEvidence
+from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
+from mocapd.published.hecht2009.head.head_tracker import HeadTracker
+from mocapd.published.hecht2009.head_of_standing import StandingHead, head_of_standing
+from mocapd.published.hecht2009.mass_spring.body_points import LIMBS, N_POINTS
+from mocapd.published.hecht2009.mass_spring.frusta import NAMES
+from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
+from mocapd.published.hecht2009.mass_spring.simulation import (
+    MassSpringState,
+    advanced,
+    confident_masses,
+    head_middle,
+    project_limb,
+    projected,
+    relaxed,
+    resting,
+    with_head,
+    with_points,
+)
+from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
+    points_from_skeleton,
+    skeleton_from_points,
+)
+from mocapd.published.hecht2009.params import Params
+from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
+from mocapd.published.hecht2009.stances import stances_of
+from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+_FLOOR_M = 0.0
+_PARTS = {
+    limb: (NAMES.index(f"{limb[:-3]}{upper}"), NAMES.index(f"{limb[:-3]}{lower}"))
+    for limb, (upper, lower) in {
+        "left_arm": ("upper_arm", "forearm"), "right_arm": ("upper_arm", "forearm"),
+        "left_leg": ("thigh", "shank"), "right_leg": ("thigh", "shank"),
+    }.items()
+}  # fmt: skip
+_NEVER_S = 1e9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Hanging:
+    """A body that hangs relaxed from a head, until the pictures match it."""
+
+    t_ns: int
+    state: MassSpringState
+    facing_rad: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Known:
+    """What is carried from frame to frame while somebody is tracked. head_sd_m: of the head's place; before (11,): how much
+    of each part stands before the background; quality: 0..1."""
+
+    t_ns: int
+    state: MassSpringState
+    clouds: dict[str, LimbCloud]
+    head_sd_m: float
+    before: Floats
+    quality: float
+    cameras: tuple[str, ...]
+
+
+class Hecht2009Tracker:
+    """Two calibrated cameras or more see a whole person; see `mocapd.trackers.base.Tracker` for the promises."""
+
+    name = "hecht2009"
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        cascade: CascadeArrays,
+        params: Params | None = None,
+        tracking: TrackingStateParams | None = None,
+    ) -> None:
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`."""
+        self.params = p = params if params is not None else Params()
+        self.rig = rig
+        self._stature_m = stature_m
+        self._body = build_body(mean_shape(stature_m))
+        self._views = RigEvidence(rig, p)
+        self._head = HeadTracker(rig.cameras, stature_m, cascade, p.head, p.seed)
+        self._tracking = TrackingState(tracking)
+        self.probe: Probe = unprobed
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget pose, background and appearance. near: a body that is tracked on from where it is."""
+        self._views.reset()
+        self._head.reset()
+        self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
+        self._rng = np.random.default_rng(self.params.seed)
+        self._near = near
+        self._hanging: _Hanging | None = None
+        self._standing: StandingHead | None = None
+        self._known: _Known | None = None
+        self._last_ns: int | None = None
+        self._turn = 0
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
+        require_stature(shape, self._stature_m)
+        if not np.array_equal(shape.factors, self._body.shape.factors):
+            self._body = self._body.sized(shape)
+        self._turn += 1
+        since_s = _NEVER_S if self._last_ns is None else seconds(frames.t_ns - self._last_ns)
+        self._last_ns = frames.t_ns
+        if since_s > self.params.too_old_s:
+            self._hanging = self._known = None
+            self._head.reset()
+            since_s = TICK_S  # nothing is known that would move over the gap
+        dt_s = float(np.clip(since_s, 1e-3, self.params.too_old_s))
+        self._views.look(frames)
+        self.probe("picture")
+        known = self._known
+        evidence = False
+        if self._near is not None and self._views.present:
+            known, self._near = self._taken_over(self._near, frames), None
+        self._mark(None if known is None else known.state.points_m)
+        for view in self._views.present:
+            view.stand_before(self._turn % self.params.uncovered_turns == 0)
+        self.probe("background")
+        head = self._head.step([view.head_picture() for view in self._views.each], dt_s)
+        head = self._or_standing(head, dt_s)
+        self.probe("head")
+        if head.state is HeadState.TRACKED and self._views.present:
+            if known is None:
+                known = self._matched(head, dt_s, frames)
+            if known is not None:
+                seen = self._followed(known, head, dt_s, frames)
+                evidence = seen is not None
+                known = seen if seen is not None else known
+        elif known is None:
+            self._hanging = None
+        tracking = self._tracking.step(frames.t_ns, evidence)
+        if tracking is Tracking.LOST and not evidence:
+            known = None
+        self._known = known
+        self._learn_background()
+        self.probe("learn")
+        return self._track(tracking, frames, shape)
+
+    # --- starting ---
+
+    def _or_standing(self, head: HeadTrack, dt_s: float) -> HeadTrack:
+        """The head that is tracked; or, when none is, that of somebody who stands there."""
+        if head.state is not HeadState.LOST or self._known is not None:
+            self._standing = None
+            return head
+        self._standing = head_of_standing(self._views.present, self._standing, self._stature_m)
+        if self._standing is not None and self._standing.is_sure:
+            self._head.reset(self._standing.middle_m)
+            self._standing = None
+            return self._head.step([view.head_picture() for view in self._views.each], dt_s)
+        return head
+
+    def _matched(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _Known | None:
+        """A body that hangs from the head, if the pictures match it."""
+        p = self.params
+        hanging = self._hung(head, dt_s, frames.t_ns)
+        self._hanging = hanging
+        points = hanging.state.points_m
+        self._mark(points)
+        stances = stances_of(self._body, points, p.raised_rad)
+        views = self._limb_views()
+        edges = {limb: self._edges(limb, some, views) for limb, some in stances.items()}
+        best = {limb: some[int(np.argmin(edges[limb]))] for limb, some in stances.items()}
+        for limb, which in LIMBS.items():
+            points = with_points(resting(points), which, best[limb]).points_m
+        state = projected(self._body, resting(points), None, _FLOOR_M, p.simulation)
+        before = self._before(state.points_m)
+        self.probe("match")
+        edge = float(np.mean([some.min() for some in edges.values()]))
+        if edge > p.match_edge or _mean_known(before) < p.match_before:
+            return None
+        self._hanging = None
+        self._views.forget_person()
+        clouds = self._clouds_at(state.points_m)
+        return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ())
+
+    def _hung(self, head: HeadTrack, dt_s: float, t_ns: int) -> _Hanging:
+        p, body, last = self.params, self._body, self._hanging
+        middle = head.middle_m
+        assert middle is not None
+        facing = head.yaw_rad
+        if last is not None:
+            turned = 0.0 if facing is None else _apart_rad(facing, last.facing_rad)
+            moved_m = float(np.linalg.norm(head_middle(body, last.state) - middle))
+            if turned < p.rehang_rad and moved_m < p.rehang_m:
+                state = with_head(body, last.state, middle, p.simulation)
+                state = advanced(body, state, dt_s, floor_m=_FLOOR_M, params=p.simulation)
+                return replace(last, t_ns=t_ns, state=state)
+        if facing is None:
+            facing = self._towards_cameras_rad(middle)
+        return _Hanging(t_ns, relaxed(body, middle, facing, _FLOOR_M, p.simulation), facing)
+
+    def _towards_cameras_rad(self, middle_m: Floats) -> float:
+        ways = np.array([centre(view.camera) - middle_m for view in self._views.present])[:, [0, 2]]
+        way = (ways / np.linalg.norm(ways, axis=1, keepdims=True)).mean(axis=0)
+        return float(np.arctan2(way[0], way[1]))
+
+    def _taken_over(self, near: BodyState, frames: FrameSet) -> _Known | None:
+        """Another tracker's body; what is beside it is the background. The next look confirms it or does not."""
+        pose = near.pose
+        if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
+            return None
+        state = resting(points_from_skeleton(self._body, pose))
+        self._mark(state.points_m)
+        for view in self._views.present:
+            view.seed_background()
+        self._head.reset(head_middle(self._body, state))
+        unknown = np.full(len(NAMES), np.nan)
+        clouds = self._clouds_at(state.points_m)
+        return _Known(frames.t_ns, state, clouds, 0.05, unknown, 0.0, ())
+
+    def _clouds_at(self, points_m: Floats) -> dict[str, LimbCloud]:
+        p, n_cameras = self.params, len(self._views.each)
+        return {
+            limb: start_cloud(points_m[list(which)], p.particles, n_cameras, p.score)
+            for limb, which in LIMBS.items()
+        }
+
+    # --- following ---
+
+    def _followed(
+        self, known: _Known, head: HeadTrack, dt_s: float, frames: FrameSet
+    ) -> _Known | None:
+        """One frame of tracking [Hecht 2009, section III]; None where the pictures do not confirm the body."""
+        p, body = self.params, self._body
+        assert head.middle_m is not None
+        state = with_head(body, known.state, head.middle_m, p.simulation)
+        state = advanced(body, state, dt_s, floor_m=_FLOOR_M, params=p.simulation)
+        self._mark(state.points_m)
+        self.probe("simulation")
+        self._learn_appearance(known.clouds, dt_s)
+        views = self._limb_views()
+        self.probe("appearance")
+        clouds, spread = {}, np.full(N_POINTS, np.inf)
+        led = state
+        for limb, which in LIMBS.items():
+            cloud = self._limb(limb, known.clouds[limb], state.points_m, views, dt_s)
+            clouds[limb] = cloud
+            spread[list(which)] = np.sqrt(cloud.variance_m2)
+            led = with_points(led, which, cloud.mean_m)
+        self.probe("particles")
+        masses = confident_masses(body.mass_kg, spread, p.variable_kg, p.falloff_per_m)
+        state = projected(body, led, masses, _FLOOR_M, p.simulation)
+        edge, before = self._limbs_edge(state.points_m), self._before(state.points_m)
+        self.probe("projection")
+        share = _mean_known(before)
+        if edge > p.most_edge or share < p.least_before:
+            return None
+        names = tuple(view.camera.name for view in self._views.present)
+        quality = float(np.clip((1.0 - edge) * share, 0.0, 1.0))
+        return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, quality, names)
+
+    def _limb(
+        self, limb: str, cloud: LimbCloud, points_m: Floats, views: Sequence[LimbView], dt_s: float
+    ) -> LimbCloud:
+        p, parts = self.params, _PARTS[limb]
+
+        def constrained(particles_m: Floats) -> Floats:
+            return project_limb(
+                self._body, limb, particles_m, points_m, None, _FLOOR_M, params=p.simulation
+            )
+
+        return step_cloud(
+            cloud, dt_s, self._radii_m()[list(parts)], parts, views,
+            constrained if p.particle_constraints else None, self._rng, p.motion, p.score,
+        )  # fmt: skip
+
+    def _learn_appearance(self, clouds: dict[str, LimbCloud], dt_s: float) -> None:
+        """The running average of the parts' colours, weighed by how surely each end is known."""
+        p, views = self.params, self._views
+        if not p.score.appearance or views.appearance.is_fixed(p.appearance):
+            return
+        sure = np.ones((len(NAMES), 2))
+        for limb, (upper, lower) in _PARTS.items():
+            at = np.exp(-np.sqrt(clouds[limb].variance_m2) / p.sure_m)
+            sure[upper], sure[lower] = at[:2], at[1:]
+        for view in views.present:
+            views.appearance = learn(
+                views.appearance, view.index, view.observed(), sure, dt_s, p.appearance
+            )
+
+    # --- evidence ---
+
+    def _radii_m(self) -> Floats:
+        frusta = self._body.frusta
+        return np.stack([frusta.radius_start_m, frusta.radius_end_m], axis=1)
+
+    def _ends_m(self, points_m: Floats) -> Floats:
+        frusta = self._body.frusta
+        return part_ends(frusta.ends_of(points_m), frusta.start_index, frusta.end_index)
+
+    def _mark(self, points_m: Floats | None) -> None:
+        """Where the body is in every present picture."""
+        ends = None if points_m is None else self._ends_m(points_m)
+        for view in self._views.present:
+            view.mark_body(ends, self._radii_m())
+
+    def _limb_views(self) -> list[LimbView]:
+        reference = reference_colours(self._views.appearance, self.params.score.along)
+        return [view.limb_view(reference[view.index]) for view in self._views.present]
+
+    def _limbs_edge(self, points_m: Floats) -> float:
+        """The mean edge penalty 0..1 of the limbs of points (16,3), of what is seen of them; 1 where nothing is."""
+        views = self._limb_views()
+        each = [
+            self._edges(limb, points_m[list(which)][None], views)[0]
+            for limb, which in LIMBS.items()
+        ]
+        return float(np.mean(each))
+
+    def _edges(self, limb: str, points_m: Floats, views: Sequence[LimbView]) -> Floats:
+        """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
+        parts = list(_PARTS[limb])
+        one = limb_penalties(
+            points_m, self._radii_m()[parts], _PARTS[limb], views, self.params.score
+        )
+        seen = one.seen[..., EDGE].sum(axis=0)
+        total = (one.seen[..., EDGE] * one.mean[..., EDGE]).sum(axis=0)
+        return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)
+
+    def _before(self, points_m: Floats) -> Floats:
+        return self._views.share_before(self._ends_m(points_m))
+
+    def _learn_background(self) -> None:
+        """Follow the backgrounds beside the body, or everywhere when nobody is known."""
+        known, views = self._known, self._views.present
+        if known is not None:
+            self._mark(known.state.points_m)
+        else:
+            self._mark(None)
+            if self._turn % self.params.absorb_turns:
+                for view in views:
+                    view.mark_unknown()
+        for view in views:
+            view.learn_background()
+
+    # --- result ---
+
+    def _track(self, tracking: Tracking, frames: FrameSet, shape: BodyShape) -> Track:
+        known = self._known
+        if tracking is Tracking.LOST or known is None:
+            return Track(lost_body(frames.t_ns, self.name), shape)
+        away_s = seconds(frames.t_ns - known.t_ns)
+        pose = skeleton_from_points(self._body, known.state.points_m).pose
+        spread = np.full(N_POINTS, np.inf)
+        for limb, which in LIMBS.items():
+            spread[list(which)] = np.sqrt(known.clouds[limb].variance_m2)
+        uncertainty_m = joint_uncertainty_m(spread, known.head_sd_m)
+        before = np.where(np.isfinite(known.before), known.before, 0.5)
+        body = BodyState(
+            t_ns=frames.t_ns,
+            tracking=tracking,
+            tracker=self.name,
+            pose=pose,
+            joints_m=joint_positions(self._body.skeleton, pose),
+            confidence=joint_confidence(before, uncertainty_m) * faded(away_s),
+            cameras=known.cameras if away_s == 0.0 else (),
+            uncertainty_m=grown(uncertainty_m, away_s),
+        )
+        return Track(body, shape, known.quality * faded(away_s))
+
+
+def _mean_known(shares: Floats) -> float:
+    """The mean of what is known (11,); 1 where nothing is."""
+    known = shares[np.isfinite(shares)]
+    return float(known.mean()) if len(known) else 1.0
+
+
+def _apart_rad(a: float, b: float) -> float:
+    return abs((a - b + np.pi) % (2.0 * np.pi) - np.pi)

@@ -1,0 +1,24 @@
+"""Make a tracker of the published method from what is known of rig, wearer and shirt, and the pose database."""
+
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
+from mocapd.published.wang2011.params import Params, published
+from mocapd.published.wang2011.tracker import Wang2011Tracker
+from mocapd.shirt.colour.from_pictures import colour_model, white_balances
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.trackers.known import known_rig, stature_m
+from mocapd.trackers.tracking_state import TrackingStateParams
+
+
+def build_wang2011_tracker(
+    calibration: Calibration,
+    database: PoseDatabase,
+    params: Params | None = None,
+    tracking: TrackingStateParams | None = None,
+) -> Wang2011Tracker:
+    """The tracker, as published where no params are given. Raises ConfigError naming what is missing."""
+    shirt = calibration.shirt or ShirtColours()
+    colours = colour_model(shirt.model)
+    W = white_balances(shirt.white_balance, colours, plain=True)
+    params = params or published()
+    rig = known_rig(calibration)
+    return Wang2011Tracker(rig, stature_m(calibration), colours, W, database, params, tracking)
