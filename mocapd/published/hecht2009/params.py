@@ -12,6 +12,8 @@ from mocapd.published.hecht2009.mass_spring.simulation import SimulationParams
 from mocapd.published.hecht2009.motion_edges import MotionEdgeParams
 from mocapd.vision.room_background import BackgroundParams
 
+FLOOR_M = 0.0  # y of the world's floor
+
 
 @dataclass(frozen=True, slots=True)
 class Params:

@@ -4,7 +4,7 @@ Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,12 +12,18 @@ from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.body.skeleton import joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
-from mocapd.geometry.camera_model import centre
 from mocapd.published.hecht2009.cylinders.limb_particles import LimbCloud, start_cloud, step_cloud
-from mocapd.published.hecht2009.cylinders.limb_score import EDGE, LimbView, limb_penalties
-from mocapd.published.hecht2009.cylinders.occlusion import part_ends
+from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.part_colours import learn, reference_colours
+from mocapd.published.hecht2009.edge_penalties import (
+    PARTS,
+    edge_penalties,
+    ends_m,
+    mean_edge_penalty,
+    radii_m,
+)
 from mocapd.published.hecht2009.evidence import RigEvidence
+from mocapd.published.hecht2009.hanging_body import HangingBody, hang
 from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
 from mocapd.published.hecht2009.head_of_standing import StandingHead, head_of_standing
@@ -31,7 +37,6 @@ from mocapd.published.hecht2009.mass_spring.simulation import (
     head_middle,
     project_limb,
     projected,
-    relaxed,
     resting,
     with_head,
     with_points,
@@ -40,7 +45,7 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
     points_from_skeleton,
     skeleton_from_points,
 )
-from mocapd.published.hecht2009.params import Params
+from mocapd.published.hecht2009.params import FLOOR_M, Params
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
 from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
@@ -48,24 +53,7 @@ from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, f
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-_FLOOR_M = 0.0
-_PARTS = {
-    limb: (NAMES.index(f"{limb[:-3]}{upper}"), NAMES.index(f"{limb[:-3]}{lower}"))
-    for limb, (upper, lower) in {
-        "left_arm": ("upper_arm", "forearm"), "right_arm": ("upper_arm", "forearm"),
-        "left_leg": ("thigh", "shank"), "right_leg": ("thigh", "shank"),
-    }.items()
-}  # fmt: skip
 _NEVER_S = 1e9
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Hanging:
-    """A body that hangs relaxed from a head, until the pictures match it."""
-
-    t_ns: int
-    state: MassSpringState
-    facing_rad: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,7 +101,7 @@ class Hecht2009Tracker:
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
-        self._hanging: _Hanging | None = None
+        self._hanging: HangingBody | None = None
         self._standing: StandingHead | None = None
         self._known: _Known | None = None
         self._last_ns: int | None = None
@@ -179,17 +167,22 @@ class Hecht2009Tracker:
     def _matched(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _Known | None:
         """A body that hangs from the head, if the pictures match it."""
         p = self.params
-        hanging = self._hung(head, dt_s, frames.t_ns)
+        cameras = [view.camera for view in self._views.present]
+        hanging = hang(self._hanging, self._body, head, dt_s, cameras, p)
         self._hanging = hanging
         points = hanging.state.points_m
         self._mark(points)
         stances = stances_of(self._body, points, p.raised_rad)
         views = self._limb_views()
-        edges = {limb: self._edges(limb, some, views) for limb, some in stances.items()}
+        frusta = self._body.frusta
+        edges = {
+            limb: edge_penalties(frusta, limb, some, views, p.score)
+            for limb, some in stances.items()
+        }
         best = {limb: some[int(np.argmin(edges[limb]))] for limb, some in stances.items()}
         for limb, which in LIMBS.items():
             points = with_points(resting(points), which, best[limb]).points_m
-        state = projected(self._body, resting(points), None, _FLOOR_M, p.simulation)
+        state = projected(self._body, resting(points), None, FLOOR_M, p.simulation)
         before = self._before(state.points_m)
         self.probe("match")
         edge = float(np.mean([some.min() for some in edges.values()]))
@@ -199,27 +192,6 @@ class Hecht2009Tracker:
         self._views.forget_person()
         clouds = self._clouds_at(state.points_m)
         return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ())
-
-    def _hung(self, head: HeadTrack, dt_s: float, t_ns: int) -> _Hanging:
-        p, body, last = self.params, self._body, self._hanging
-        middle = head.middle_m
-        assert middle is not None
-        facing = head.yaw_rad
-        if last is not None:
-            turned = 0.0 if facing is None else _apart_rad(facing, last.facing_rad)
-            moved_m = float(np.linalg.norm(head_middle(body, last.state) - middle))
-            if turned < p.rehang_rad and moved_m < p.rehang_m:
-                state = with_head(body, last.state, middle, p.simulation)
-                state = advanced(body, state, dt_s, floor_m=_FLOOR_M, params=p.simulation)
-                return replace(last, t_ns=t_ns, state=state)
-        if facing is None:
-            facing = self._towards_cameras_rad(middle)
-        return _Hanging(t_ns, relaxed(body, middle, facing, _FLOOR_M, p.simulation), facing)
-
-    def _towards_cameras_rad(self, middle_m: Floats) -> float:
-        ways = np.array([centre(view.camera) - middle_m for view in self._views.present])[:, [0, 2]]
-        way = (ways / np.linalg.norm(ways, axis=1, keepdims=True)).mean(axis=0)
-        return float(np.arctan2(way[0], way[1]))
 
     def _taken_over(self, near: BodyState, frames: FrameSet) -> _Known | None:
         """Another tracker's body; what is beside it is the background. The next look confirms it or does not."""
@@ -251,7 +223,7 @@ class Hecht2009Tracker:
         p, body = self.params, self._body
         assert head.middle_m is not None
         state = with_head(body, known.state, head.middle_m, p.simulation)
-        state = advanced(body, state, dt_s, floor_m=_FLOOR_M, params=p.simulation)
+        state = advanced(body, state, dt_s, floor_m=FLOOR_M, params=p.simulation)
         self._mark(state.points_m)
         self.probe("simulation")
         self._learn_appearance(known.clouds, dt_s)
@@ -266,8 +238,9 @@ class Hecht2009Tracker:
             led = with_points(led, which, cloud.mean_m)
         self.probe("particles")
         masses = confident_masses(body.mass_kg, spread, p.variable_kg, p.falloff_per_m)
-        state = projected(body, led, masses, _FLOOR_M, p.simulation)
-        edge, before = self._limbs_edge(state.points_m), self._before(state.points_m)
+        state = projected(body, led, masses, FLOOR_M, p.simulation)
+        edge = mean_edge_penalty(body.frusta, state.points_m, self._limb_views(), p.score)
+        before = self._before(state.points_m)
         self.probe("projection")
         share = _mean_known(before)
         if edge > p.most_edge or share < p.least_before:
@@ -279,15 +252,15 @@ class Hecht2009Tracker:
     def _limb(
         self, limb: str, cloud: LimbCloud, points_m: Floats, views: Sequence[LimbView], dt_s: float
     ) -> LimbCloud:
-        p, parts = self.params, _PARTS[limb]
+        p, parts = self.params, PARTS[limb]
 
         def constrained(particles_m: Floats) -> Floats:
             return project_limb(
-                self._body, limb, particles_m, points_m, None, _FLOOR_M, params=p.simulation
+                self._body, limb, particles_m, points_m, None, FLOOR_M, params=p.simulation
             )
 
         return step_cloud(
-            cloud, dt_s, self._radii_m()[list(parts)], parts, views,
+            cloud, dt_s, radii_m(self._body.frusta)[list(parts)], parts, views,
             constrained if p.particle_constraints else None, self._rng, p.motion, p.score,
         )  # fmt: skip
 
@@ -297,7 +270,7 @@ class Hecht2009Tracker:
         if not p.score.appearance or views.appearance.is_fixed(p.appearance):
             return
         sure = np.ones((len(NAMES), 2))
-        for limb, (upper, lower) in _PARTS.items():
+        for limb, (upper, lower) in PARTS.items():
             at = np.exp(-np.sqrt(clouds[limb].variance_m2) / p.sure_m)
             sure[upper], sure[lower] = at[:2], at[1:]
         for view in views.present:
@@ -307,45 +280,18 @@ class Hecht2009Tracker:
 
     # --- evidence ---
 
-    def _radii_m(self) -> Floats:
-        frusta = self._body.frusta
-        return np.stack([frusta.radius_start_m, frusta.radius_end_m], axis=1)
-
-    def _ends_m(self, points_m: Floats) -> Floats:
-        frusta = self._body.frusta
-        return part_ends(frusta.ends_of(points_m), frusta.start_index, frusta.end_index)
-
     def _mark(self, points_m: Floats | None) -> None:
         """Where the body is in every present picture."""
-        ends = None if points_m is None else self._ends_m(points_m)
+        ends = None if points_m is None else ends_m(self._body.frusta, points_m)
         for view in self._views.present:
-            view.mark_body(ends, self._radii_m())
+            view.mark_body(ends, radii_m(self._body.frusta))
 
     def _limb_views(self) -> list[LimbView]:
         reference = reference_colours(self._views.appearance, self.params.score.along)
         return [view.limb_view(reference[view.index]) for view in self._views.present]
 
-    def _limbs_edge(self, points_m: Floats) -> float:
-        """The mean edge penalty 0..1 of the limbs of points (16,3), of what is seen of them; 1 where nothing is."""
-        views = self._limb_views()
-        each = [
-            self._edges(limb, points_m[list(which)][None], views)[0]
-            for limb, which in LIMBS.items()
-        ]
-        return float(np.mean(each))
-
-    def _edges(self, limb: str, points_m: Floats, views: Sequence[LimbView]) -> Floats:
-        """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
-        parts = list(_PARTS[limb])
-        one = limb_penalties(
-            points_m, self._radii_m()[parts], _PARTS[limb], views, self.params.score
-        )
-        seen = one.seen[..., EDGE].sum(axis=0)
-        total = (one.seen[..., EDGE] * one.mean[..., EDGE]).sum(axis=0)
-        return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)
-
     def _before(self, points_m: Floats) -> Floats:
-        return self._views.share_before(self._ends_m(points_m))
+        return self._views.share_before(ends_m(self._body.frusta, points_m))
 
     def _learn_background(self) -> None:
         """Follow the backgrounds beside the body, or everywhere when nobody is known."""
@@ -390,7 +336,3 @@ def _mean_known(shares: Floats) -> float:
     """The mean of what is known (11,); 1 where nothing is."""
     known = shares[np.isfinite(shares)]
     return float(known.mean()) if len(known) else 1.0
-
-
-def _apart_rad(a: float, b: float) -> float:
-    return abs((a - b + np.pi) % (2.0 * np.pi) - np.pi)

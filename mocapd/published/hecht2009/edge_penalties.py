@@ -1,0 +1,53 @@
+"""How well the edges of all pictures agree with limbs in given places."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams
+from mocapd.published.hecht2009.cylinders.limb_score import EDGE, LimbView, limb_penalties
+from mocapd.published.hecht2009.cylinders.occlusion import part_ends
+from mocapd.published.hecht2009.mass_spring.body_points import LIMBS
+from mocapd.published.hecht2009.mass_spring.frusta import NAMES, Frusta
+from mocapd.types import Floats
+
+# The upper and the lower frustum of each limb.
+PARTS = {
+    limb: (NAMES.index(f"{limb[:-3]}{upper}"), NAMES.index(f"{limb[:-3]}{lower}"))
+    for limb, (upper, lower) in {
+        "left_arm": ("upper_arm", "forearm"), "right_arm": ("upper_arm", "forearm"),
+        "left_leg": ("thigh", "shank"), "right_leg": ("thigh", "shank"),
+    }.items()
+}  # fmt: skip
+
+
+def radii_m(frusta: Frusta) -> Floats:
+    """Radii (11,2) of each frustum at its start and its end."""
+    return np.stack([frusta.radius_start_m, frusta.radius_end_m], axis=1)
+
+
+def ends_m(frusta: Frusta, points_m: Floats) -> Floats:
+    """Where each frustum of a body of points (16,3) starts and ends, see `part_ends`."""
+    return part_ends(frusta.ends_of(points_m), frusta.start_index, frusta.end_index)
+
+
+def edge_penalties(
+    frusta: Frusta, limb: str, points_m: Floats, views: Sequence[LimbView], score: LimbScoreParams
+) -> Floats:
+    """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
+    parts = PARTS[limb]
+    penalties = limb_penalties(points_m, radii_m(frusta)[list(parts)], parts, views, score)
+    seen = penalties.seen[..., EDGE].sum(axis=0)
+    total = (penalties.seen[..., EDGE] * penalties.mean[..., EDGE]).sum(axis=0)
+    return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)
+
+
+def mean_edge_penalty(
+    frusta: Frusta, points_m: Floats, views: Sequence[LimbView], score: LimbScoreParams
+) -> float:
+    """The mean edge penalty 0..1 of the limbs of a body of points (16,3)."""
+    each = [
+        edge_penalties(frusta, limb, points_m[list(which)][None], views, score)[0]
+        for limb, which in LIMBS.items()
+    ]
+    return float(np.mean(each))
