@@ -67,13 +67,11 @@ def calibration_path(place: Path) -> Path:
     return place / FILE_NAME if is_folder(place) else place
 
 
-def read_calibration(place: Path) -> SavedCalibration:
-    """The calibration in a file, or in a folder by its usual name; its sources with their passwords,
-    as far as those are kept beside it.
+def read_calibration(path: Path) -> SavedCalibration:
+    """The calibration in a file, its sources with their passwords, as far as those are kept beside it.
 
     Raises InputError when there is none, ConfigError naming file and key when it is damaged.
     """
-    path = calibration_path(place)
     try:
         saved = _read(path)
     except MissingError:

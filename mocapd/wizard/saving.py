@@ -23,7 +23,7 @@ from mocapd.calibration.calibration_file import (
     write_calibration,
 )
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.loaded_calibration import from_saved
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,
@@ -36,8 +36,8 @@ from mocapd.calibration.saved_calibration import (
     SavedSetup,
     SavedWearer,
 )
-from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
+from mocapd.shirt.colour.model_pictures import personal_model
 from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.step_names import StepName

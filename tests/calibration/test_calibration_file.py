@@ -23,7 +23,7 @@ from mocapd.calibration.calibration_file import (
     rewrite_sources,
     write_calibration,
 )
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.loaded_calibration import from_saved
 from mocapd.calibration.saved_calibration import (
     ColourFit,
     LensFit,
@@ -83,7 +83,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def test_what_is_read_is_what_was_written(path: Path) -> None:
-    read = read_calibration(path.parent)
+    read = read_calibration(path)
     wanted = saved_calibration()
     assert read.camera[1] == wanted.camera[1]
     assert (read.made, read.room, read.wearer, read.board) == (

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.calibration.calibration_file import read_calibration
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.loaded_calibration import from_saved
 from mocapd.types import Camera, LabelledPicture, Rig
 
 OF_0_2 = """\
