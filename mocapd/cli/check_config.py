@@ -51,7 +51,7 @@ def check_config(
 def _print_calibration(config: "Config") -> None:
     """What it is, as comments below the settings."""
     from mocapd.boundary.urls import without_password
-    from mocapd.calibration.loaded_calibration import find_calibration
+    from mocapd.calibration.calibration_file import find_calibration
 
     saved = find_calibration(config.rig, config.state_dir, config.sources)
     if saved is None:

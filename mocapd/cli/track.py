@@ -75,9 +75,12 @@ def track(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.terminal.progress import ProgressBars
-    from mocapd.calibration.calibration_file import calibration_path
+    from mocapd.calibration.calibration_file import (
+        calibration_path,
+        known_of_recording,
+        load_calibration,
+    )
     from mocapd.calibration.from_origin import from_origin
-    from mocapd.calibration.loaded_calibration import known_of_recording, load_calibration
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.session.capture_checks import check_capture
     from mocapd.session.offline import (

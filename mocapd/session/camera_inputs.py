@@ -96,10 +96,10 @@ def picture_size(camera: CameraSection) -> tuple[int, int]:
     return width, height
 
 
-def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[CameraSection]:
+def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraSection, ...]:
     """The cameras as the rig has them. Raises ConfigError for one that it has not."""
     if rig is None:
-        return list(cameras)
+        return tuple(cameras)
     for camera in cameras:
         if camera.id not in rig.names:
             raise ConfigError(
@@ -107,4 +107,4 @@ def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[Came
                 "camera",
                 f"it has {', '.join(rig.names)}: correct the id, or calibrate again",
             )
-    return sorted(cameras, key=lambda camera: rig.names.index(camera.id))
+    return tuple(sorted(cameras, key=lambda camera: rig.names.index(camera.id)))

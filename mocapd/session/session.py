@@ -12,9 +12,9 @@ from functools import partial
 from pathlib import Path
 
 from mocapd.body.shape import BodyShape
+from mocapd.calibration.calibration_file import LoadedCalibration, find_calibration
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.calibration.from_origin import from_origin
-from mocapd.calibration.loaded_calibration import LoadedCalibration, find_calibration
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.kinds.source_kinds import cameras_of_origin, common_origin, open_origin
 from mocapd.capture.origin import camera_address
@@ -81,21 +81,14 @@ def open_session(config: Config, progress: Progress) -> Session:
 def plan_session(config: Config) -> SessionPlan:
     """Check what can be checked at once. Raises ConfigError or InputError."""
     saved = find_calibration(config.rig, config.state_dir, config.sources)
-    cameras = config.camera or cameras_of_calibration(saved)
-    if not cameras:
-        raise ConfigError(
-            "no camera is configured, and no calibration is saved",
-            str(config.state_dir),
-            "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
-            "--camera ID=SOURCE",
-        )
+    cameras = session_cameras(config.camera, saved, config.state_dir)
     origin = common_origin(camera.source for camera in cameras)
     known, rig_source, calibrated = Calibration(), "", None
     if saved is not None:
         known, rig_source, calibrated = saved.known, str(saved.path), saved.tables.made.when
     elif config.rig is not None:
         known, rig_source = Calibration(load_rig(config.rig)), str(config.rig)
-    in_rig_order(cameras, known.rig)
+    cameras = in_rig_order(cameras, known.rig)
     known = known.overlaid(Calibration(shirt=_configured_shirt(config.shirt.colour_model, cameras)))
     plan = SessionPlan(config, cameras, origin, known, rig_source, calibrated)
     if not origin and not plan.assumes_rig:
@@ -128,11 +121,20 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     )
 
 
-def cameras_of_calibration(saved: LoadedCalibration | None) -> tuple[CameraSection, ...]:
-    """The calibrated cameras as a configuration has them. Raises ConfigError where a password is
-    missing."""
+def session_cameras(
+    configured: tuple[CameraSection, ...], saved: LoadedCalibration | None, state_dir: Path
+) -> tuple[CameraSection, ...]:
+    """The configured cameras, else the calibrated ones as a configuration has them. Raises ConfigError where there are
+    none, or a password is missing."""
+    if configured:
+        return configured
     if saved is None:
-        return ()
+        raise ConfigError(
+            "no camera is configured, and no calibration is saved",
+            str(state_dir),
+            "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
+            "--camera ID=SOURCE",
+        )
     place = str(saved.path.parent)
     return tuple(
         CameraSection(

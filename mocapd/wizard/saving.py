@@ -19,11 +19,11 @@ from mocapd.calibration.board_spec import BoardSpec
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
     calibration_path,
+    from_saved,
     read_calibration,
-    write_calibration,
 )
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
-from mocapd.calibration.loaded_calibration import from_saved
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,

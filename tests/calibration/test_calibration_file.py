@@ -17,13 +17,8 @@ import pytest
 import tomli_w
 
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
-from mocapd.calibration.calibration_file import (
-    FILE_NAME,
-    read_calibration,
-    rewrite_sources,
-    write_calibration,
-)
-from mocapd.calibration.loaded_calibration import from_saved
+from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
+from mocapd.calibration.calibration_writing import rewrite_sources, write_calibration
 from mocapd.calibration.saved_calibration import (
     ColourFit,
     LensFit,

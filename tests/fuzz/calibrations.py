@@ -4,8 +4,8 @@ import os
 from datetime import UTC, datetime
 from random import Random
 
-from mocapd.calibration.calibration_file import COLOURS, read_calibration
-from mocapd.calibration.loaded_calibration import load_calibration
+from mocapd.calibration.calibration_file import load_calibration, read_calibration
+from mocapd.calibration.calibration_writing import COLOURS
 from mocapd.geometry.rig_file import load_rig
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
 from mocapd.wizard.intrinsics.saved_intrinsics import (

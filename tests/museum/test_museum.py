@@ -14,8 +14,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, read_calibration
-from mocapd.calibration.loaded_calibration import from_saved
+from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
 from mocapd.calibration.saved_sources import SECRETS, known_sources
 from mocapd.errors import ConfigError, InputError, MocapdError, NewerFileError
 from mocapd.geometry.rig_file import load_rig

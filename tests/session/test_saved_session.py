@@ -8,19 +8,21 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, read_calibration, write_calibration
-from mocapd.calibration.loaded_calibration import (
+from mocapd.calibration.calibration_file import (
+    FILE_NAME,
     LoadedCalibration,
     find_calibration,
     known_of_recording,
     load_calibration,
+    read_calibration,
 )
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.session.session import cameras_of, cameras_of_calibration, open_session
+from mocapd.session.session import cameras_of, open_session, session_cameras
 from mocapd.wizard.saving import save_draft
 from tests.cli.small_capture import write_capture
 from tests.wizard.drafts import PORTS, full_draft, source_of
@@ -98,7 +100,7 @@ def network_config(config: Config) -> Config:
 def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
     saved = saved_for(network_config(config))
     assert saved is not None
-    assert cameras_of_calibration(saved)[0].source == URL
+    assert session_cameras((), saved, config.state_dir)[0].source == URL
 
 
 def test_a_password_may_come_from_the_configuration(config: Config) -> None:

@@ -4,8 +4,7 @@ import time
 from datetime import UTC
 from pathlib import Path
 
-from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.calibration.loaded_calibration import LoadedCalibration, find_calibration
+from mocapd.calibration.calibration_file import FILE_NAME, LoadedCalibration, find_calibration
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import CalibrationFacts, FactTrouble
 from mocapd.errors import MocapdError

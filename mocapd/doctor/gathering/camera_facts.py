@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from mocapd.boundary.urls import without_password
-from mocapd.calibration.loaded_calibration import LoadedCalibration
+from mocapd.calibration.calibration_file import LoadedCalibration
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus, crowded_buses
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.capture.webcam.webcam_listing import CameraInfo, list_cameras
