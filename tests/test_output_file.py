@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.calibrate.extrinsics.rig_writing import RIG
-from mocapd.calibration.calibration_file import CALIBRATION_KIND
+from mocapd.calibration.calibration_writing import CALIBRATION_KIND
 from mocapd.errors import CannotCreateError
 from mocapd.exports.formats import KINDS
 from mocapd.output_file import PDF, PNG, FileKind, OutputFile, kind_by_first_line

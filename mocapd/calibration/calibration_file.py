@@ -1,65 +1,104 @@
-"""`calibration.toml`, read and checked value by value, and written whole or not at all."""
+"""A saved calibration, `calibration.toml`: found, read, and checked value by value."""
 
-import hashlib
 import logging
-import re
 from collections.abc import Mapping
-from contextlib import suppress
-from datetime import datetime
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
+import numpy as np
 
-import cv2
-import msgspec
-
-from mocapd.boundary.files import MissingError, is_absent, is_file, is_folder, read_file, read_text
-from mocapd.boundary.folders import private_folder
+from mocapd.boundary.files import MissingError, is_absent, is_folder, read_text
 from mocapd.boundary.numbers import brief, check_numbers
 from mocapd.boundary.parsing import convert, parse_toml
-from mocapd.boundary.urls import is_masked
-from mocapd.calibration.saved_calibration import SCHEMA, ColourFit, SavedCalibration
-from mocapd.calibration.saved_sources import (
-    SECRETS,
-    complete_sources,
-    keep_sources,
-    known_sources,
-    passwords_of,
-    shown_sources,
-)
-from mocapd.calibration.toml_text import toml_text
-from mocapd.errors import (
-    CannotCreateError,
-    ConfigError,
-    InputError,
-    MalformedError,
-    MocapdError,
-    NewerFileError,
-)
-from mocapd.output_file import FileKind
-from mocapd.set_aside import set_aside
-from mocapd.types import Bytes, LabelledPicture
-from mocapd.whole_file import tidy, whole_file
+from mocapd.boundary.urls import without_password
+from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
+from mocapd.calibration.saved_calibration import SCHEMA, SavedCalibration
+from mocapd.calibration.saved_sources import complete_sources
+from mocapd.capture.file import size_error
+from mocapd.capture.kinds.source_kinds import identity_of, origin_of
+from mocapd.capture.origin import Origin
+from mocapd.errors import ConfigError, InputError, MalformedError, NewerFileError
+from mocapd.shirt.colour.model_pictures import personal_model
+from mocapd.shirt.colour.strokes import read_labelled
 
 FILE_NAME = "calibration.toml"
-COLOURS = "colours"
+MOST_SETUP_BYTES = 2_000_000  # a picture of the board takes 0.5 to 2 kB
 
 _MOST_BYTES = 256_000  # a camera takes 1 kB
-_MOST_SETUP_BYTES = 2_000_000  # a picture of the board takes 0.5 to 2 kB
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
-_HEADER = """\
-# The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
-# Lengths are in metres, pixels where a name ends in _px; y points up from the floor. The pictures
-# that the colours were read from lie in the folder colours/ beside this file, and show the wearer.
-# The one before is kept beside it under the same name with .previous: rename it to go back.
-
-"""
-CALIBRATION_KIND = FileKind(
-    "a calibration", lambda head: re.search(rb"(?m)^schema = \d+$", head) is not None
-)
 _log = logging.getLogger(__name__)
-_PICTURE = re.compile(r".+-[0-9a-f]{12}(_strokes)?\.png")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoadedCalibration:
+    """A calibration as its file has it, and as a tracker takes it."""
+
+    path: Path
+    tables: SavedCalibration
+    known: Calibration
+
+
+def find_calibration(
+    rig: Path | None, state_dir: Path, sources: Mapping[str, str]
+) -> LoadedCalibration | None:
+    """The calibration that `rig` names; else that of the state directory, for its own cameras. sources: of the
+    configured cameras, by id.
+
+    None for a rig in the capture format, for cameras that bring a rig with them, and for others than
+    those that were calibrated. Raises InputError or ConfigError.
+    """
+    if rig is not None:
+        path = calibration_path(rig)
+        return load_calibration(path) if path.suffix == ".toml" else None
+    path = state_dir / FILE_NAME
+    if any(map(origin_of, sources.values())) or is_absent(path):
+        return None
+    saved = load_calibration(path)
+    if _fits(saved.tables, sources):
+        return saved
+    _log.warning(
+        "%s is of other cameras than those configured (%s), and not used",
+        *(path, ", ".join(f"{c.id} = {without_password(c.source)}" for c in saved.tables.camera)),
+    )
+    return None
+
+
+def load_calibration(path: Path) -> LoadedCalibration:
+    """The calibration in a file, with its pictures. Raises InputError or ConfigError."""
+    tables = read_calibration(path)
+    return LoadedCalibration(path, tables, from_saved(tables, path))
+
+
+def from_saved(tables: SavedCalibration, path: Path) -> Calibration:
+    """What the tables know, with the pictures that they name, and without a rig where the cameras are not placed;
+    `path`: their file. Raises InputError or ConfigError."""
+    rig = tables.rig(str(path)) if tables.is_placed else None
+    wearer = tables.known_wearer()
+    colours = {one.id: one.colour for one in tables.camera if one.colour is not None}
+    pictures = {
+        name: read_labelled(path.parent / one.picture, path.parent / one.strokes)
+        for name, one in colours.items()
+    }
+    W = {name: np.array(one.W) for name, one in colours.items()}
+    personal = tables.wearer is not None and tables.wearer.personal_colours
+    shirt = ShirtColours(personal_model(pictures, W) if personal else (), pictures)
+    return Calibration(rig, wearer, shirt)
+
+
+def known_of_recording(saved: LoadedCalibration, origin: Origin) -> Calibration:
+    """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
+    where it does not. Raises ConfigError when they did not."""
+    sizes = {camera.id: camera.size_px for camera in saved.tables.camera}
+    for camera in origin.rig.cameras:
+        if camera.name not in sizes:
+            raise ConfigError(
+                f"the calibration has no camera {camera.name!r}",
+                str(saved.path),
+                f"it has {', '.join(sizes)}: name the capture's cameras so, or calibrate them",
+            )
+        if sizes[camera.name] != camera.size_px:
+            raise size_error(origin.rig_source, camera.name, camera.size_px, sizes[camera.name])
+    return Calibration(wearer=Wearer(origin.stature_m)).overlaid(saved.known)
 
 
 def calibration_path(place: Path) -> Path:
@@ -67,15 +106,13 @@ def calibration_path(place: Path) -> Path:
     return place / FILE_NAME if is_folder(place) else place
 
 
-def read_calibration(place: Path) -> SavedCalibration:
-    """The calibration in a file, or in a folder by its usual name; its sources with their passwords,
-    as far as those are kept beside it.
+def read_calibration(path: Path) -> SavedCalibration:
+    """The calibration in a file, its sources with their passwords, as far as those are kept beside it.
 
     Raises InputError when there is none, ConfigError naming file and key when it is damaged.
     """
-    path = calibration_path(place)
     try:
-        saved = _read(path)
+        saved = read_tables(path)
     except MissingError:
         raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
     if not saved.is_placed:
@@ -84,9 +121,7 @@ def read_calibration(place: Path) -> SavedCalibration:
             str(path),
             "finish it: `mocapd calibrate`",
         )
-    if not any(is_masked(one.source) for one in saved.camera):
-        return saved
-    return complete_sources(saved, known_sources(path.parent))
+    return complete_sources(saved, path.parent)
 
 
 def read_setup(path: Path) -> SavedCalibration:
@@ -94,12 +129,17 @@ def read_setup(path: Path) -> SavedCalibration:
 
     Raises MissingError when there is none, InputError, or ConfigError naming file and key when it is damaged.
     """
-    return _read(path, _MOST_SETUP_BYTES)
+    return read_tables(path, MOST_SETUP_BYTES)
 
 
-def _read(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
+def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
+    """The tables as they stand in the file. Raises as `read_setup`."""
     where = str(path)
-    data = _toml(path, most_bytes)
+    text = read_text(path, most_bytes)
+    try:
+        data = parse_toml(text)
+    except MalformedError as error:
+        raise ConfigError(f"not valid TOML ({error.what})", where, _RECALIBRATE) from None
     schema = data.get("schema")
     if schema != SCHEMA:
         told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
@@ -127,182 +167,13 @@ def _read(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
     return saved
 
 
-def write_calibration(
-    path: Path,
-    saved: SavedCalibration,
-    pictures: Mapping[str, LabelledPicture],
-    own_folder: bool = True,
-) -> None:
-    """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml, or set aside where
-    this mocapd cannot read it.
-
-    pictures: by camera id the picture with the strokes that its `colour` is from.
-    Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
-    The file comes last, so what was there stays in force until all is written.
-    Raises CannotCreateError, or ConfigError where passwords are kept and cannot be read.
-    """
-    folder = path.parent
-    known = {**known_sources(folder), **passwords_of(saved)}
-    try:
-        if own_folder:
-            private_folder(folder)
-        text = _text(_with_pictures(folder, saved, pictures))
-        if not is_absent(path):
-            known = {**_keep_before(path), **known}
-        _write(path, text, known)
-        _tidy(path)
-    except OSError as error:
-        raise _cannot_write(error, path) from None
+def _fits(tables: SavedCalibration, sources: Mapping[str, str]) -> bool:
+    """Whether each of these cameras was calibrated, by id and source."""
+    calibrated = {camera.id: _model(camera.source) for camera in tables.camera}
+    return all(calibrated.get(name) == _model(source) for name, source in sources.items())
 
 
-def write_setup(
-    path: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
-) -> None:
-    """Write a setup in progress likewise, without passwords and in place of the one before. Raises CannotCreateError."""
-    try:
-        private_folder(path.parent)
-        text = _text(_with_pictures(path.parent, saved, pictures))
-        if len(text) > _MOST_SETUP_BYTES:
-            raise CannotCreateError(
-                f"would have {len(text)} bytes, at most {_MOST_SETUP_BYTES} are kept", str(path)
-            )
-        with whole_file(path, private=True) as partial:
-            partial.write_text(text, encoding="utf-8")
-        _tidy(path)
-    except OSError as error:
-        raise _cannot_write(error, path) from None
-
-
-def remove_setup(path: Path) -> None:
-    """Remove a setup in progress with its pictures, those of files set aside beside it excepted. Raises OSError."""
-    if not path.exists():
-        return
-    now_s = path.stat().st_mtime
-    path.unlink()
-    _tidy_folder(path.parent, now_s)
-
-
-def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
-    """Give cameras of the saved calibration, by id, another source: they were plugged in elsewhere.
-
-    Raises InputError, ConfigError or CannotCreateError; the file stays as it was then.
-    """
-    saved = read_calibration(path)
-    cameras = tuple(
-        msgspec.structs.replace(one, source=sources.get(one.id, one.source)) for one in saved.camera
-    )
-    saved = msgspec.structs.replace(saved, camera=cameras)
-    known = {**known_sources(path.parent), **passwords_of(saved)}
-    try:
-        _write(path, _text(saved), known)
-    except OSError as error:
-        raise _cannot_write(error, path) from None
-
-
-def _write(path: Path, text: str, known: Mapping[tuple[str, str], str]) -> None:
-    """The passwords first: without them the file would say too little."""
-    keep_sources(path.parent, known, text + _named(path.parent))
-    with whole_file(path, private=True) as partial:
-        partial.write_text(text, encoding="utf-8")
-
-
-def _keep_before(path: Path) -> dict[tuple[str, str], str]:
-    """The calibration that is there becomes the previous one, and that stays where this one is of no use; the
-    passwords that earlier versions kept within it. Raises OSError."""
-    try:
-        saved = _read(path)
-    except MocapdError as error:
-        aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
-        _log.warning("%s cannot be used (%s), and is kept as %s", path, error.what, aside.name)
-        return {}
-    passwords = dict(passwords_of(saved))
-    before = _text(saved).encode() if passwords else path.read_bytes()
-    with whole_file(_previous(path), private=True) as partial:
-        partial.write_bytes(before)
-    return passwords
-
-
-def _previous(path: Path) -> Path:
-    return path.with_name(f"{path.stem}.previous{path.suffix}")
-
-
-def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
-    return CannotCreateError(
-        f"the calibration cannot be written ({error.strerror})",
-        str(error.filename or path),
-        "make room or the folder writable, or set state_dir; what was saved before is untouched",
-    )
-
-
-def _text(saved: SavedCalibration) -> str:
-    tables: dict[str, Any] = msgspec.to_builtins(shown_sources(saved), builtin_types=(datetime,))
-    return _HEADER + toml_text(tables)
-
-
-def _with_pictures(
-    folder: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
-) -> SavedCalibration:
-    """The tables with the names of the pictures' files, which are written. Raises OSError."""
-    private_folder(folder / COLOURS)
-    cameras = []
-    for camera in saved.camera:
-        colour = camera.colour
-        if colour is not None:
-            colour = _with_files(folder, camera.id, pictures[camera.id], colour)
-        cameras.append(msgspec.structs.replace(camera, colour=colour))
-    return msgspec.structs.replace(saved, camera=tuple(cameras))
-
-
-def _with_files(
-    folder: Path, camera: str, labelled: LabelledPicture, colour: ColourFit
-) -> ColourFit:
-    """Pictures are named by their content: one that is there already is the same one."""
-    picture, drawn = _png(labelled.pixels), _png(labelled.labels)
-    stem = re.sub(r"[^\w.-]", "_", camera)
-    mark = hashlib.sha256(picture + drawn).hexdigest()[:12]
-    names = f"{stem}-{mark}.png", f"{stem}-{mark}_strokes.png"
-    for name, data in zip(names, (picture, drawn), strict=True):
-        path = folder / COLOURS / name
-        if is_file(path) and path.read_bytes() == data:
-            path.chmod(0o600)  # an earlier version let everybody read it
-            continue
-        with whole_file(path, private=True) as partial:
-            partial.write_bytes(data)
-    return msgspec.structs.replace(
-        colour, picture=f"{COLOURS}/{names[0]}", strokes=f"{COLOURS}/{names[1]}"
-    )
-
-
-def _png(pixels: Bytes) -> bytes:
-    return bytes(cv2.imencode(".png", pixels)[1])
-
-
-def _named(folder: Path) -> str:
-    """What the calibrations of a folder say, and those that were set aside."""
-    said = b""
-    for path in folder.glob("*.toml*"):
-        if path.name != SECRETS:
-            with suppress(InputError):  # none of ours
-                said += read_file(path, _MOST_SETUP_BYTES)
-    return said.decode("utf-8", "replace")
-
-
-def _tidy(path: Path) -> None:
-    """Remove what was half written, and pictures of ours that no calibration here names any more."""
-    _tidy_folder(path.parent, path.stat().st_mtime)
-
-
-def _tidy_folder(folder: Path, now_s: float) -> None:
-    tidy(folder, now_s)
-    tidy(folder / COLOURS, now_s)
-    named = _named(folder)
-    for picture in (folder / COLOURS).iterdir():
-        if _PICTURE.fullmatch(picture.name) and picture.name not in named:
-            picture.unlink()
-
-
-def _toml(path: Path, most_bytes: int) -> dict[str, Any]:
-    try:
-        return parse_toml(read_text(path, most_bytes))
-    except MalformedError as error:
-        raise ConfigError(f"not valid TOML ({error.what})", str(path), _RECALIBRATE) from None
+def _model(source: str) -> object:
+    """What two addresses of one camera share: a webcam may be at another USB port, a password hidden in one of them."""
+    identity = identity_of(source)
+    return identity.model if identity is not None else without_password(source)

@@ -4,9 +4,11 @@ from datetime import datetime
 from typing import Annotated, Literal
 
 import msgspec
+import numpy as np
 
 from mocapd.body.shape import FACTORS
 from mocapd.calibration.board_spec import BoardSpec
+from mocapd.calibration.calibration_record import Wearer
 from mocapd.capture.webcam.controls import Controls
 from mocapd.geometry.rig_file import camera_from_dict
 from mocapd.geometry.rig_plausibility import require_plausible
@@ -145,6 +147,16 @@ class SavedCalibration(_Table, frozen=True, kw_only=True):
         rig = Rig(tuple(camera_from_dict(_entry(one), where) for one in self.camera))
         require_plausible(rig, where)
         return rig
+
+    def known_wearer(self) -> Wearer:
+        """The wearer as a tracker takes it; a proportion that the file leaves out is the mean body's."""
+        saved = self.wearer
+        if saved is None:
+            return Wearer()
+        if saved.proportions is None:
+            return Wearer(saved.stature_m, has_shirt=saved.has_shirt)
+        factors = np.array([saved.proportions.get(name, 1.0) for name in FACTORS])
+        return Wearer(saved.stature_m, factors, saved.has_shirt)
 
 
 def _entry(camera: SavedCamera) -> dict[str, object]:

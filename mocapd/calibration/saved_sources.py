@@ -97,8 +97,12 @@ def shown_sources(saved: SavedCalibration) -> SavedCalibration:
     return _with_sources(saved, [without_password(one.source) for one in saved.camera])
 
 
-def complete_sources(saved: SavedCalibration, known: Known) -> SavedCalibration:
-    """The same with the passwords that are known; what is not stays as it is shown."""
+def complete_sources(saved: SavedCalibration, folder: Path) -> SavedCalibration:
+    """The same with the passwords that are kept in its folder; what is not stays as it is shown. Raises as
+    `known_sources`."""
+    if not any(is_masked(one.source) for one in saved.camera):
+        return saved
+    known = known_sources(folder)
     return _with_sources(
         saved, [known.get((one.id, one.source), one.source) for one in saved.camera]
     )

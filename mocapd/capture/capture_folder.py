@@ -212,7 +212,6 @@ def _stroked(image: Path) -> Path | None:
 
 
 def _model(folder: Path) -> tuple[Path, ...]:
-    require_pictures(folder)
     images = (_stroked(image) for image in stroked_pictures(folder))
     return tuple(image for image in images if image is not None)
 

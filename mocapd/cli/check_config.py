@@ -51,9 +51,9 @@ def check_config(
 def _print_calibration(config: "Config") -> None:
     """What it is, as comments below the settings."""
     from mocapd.boundary.urls import without_password
-    from mocapd.session.saved_session import configured_calibration
+    from mocapd.calibration.calibration_file import find_calibration
 
-    saved = configured_calibration(config)
+    saved = find_calibration(config.rig, config.state_dir, config.sources)
     if saved is None:
         used = (
             f"the rig {config.rig}" if config.rig else "none saved (`mocapd calibrate` makes one)"

@@ -75,6 +75,11 @@ def track(
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.terminal.progress import ProgressBars
+    from mocapd.calibration.calibration_file import (
+        calibration_path,
+        known_of_recording,
+        load_calibration,
+    )
     from mocapd.calibration.from_origin import from_origin
     from mocapd.capture.kinds.source_kinds import open_origin
     from mocapd.session.capture_checks import check_capture
@@ -85,7 +90,6 @@ def track(
         why_missing,
         write_track,
     )
-    from mocapd.session.saved_session import known_of_recording, load_saved
     from mocapd.session.tracker_setup import cached, ready_tracker
 
     read = (capture,) if calibration is None else (capture, calibration)
@@ -97,7 +101,8 @@ def track(
         if calibration is None:
             known = from_origin(origin)
         else:
-            known = known_of_recording(load_saved(calibration), origin)
+            saved = load_calibration(calibration_path(calibration))
+            known = known_of_recording(saved, origin)
         checked = check_capture(origin, known.rig, known.wearer.stature_m)
         ready = ready_tracker(
             own.name,

@@ -168,3 +168,8 @@ class Config:
     prediction: PredictionParams = field(default_factory=PredictionParams)
     web: WebSection = field(default_factory=WebSection)
     node: node_params.Params = field(default_factory=node_params.Params)
+
+    @property
+    def sources(self) -> dict[str, str]:
+        """The address of each camera, by id."""
+        return {camera.id: camera.source for camera in self.camera}

@@ -10,9 +10,7 @@ from mocapd.capture.kinds.source_kinds import (
     identities_of,
     identity_of,
     is_settable,
-    is_simulated,
     open_source,
-    origin_of,
 )
 from mocapd.capture.origin import Origin
 from mocapd.capture.pace import Pace
@@ -57,11 +55,12 @@ def camera_inputs(
 ) -> tuple[CameraInput, ...]:
     """Sources for these cameras, checked but not opened; origin: of all of them; usual_px: asked of a webcam that
     the rig has not. Raises ConfigError or InputError."""
+    cameras = in_rig_order(cameras, rig)
     sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
     identities = identities_of((camera.id, camera.source) for camera in cameras)
     pace = Pace(live=True)  # recordings start together and keep their own time
     inputs = []
-    for camera in in_rig_order(cameras, rig):
+    for camera in cameras:
         size_px = sizes.get(camera.id)
         settings = WebcamSettings(
             size_px=size_px or usual_px,
@@ -76,20 +75,6 @@ def camera_inputs(
         expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
-
-
-def common_origin(cameras: Sequence[CameraSection]) -> str:
-    """The one capture folder or scenario that all cameras are of; empty when there is none. Raises
-    ConfigError for simulated cameras among others."""
-    origins = {origin_of(one.source) for one in cameras}
-    simulated = any(is_simulated(camera.source) for camera in cameras)
-    if simulated and (len(origins) > 1 or origins == {""}):
-        raise ConfigError(
-            "simulated cameras must all be of one scenario",
-            "camera",
-            "write source = sim:SCENARIO#CAMERA for each",
-        )
-    return origins.pop() if len(origins) == 1 else ""
 
 
 def bundler_params(config: Config) -> BundlerParams:
@@ -111,10 +96,10 @@ def picture_size(camera: CameraSection) -> tuple[int, int]:
     return width, height
 
 
-def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[CameraSection]:
+def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraSection, ...]:
     """The cameras as the rig has them. Raises ConfigError for one that it has not."""
     if rig is None:
-        return list(cameras)
+        return tuple(cameras)
     for camera in cameras:
         if camera.id not in rig.names:
             raise ConfigError(
@@ -122,4 +107,4 @@ def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> list[Came
                 "camera",
                 f"it has {', '.join(rig.names)}: correct the id, or calibrate again",
             )
-    return sorted(cameras, key=lambda camera: rig.names.index(camera.id))
+    return tuple(sorted(cameras, key=lambda camera: rig.names.index(camera.id)))

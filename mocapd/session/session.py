@@ -5,36 +5,27 @@ folder, or all of one simulated scenario. What the configuration gives itself wi
 """
 
 import logging
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 from functools import partial
+from pathlib import Path
 
 from mocapd.body.shape import BodyShape
-from mocapd.calibration.calibration_record import Calibration
+from mocapd.calibration.calibration_file import LoadedCalibration, find_calibration
+from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.calibration.from_origin import from_origin
-from mocapd.capture.kinds.source_kinds import (
-    cameras_of_origin,
-    open_origin,
-)
+from mocapd.calibration.saved_sources import require_password
+from mocapd.capture.kinds.source_kinds import cameras_of_origin, common_origin, open_origin
 from mocapd.capture.origin import camera_address
-from mocapd.config.sections import CameraSection, Config
+from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.camera_inputs import (
-    CameraInput,
-    camera_inputs,
-    common_origin,
-    in_rig_order,
-    picture_size,
-)
-from mocapd.session.from_configuration import from_configuration
-from mocapd.session.saved_session import (
-    LoadedCalibration,
-    cameras_of_calibration,
-    configured_calibration,
-)
-from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
+from mocapd.session.camera_inputs import CameraInput, camera_inputs, in_rig_order, picture_size
+from mocapd.session.tracker_setup import Progress, cached, ready_tracker
+from mocapd.shirt.colour.model_pictures import read_model, stroked_folder, stroked_image
+from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry, require_known
 from mocapd.types import Rig
@@ -56,6 +47,73 @@ class Session:
     calibrated: datetime | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SessionPlan:
+    """What a configuration comes to before anything is opened or made. cameras: configured, else calibrated; origin: of
+    all of them, empty where there is none; known: from configuration and calibration; rig_source, calibrated: see
+    Session."""
+
+    config: Config
+    cameras: tuple[CameraSection, ...]
+    origin: str
+    known: Calibration
+    rig_source: str
+    calibrated: datetime | None
+
+    @property
+    def assumes_rig(self) -> bool:
+        """Whether there is one camera, and nothing says where."""
+        return (
+            self.known.rig is None
+            and not self.origin
+            and len(self.cameras) == 1
+            and entry(self.config.tracker.name).sees
+        )
+
+
+def open_session(config: Config, progress: Progress) -> Session:
+    """Check and prepare everything; `progress` hears what is made for the first time and takes long. Raises
+    ConfigError, InputError or CannotCreateError."""
+    plan = plan_session(config)
+    return open_planned(plan, progress)
+
+
+def plan_session(config: Config) -> SessionPlan:
+    """Check what can be checked at once. Raises ConfigError or InputError."""
+    saved = find_calibration(config.rig, config.state_dir, config.sources)
+    cameras = session_cameras(config.camera, saved, config.state_dir)
+    origin = common_origin(camera.source for camera in cameras)
+    known, rig_source, calibrated = Calibration(), "", None
+    if saved is not None:
+        known, rig_source, calibrated = saved.known, str(saved.path), saved.tables.made.when
+    elif config.rig is not None:
+        known, rig_source = Calibration(load_rig(config.rig)), str(config.rig)
+    cameras = in_rig_order(cameras, known.rig)
+    known = known.overlaid(Calibration(shirt=_configured_shirt(config.shirt.colour_model, cameras)))
+    plan = SessionPlan(config, cameras, origin, known, rig_source, calibrated)
+    if not origin and not plan.assumes_rig:
+        require_known(config.tracker.name, known)
+    return plan
+
+
+def open_planned(plan: SessionPlan, progress: Progress) -> Session:
+    """The rest of `open_session`."""
+    cache_dir, tracker = plan.config.cache_dir, plan.config.tracker
+    known, rig_source = plan.known, plan.rig_source
+    if plan.assumes_rig:
+        known, rig_source = replace(known, rig=_assumed_rig(plan.cameras[0])), "assumed"
+    origin = open_origin(plan.origin, cache_dir, progress) if plan.origin else None
+    if origin is not None and plan.calibrated is None:
+        known, rig_source = from_origin(origin).overlaid(known), rig_source or origin.rig_source
+    inputs = camera_inputs(plan.cameras, known.rig, origin)
+    resources = cached(cache_dir, progress, tracker.tracking)
+    rehearsal = partial(progress, "preparing the tracker")
+    ready = ready_tracker(tracker.name, known.assuming(tracker.stature_m), resources, rehearsal)
+    return Session(
+        inputs, known.rig, rig_source, ready.tracker, ready.shape, known, plan.calibrated
+    )
+
+
 def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     """Every camera of a capture folder or of `sim:SCENARIO`. Raises InputError or ConfigError."""
     return tuple(
@@ -63,85 +121,42 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SessionPlan:
-    """What a configuration comes to before anything is opened or made. config: with the cameras that are meant;
-    origin: of all of them, empty when there is none; rig, rig_source: where given; saved: the calibration, if any;
-    known: from both."""
-
-    config: Config
-    origin: str
-    rig: Rig | None
-    rig_source: str
-    saved: LoadedCalibration | None
-    known: Calibration
-
-    @property
-    def assumes_rig(self) -> bool:
-        """Whether there is one camera, and nobody says where."""
-        return (
-            self.rig is None
-            and not self.origin
-            and len(self.config.camera) == 1
-            and entry(self.config.tracker.name).sees
-        )
-
-
-def plan_session(config: Config) -> SessionPlan:
-    """Check what can be checked at once. Raises ConfigError or InputError."""
-    saved = configured_calibration(config)
-    cameras = config.camera or (cameras_of_calibration(saved) if saved else ())
-    if not cameras:
+def session_cameras(
+    configured: tuple[CameraSection, ...], saved: LoadedCalibration | None, state_dir: Path
+) -> tuple[CameraSection, ...]:
+    """The configured cameras, else the calibrated ones as a configuration has them. Raises ConfigError where there are
+    none, or a password is missing."""
+    if configured:
+        return configured
+    if saved is None:
         raise ConfigError(
             "no camera is configured, and no calibration is saved",
-            str(config.state_dir),
+            str(state_dir),
             "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
             "--camera ID=SOURCE",
         )
-    config = replace(config, camera=cameras)
-    origin = common_origin(cameras)
-    rig, rig_source = _given_rig(config, saved)
-    in_rig_order(cameras, rig)
-    plan = SessionPlan(config, origin, rig, rig_source, saved, _known(config, rig, saved))
-    if not origin and not plan.assumes_rig:
-        require_known(config.tracker.name, plan.known)
-    return plan
+    place = str(saved.path.parent)
+    return tuple(
+        CameraSection(
+            one.id,
+            require_password(one.id, one.source, place),
+            one.fps_hz,
+            controls=ControlsSection(**asdict(one.controls)),
+        )
+        for one in saved.tables.camera
+    )
 
 
-def open_session(config: Config, progress: Progress) -> Session:
-    """Check and prepare everything; `progress` is told while something long is made for the first
-    time. Raises ConfigError, InputError or CannotCreateError."""
-    return open_planned(plan_session(config), progress)
-
-
-def open_planned(plan: SessionPlan, progress: Progress) -> Session:
-    """The rest of `open_session`."""
-    config, cameras, origin, saved = plan.config, plan.config.camera, plan.origin, plan.saved
-    rig, rig_source, known = plan.rig, plan.rig_source, plan.known
-    if plan.assumes_rig:
-        rig, rig_source = _assumed_rig(cameras[0]), "assumed"
-        known = replace(known, rig=rig)
-    opened = open_origin(origin, config.cache_dir, progress) if origin else None
-    if opened is not None and saved is None:
-        known = from_origin(opened).overlaid(known)
-        rig, rig_source = (rig, rig_source) if rig else (opened.rig, opened.rig_source)
-    inputs = camera_inputs(cameras, rig, opened)
-    ready = _ready_tracker(config, known, progress)
-    made = saved.tables.made.when if saved is not None else None
-    return Session(inputs, rig, rig_source, ready.tracker, ready.shape, known, made)
-
-
-def _given_rig(config: Config, saved: LoadedCalibration | None) -> tuple[Rig | None, str]:
-    """The rig of the calibration or the rig file, and which file that is."""
-    if saved is not None:
-        return saved.known.rig, str(saved.path)
-    return (load_rig(config.rig), str(config.rig)) if config.rig else (None, "")
-
-
-def _known(config: Config, rig: Rig | None, saved: LoadedCalibration | None) -> Calibration:
-    """From configuration and calibration: what the configuration itself gives goes before."""
-    own = from_configuration(config.shirt, config.camera, rig)
-    return own if saved is None else saved.known.overlaid(own)
+def _configured_shirt(model: Path | None, cameras: Iterable[CameraSection]) -> ShirtColours:
+    """The pictures of the shirt that the configuration names. Raises InputError or ConfigError."""
+    return ShirtColours(
+        read_model(stroked_folder(model)) if model else (),
+        {
+            camera.id: read_labelled(stroked_image(camera.white_balance))
+            for camera in cameras
+            if camera.white_balance
+        },
+    )
 
 
 def _assumed_rig(camera: CameraSection) -> Rig:
@@ -153,14 +168,3 @@ def _assumed_rig(camera: CameraSection) -> Rig:
         *(camera.id, FIELD_OF_VIEW_DEG, HEIGHT_M, DISTANCE_M),
     )
     return nominal_rig(camera.id, picture_size(camera))
-
-
-def _ready_tracker(config: Config, known: Calibration, progress: Progress) -> ReadyTracker:
-    """Built, and its kernels warm."""
-    own = config.tracker
-    return ready_tracker(
-        own.name,
-        known.assuming(own.stature_m),
-        cached(config.cache_dir, progress, own.tracking),
-        partial(progress, "preparing the tracker"),
-    )

@@ -17,10 +17,8 @@ def stature_m(calibration: Calibration) -> float:
 
 def known_shape(calibration: Calibration) -> BodyShape:
     """The wearer's proportions as measured, else the mean body's. Raises ConfigError without a stature."""
-    factors = calibration.wearer.shape_factors
-    if factors is None:
-        return mean_shape(stature_m(calibration))
-    return measured_shape(stature_m(calibration), factors.copy())
+    stature, factors = stature_m(calibration), calibration.wearer.shape_factors
+    return mean_shape(stature) if factors is None else measured_shape(stature, factors.copy())
 
 
 def known_rig(calibration: Calibration) -> Rig:

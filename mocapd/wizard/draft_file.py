@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from mocapd.calibration.calibration_file import read_setup, write_setup
+from mocapd.calibration.calibration_file import read_setup
+from mocapd.calibration.calibration_writing import write_setup
 from mocapd.errors import MalformedError
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import draft_of, setup_of

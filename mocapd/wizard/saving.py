@@ -19,11 +19,11 @@ from mocapd.calibration.board_spec import BoardSpec
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
     calibration_path,
+    from_saved,
     read_calibration,
-    write_calibration,
 )
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,
@@ -36,8 +36,8 @@ from mocapd.calibration.saved_calibration import (
     SavedSetup,
     SavedWearer,
 )
-from mocapd.calibration.shirt_pictures import personal_model
 from mocapd.errors import ConfigError, InputError
+from mocapd.shirt.colour.model_pictures import personal_model
 from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.step_names import StepName

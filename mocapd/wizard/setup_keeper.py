@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
-from mocapd.calibration.calibration_file import remove_setup
+from mocapd.calibration.calibration_writing import remove_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
 from mocapd.set_aside import Why, set_aside

@@ -17,13 +17,8 @@ import pytest
 import tomli_w
 
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
-from mocapd.calibration.calibration_file import (
-    FILE_NAME,
-    read_calibration,
-    rewrite_sources,
-    write_calibration,
-)
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
+from mocapd.calibration.calibration_writing import rewrite_sources, write_calibration
 from mocapd.calibration.saved_calibration import (
     ColourFit,
     LensFit,
@@ -83,7 +78,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def test_what_is_read_is_what_was_written(path: Path) -> None:
-    read = read_calibration(path.parent)
+    read = read_calibration(path)
     wanted = saved_calibration()
     assert read.camera[1] == wanted.camera[1]
     assert (read.made, read.room, read.wearer, read.board) == (

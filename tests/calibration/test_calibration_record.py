@@ -5,9 +5,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from mocapd.calibration.calibration_file import read_calibration
+from mocapd.calibration.calibration_file import from_saved, read_calibration
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
-from mocapd.calibration.from_saved import from_saved
 from mocapd.types import Camera, LabelledPicture, Rig
 
 OF_0_2 = """\

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, read_calibration
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
 
 # As mocapd of 2026-11-21 wrote it, before what is known of cameras, wearer and shirt became one record.
 OF_2026_11_21 = Path(__file__).parent / "of_2026_11_21"

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.shirt_patches import standard_shirt
+from mocapd.calibration.calibration_file import load_calibration
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.saved_session import load_saved
 from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
 from tests.calibrate.seen_once import seen_once
 from tests.cli.mocapd_process import Outcome, mocapd_here
@@ -158,7 +158,7 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     words = ("--strokes", str(strokes), "--floor-frame", "9")
     outcome = calibrate(clean_env, pictures, out, *words)
     assert outcome.code == 0, outcome.err
-    saved = load_saved(out)
+    saved = load_calibration(out)
     assert saved.known.rig is not None
     assert saved.known.rig.names == ("cam0", "cam1")
     assert saved.tables.room is not None

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.config.sections import CameraSection, Config, WebSection
 from mocapd.doctor.checks.storage_checks import check_ports
 from mocapd.doctor.checks.system_checks import check_whose

@@ -68,7 +68,7 @@ def saved_number(folder: Path) -> int | None:
     """Of the calibration that is there, read with its pictures; None for none. Raises what reading raises."""
     if not (folder / FILE_NAME).exists():
         return None
-    wearer = read_calibration(folder).wearer
+    wearer = read_calibration(folder / FILE_NAME).wearer
     pictures = {one.picture.pixels[0, 0].tobytes() for one in load_draft(folder).colours.values()}
     stature_m = None if wearer is None else wearer.stature_m
     number = 0 if stature_m is None else round((stature_m - 1.0) * _PER_M)

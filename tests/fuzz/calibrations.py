@@ -4,9 +4,9 @@ import os
 from datetime import UTC, datetime
 from random import Random
 
-from mocapd.calibration.calibration_file import COLOURS, read_calibration
+from mocapd.calibration.calibration_file import load_calibration, read_calibration
+from mocapd.calibration.calibration_writing import COLOURS
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.saved_session import load_saved
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
 from mocapd.wizard.intrinsics.saved_intrinsics import (
     find_saved_intrinsics,
@@ -45,7 +45,7 @@ def calibrations(place: Place) -> Attempt:
     def attempt(random: Random, number: int) -> bool:
         path.write_bytes(mistyped(random, good, TOML_VALUES, TOML_LINES))
         read_calibration(path)
-        load_saved(path)
+        load_calibration(path)
         return taken(lambda: load_draft(path))
 
     return attempt
@@ -55,13 +55,13 @@ def pictures(place: Place) -> Attempt:
     """The picture and the strokes that a calibration names."""
     path = save_draft(full_draft(), place.folder)
     files = {one: one.read_bytes() for one in sorted((place.folder / COLOURS).iterdir())}
-    load_saved(path)
+    load_calibration(path)
 
     def attempt(random: Random, number: int) -> bool:
         one = random.choice(tuple(files))
         one.write_bytes(damaged_png(random, files[one]))
         try:
-            return taken(lambda: load_saved(path))
+            return taken(lambda: load_calibration(path))
         finally:
             one.write_bytes(files[one])
 

@@ -6,8 +6,7 @@ from random import Random
 
 import numpy as np
 
-from mocapd.calibration.shirt_pictures import stroked_folder
-from mocapd.shirt.colour.model_pictures import read_model
+from mocapd.shirt.colour.model_pictures import read_model, stroked_folder
 from mocapd.shirt.colour.strokes import read_labelled, stroke_means
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample, strokes_on

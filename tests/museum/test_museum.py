@@ -14,8 +14,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, read_calibration
-from mocapd.calibration.from_saved import from_saved
+from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
 from mocapd.calibration.saved_sources import SECRETS, known_sources
 from mocapd.errors import ConfigError, InputError, MocapdError, NewerFileError
 from mocapd.geometry.rig_file import load_rig
@@ -75,7 +74,7 @@ def cameras_of(exhibit: Path) -> dict[str, Camera]:
 
 @pytest.mark.parametrize("exhibit", with_a(f"state/{FILE_NAME}"), ids=lambda one: one.name)
 def test_a_calibration_of_any_version_is_tracked_with(exhibit: Path) -> None:
-    saved = read_calibration(exhibit / "state")
+    saved = read_calibration(exhibit / "state" / FILE_NAME)
     known = from_saved(saved, exhibit / "state" / FILE_NAME)
     assert known.rig is not None
     assert len(known.rig.cameras) == 2
@@ -88,7 +87,7 @@ def test_a_calibration_of_any_version_is_tracked_with(exhibit: Path) -> None:
 
 @pytest.mark.parametrize("exhibit", with_a(f"state/{SECRETS}"), ids=lambda one: one.name)
 def test_passwords_of_any_version_complete_their_sources(exhibit: Path) -> None:
-    assert read_calibration(exhibit / "state").camera[1].source == URL
+    assert read_calibration(exhibit / "state" / FILE_NAME).camera[1].source == URL
     assert PASSWORD not in (exhibit / "state" / FILE_NAME).read_text()
 
 
@@ -270,7 +269,7 @@ def test_a_damaged_file_is_refused_by_name_and_left_as_it_is(
 def test_a_calibration_of_the_future_is_refused_with_its_schema(state: Path) -> None:
     data = changed(state / FILE_NAME, future_toml)
     with pytest.raises(NewerFileError, match=r"schema 2, this mocapd reads schema 1.*wrote it"):
-        read_calibration(state)
+        read_calibration(state / FILE_NAME)
     assert (state / FILE_NAME).read_bytes() == data
 
 
@@ -291,7 +290,7 @@ def test_a_calibration_that_cannot_be_read_is_set_aside_by_the_next_save(
     assert (state / "calibration.previous.toml").read_bytes() == previous
     assert pictures
     assert {one.name for one in (state / "colours").iterdir()} == pictures
-    assert read_calibration(state).camera[0].colour is None
+    assert read_calibration(state / FILE_NAME).camera[0].colour is None
     assert kept.name in caplog.text
 
 

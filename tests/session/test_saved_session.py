@@ -8,19 +8,21 @@ import msgspec
 import numpy as np
 import pytest
 
-from mocapd.calibration.calibration_file import FILE_NAME, read_calibration, write_calibration
+from mocapd.calibration.calibration_file import (
+    FILE_NAME,
+    LoadedCalibration,
+    find_calibration,
+    known_of_recording,
+    load_calibration,
+    read_calibration,
+)
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.session.saved_session import (
-    cameras_of_calibration,
-    configured_calibration,
-    known_of_recording,
-    load_saved,
-)
-from mocapd.session.session import cameras_of, open_session
+from mocapd.session.session import cameras_of, open_session, session_cameras
 from mocapd.wizard.saving import save_draft
 from tests.cli.small_capture import write_capture
 from tests.wizard.drafts import PORTS, full_draft, source_of
@@ -36,6 +38,10 @@ def config(tmp_path: Path) -> Config:
     save_draft(full_draft(), state_dir)
     canned = TrackerSection(name="canned", stature_m=1.9)
     return Config(state_dir=state_dir, cache_dir=tmp_path, tracker=canned)
+
+
+def saved_for(config: Config) -> LoadedCalibration | None:
+    return find_calibration(config.rig, config.state_dir, config.sources)
 
 
 def test_the_saved_calibration_gives_cameras_rig_and_wearer(config: Config) -> None:
@@ -55,7 +61,7 @@ def test_the_saved_calibration_gives_cameras_rig_and_wearer(config: Config) -> N
 
 
 def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:
-    saved = configured_calibration(config)
+    saved = saved_for(config)
     assert saved is not None
     draft = full_draft()
     assert saved.known.wearer.shape_factors is not None
@@ -75,7 +81,7 @@ def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config
 
 def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureFixture) -> None:
     other = CameraSection("cam0", "/dev/video7")
-    assert configured_calibration(replace(config, camera=(other,))) is None
+    assert saved_for(replace(config, camera=(other,))) is None
     assert "other cameras" in caplog.text
 
 
@@ -92,15 +98,15 @@ def network_config(config: Config) -> Config:
 
 
 def test_a_network_camera_is_opened_with_its_password(config: Config) -> None:
-    saved = configured_calibration(network_config(config))
+    saved = saved_for(network_config(config))
     assert saved is not None
-    assert cameras_of_calibration(saved)[0].source == URL
+    assert session_cameras((), saved, config.state_dir)[0].source == URL
 
 
 def test_a_password_may_come_from_the_configuration(config: Config) -> None:
     config = network_config(config)
     (config.state_dir / SECRETS).unlink()
-    saved = configured_calibration(replace(config, camera=(CameraSection("cam0", URL),)))
+    saved = saved_for(replace(config, camera=(CameraSection("cam0", URL),)))
     assert saved is not None
 
 
@@ -117,7 +123,7 @@ def test_other_cameras_are_told_of_without_a_password(
     config: Config, caplog: pytest.LogCaptureFixture
 ) -> None:
     other = CameraSection("cam0", "rtsp://other/")
-    assert configured_calibration(replace(network_config(config), camera=(other,))) is None
+    assert saved_for(replace(network_config(config), camera=(other,))) is None
     assert "admin:***@" in caplog.text
     assert "hunter2" not in caplog.text
 
@@ -141,7 +147,7 @@ def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
     config: Config, tmp_path: Path
 ) -> None:
     folder = FolderOrigin(load_folder(write_capture(tmp_path / "capture")))
-    saved = load_saved(config.state_dir)
+    saved = load_calibration(config.state_dir / FILE_NAME)
     known = known_of_recording(saved, folder)
     assert known.wearer.stature_m == 1.72
     assert known.rig is saved.known.rig
@@ -165,6 +171,6 @@ def test_a_calibration_that_cannot_be_read_is_never_taken_for_none(
         case _:
             path.symlink_to(tmp_path / "share" / FILE_NAME)
     with pytest.raises(InputError):
-        configured_calibration(Config(state_dir=tmp_path))
+        saved_for(Config(state_dir=tmp_path))
     path.rmdir() if kind == "folder" else path.unlink()
-    assert configured_calibration(Config(state_dir=tmp_path)) is None
+    assert saved_for(Config(state_dir=tmp_path)) is None

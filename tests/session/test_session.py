@@ -7,14 +7,12 @@ import pytest
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibration.from_origin import from_capture
-from mocapd.calibration.shirt_pictures import stroked_folder
 from mocapd.capture.capture_folder import load_folder
-from mocapd.config.sections import CameraSection, Config, ShirtSection, TrackerSection
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.session.from_configuration import from_configuration
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cached
-from mocapd.shirt.colour.model_pictures import read_model
+from mocapd.shirt.colour.model_pictures import read_model, stroked_folder
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
 pytestmark = pytest.mark.kernels
@@ -110,7 +108,7 @@ def test_the_inputs_of_a_folder_hold_strokes_of_every_colour(capture: Path) -> N
 def test_the_inputs_of_the_config_name_what_is_missing(tmp_path: Path) -> None:
     camera = CameraSection("left", "/dev/video0", white_balance=tmp_path / "left.png")
     with pytest.raises(InputError, match=r"left\.png: no such file"):
-        from_configuration(ShirtSection(), (camera,), None)
+        open_session(Config(camera=(camera,), tracker=TrackerSection(name="canned")), quiet)
 
 
 def test_a_folder_of_pictures_is_read_by_one_rule_wherever_it_is_named(capture: Path) -> None:

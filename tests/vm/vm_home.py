@@ -11,7 +11,8 @@ from pathlib import Path
 from lab.simulated.export import export_capture
 from mocapd import __version__
 from mocapd.assets import asset_path
-from mocapd.calibration.calibration_file import FILE_NAME, write_calibration
+from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,

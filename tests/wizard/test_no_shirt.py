@@ -11,9 +11,8 @@ import pytest
 
 from mocapd.calibrate.verification.check_measure import MeasuringTracker
 from mocapd.calibrate.verification.check_verdict import Delivery, camera_verdict
-from mocapd.calibration.calibration_file import calibration_path, read_calibration
+from mocapd.calibration.calibration_file import calibration_path, from_saved, read_calibration
 from mocapd.calibration.calibration_record import Calibration, Wearer
-from mocapd.calibration.from_saved import from_saved
 from mocapd.errors import ConfigError, InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.frame_hub import FrameHub

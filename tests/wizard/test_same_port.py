@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.calibration.calibration_file import read_calibration
+from mocapd.calibration.calibration_file import calibration_path, read_calibration
 from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
@@ -74,7 +74,7 @@ def test_a_camera_in_another_port_is_asked_about_and_remembered(tmp_path: Path) 
     do(step, "same_port", {"camera": "cam1", "same": True})
     assert step.view().state is StepState.DONE
     assert not step.view().problems
-    saved = read_calibration(context.state_dir)
+    saved = read_calibration(calibration_path(context.state_dir))
     assert [camera.source for camera in saved.camera] == [STAYED, MOVED]
     assert [camera.source for camera in context.draft.cameras] == [STAYED, MOVED]
     assert context.draft.rig is not None

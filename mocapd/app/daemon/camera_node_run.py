@@ -38,14 +38,14 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.app.terminal.status_line import StatusLine
     from mocapd.capture.decoder_warnings import DecoderWarnings
-    from mocapd.capture.kinds.source_kinds import open_origin
+    from mocapd.capture.kinds.source_kinds import common_origin, open_origin
     from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
     from mocapd.node.imperfections import parse_imperfections
     from mocapd.outputs.registry import zenoh_section
-    from mocapd.session.camera_inputs import camera_inputs, common_origin
+    from mocapd.session.camera_inputs import camera_inputs
 
     signals, notifier = Signals(within_s=END_S), Notifier.of_environment()
-    origin = common_origin(config.camera)
+    origin = common_origin(camera.source for camera in config.camera)
     with ProgressBars() as progress:
         opened = open_origin(origin, config.cache_dir, progress) if origin else None
     inputs = camera_inputs(config.camera, None, opened, config.node.size_px)

@@ -51,7 +51,7 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibrate.extrinsics.folder_calibration import calibrate_folder as solve
     from mocapd.calibrate.extrinsics.rig_writing import RIG, write_rig
-    from mocapd.calibration.calibration_file import CALIBRATION_KIND
+    from mocapd.calibration.calibration_writing import CALIBRATION_KIND
     from mocapd.output_file import OutputFile
 
     read = (options.folder,) if options.strokes is None else (options.folder, options.strokes)

@@ -9,7 +9,7 @@ from mocapd.boundary.files import is_file
 from mocapd.calibrate.board.recordings import find_recordings
 from mocapd.calibrate.colours.stroke_check import require_good_strokes
 from mocapd.calibrate.extrinsics.folder_calibration import CameraReport, FolderCalibration
-from mocapd.calibration.calibration_file import write_calibration
+from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_calibration import (
     SCHEMA,
     ColourFit,

@@ -17,7 +17,7 @@ from mocapd.capture.simulated.sim_kind import SIM
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM
-from mocapd.errors import InputError
+from mocapd.errors import ConfigError, InputError
 
 SOURCE_KINDS: tuple[SourceKind, ...] = (WEBCAM, NODE, URL, REMOTE, SIM, RECORDING, FILE, FOLDER)
 """The first that matches counts; paths come last, as any text can be one."""
@@ -77,6 +77,20 @@ def origin_of(address: str) -> str:
     """The origin that a camera is of; empty for a camera by itself."""
     kind = kind_of(address)
     return split_address(address)[0] if kind is not None and kind.origin is not None else ""
+
+
+def common_origin(addresses: Iterable[str]) -> str:
+    """The origin that all these cameras are of; empty where there is none. Raises ConfigError for simulated cameras
+    among others."""
+    cameras = tuple(addresses)
+    origins = {origin_of(address) for address in cameras}
+    if any(map(is_simulated, cameras)) and (len(origins) > 1 or origins == {""}):
+        raise ConfigError(
+            "simulated cameras must all be of one scenario",
+            "camera",
+            "write source = sim:SCENARIO#CAMERA for each",
+        )
+    return origins.pop() if len(origins) == 1 else ""
 
 
 def cameras_of_origin(origin: str) -> tuple[str, ...]:

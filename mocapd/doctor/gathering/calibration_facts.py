@@ -4,19 +4,18 @@ import time
 from datetime import UTC
 from pathlib import Path
 
-from mocapd.calibration.calibration_file import FILE_NAME
+from mocapd.calibration.calibration_file import FILE_NAME, LoadedCalibration, find_calibration
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import CalibrationFacts, FactTrouble
 from mocapd.errors import MocapdError
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.saved_session import LoadedCalibration, configured_calibration
 
 
 def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibration | None]:
     """With the calibration itself, where one is saved and can be read."""
     place = config.rig if config.rig is not None else config.state_dir / FILE_NAME
     try:
-        saved = configured_calibration(config)
+        saved = find_calibration(config.rig, config.state_dir, config.sources)
         if saved is None and config.rig is not None:
             return _of_rig_file(config.rig), None
     except MocapdError as error:

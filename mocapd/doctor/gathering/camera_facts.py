@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 
 from mocapd.boundary.urls import without_password
+from mocapd.calibration.calibration_file import LoadedCalibration
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus, crowded_buses
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.capture.webcam.webcam_listing import CameraInfo, list_cameras
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import CameraFacts
-from mocapd.session.saved_session import LoadedCalibration
 from mocapd.wizard.cameras.camera_nodes import mode_of, node_of
 from mocapd.wizard.draft import DraftCamera
 

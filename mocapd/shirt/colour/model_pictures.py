@@ -1,13 +1,36 @@
-"""The pictures of the shirt in neutral light, for the colour model: read and checked."""
+"""The pictures of the shirt in neutral light, for the colour model: found, read and checked."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
-from mocapd.errors import ConfigError
-from mocapd.shirt.colour.strokes import read_labelled
-from mocapd.types import LabelledPicture
+from mocapd.boundary.files import is_file
+from mocapd.errors import ConfigError, InputError
+from mocapd.shirt.colour.strokes import (
+    read_labelled,
+    stroked_pictures,
+    strokes_beside,
+)
+from mocapd.shirt.colour.white_balance import balanced
+from mocapd.types import Floats, LabelledPicture
+
+
+def stroked_image(image: Path) -> Path:
+    """The same image. Raises InputError when it is missing, or the strokes beside it are."""
+    for path in (image, strokes_beside(image)):
+        if not is_file(path):
+            raise InputError("no such file", str(path), "paint the colours of the shirt again")
+    return image
+
+
+def stroked_folder(folder: Path) -> tuple[Path, ...]:
+    """Every image of a folder, its strokes beside it. Raises InputError when there is none."""
+    images = stroked_pictures(folder)
+    if not images:
+        raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
+    return tuple(stroked_image(image) for image in images)
 
 
 def read_model(images: tuple[Path, ...]) -> tuple[LabelledPicture, ...]:
@@ -24,3 +47,13 @@ def read_model(images: tuple[Path, ...]) -> tuple[LabelledPicture, ...]:
                 "paint it where the shirt shows it",
             )
     return pictures
+
+
+def personal_model(
+    pictures: Mapping[str, LabelledPicture], W: Mapping[str, Floats]
+) -> tuple[LabelledPicture, ...]:
+    """The wearer's own shirt in the light of the model, from pictures in the place's and W (3,3),
+    model_from_camera, by camera: a dye that differs stays as a difference, the light does not."""
+    return tuple(
+        LabelledPicture(balanced(one.pixels, W[name]), one.labels) for name, one in pictures.items()
+    )

@@ -27,7 +27,8 @@ _PIXEL_NOISE_VARIANCE = 0.015**2
 
 def stroked_pictures(folder: Path) -> list[Path]:
     """The pictures of a folder in which strokes lie beside them, by name: every PNG but NAME_strokes.png,
-    and NAME_labels.png, which is ground truth and none of a tracker's business."""
+    and NAME_labels.png, which is ground truth and none of a tracker's business. Raises as `require_pictures`."""
+    require_pictures(folder)
     beside = (_STROKES, "_labels")
     return [path for path in shown_in(folder) if _is_png(path) and not path.stem.endswith(beside)]
 

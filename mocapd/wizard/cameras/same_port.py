@@ -6,7 +6,8 @@ Its command is `cameras_verbs.PORTS`. Details: moved: [{camera, was, now}] not y
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
-from mocapd.calibration.calibration_file import calibration_path, rewrite_sources
+from mocapd.calibration.calibration_file import calibration_path
+from mocapd.calibration.calibration_writing import rewrite_sources
 from mocapd.capture.kinds.source_kinds import identities_of
 from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
