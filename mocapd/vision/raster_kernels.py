@@ -8,6 +8,7 @@ Array = NDArray[np.float64]
 
 NOTHING = -1
 _FAR = np.float32(1e9)  # [m]
+_LANES = 4  # pixels that are drawn at once
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -46,13 +47,15 @@ def rasterise(
     screen).
     """
     h, w = triangle_at.shape
-    nearest = np.full(h * w, _nearness(_FAR, NOTHING))
+    stride = w + _LANES  # the last step of a row may go on beyond it
+    nearest = np.full(h * stride, _nearness(_FAR, NOTHING))
     shown, boxes = np.empty(len(triangles), np.int32), np.empty((len(triangles), 4), np.int32)
     for i in range(_list_shown(xy, depth, triangles, h, w, shown, boxes)):
-        _draw(xy, depth, triangles, shown[i], boxes[i], w, nearest)
+        _draw(xy, depth, triangles, shown[i], boxes[i], stride, nearest)
     for y in range(h):
+        row = np.uint64(y * stride)
         for x in range(w):
-            there = nearest[y * w + x]
+            there = nearest[row + np.uint64(x)]
             depth_at[y, x] = np.int32(there >> 32).view(np.float32)
             triangle_at[y, x] = np.int32(there)
 
@@ -101,13 +104,13 @@ def _draw(
     triangles: NDArray[np.int32],
     t: int,
     box: NDArray[np.int32],
-    w: int,
+    stride: int,
     nearest: NDArray[np.int64],
 ) -> None:
-    """Draw triangle t within its box into `nearest` (h*w,), the `_nearness` of what is seen there.
+    """Draw triangle t within its box into `nearest` (h*stride,), the `_nearness` of what is seen there.
 
-    One loop over all rows, which decides nothing by branches: a triangle has some ten pixels, and which of them it covers no
-    processor can foresee. With branches it takes twice as long.
+    A row of the box is a whole number of the processor's vectors and decides nothing by branches, so that the compiler
+    makes one instruction of _LANES pixels; the pixels beyond the box are outside of the triangle, or of the picture.
     """
     a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
     za, zb, zc = depth[a], depth[b], depth[c]
@@ -119,24 +122,19 @@ def _draw(
     ub_dx, ub_dy = -(ay - cy) * inverse, (ax - cx) * inverse
     uc_dx, uc_dy = (ay - by) * inverse, -(ax - bx) * inverse
     dz_b, dz_c = zb - za, zc - za
-    x0, x1, y, y1 = np.int64(box[0]), np.int64(box[1]), np.int64(box[2]), np.int64(box[3])
-    ub_first, uc_first = ub_dx * (x0 - ax), uc_dx * (x0 - ax)
-    ub, uc = ub_first + ub_dy * (y - ay), uc_first + uc_dy * (y - ay)
-    wide = x1 - x0 + 1
-    left = wide
-    pixel, to_next_row = np.uint64(y * w + x0), np.uint64(w - wide)
-    nowhere = _nearness(_FAR, NOTHING)
-    for _ in range(wide * (y1 - y + 1)):
-        here = _nearness(np.float32(za + ub * dz_b + uc * dz_c), t)
-        here = here if min(ub, min(uc, 1.0 - ub - uc)) >= -1e-9 else nowhere
-        nearest[pixel] = min(nearest[pixel], here)
-        left -= 1
-        ends = left == 0
-        y += np.int64(ends)
-        pixel += np.uint64(1) + (to_next_row if ends else np.uint64(0))
-        ub = ub_first + ub_dy * (y - ay) if ends else ub + ub_dx
-        uc = uc_first + uc_dy * (y - ay) if ends else uc + uc_dx
-        left = wide if ends else left
+    nowhere, own = _nearness(_FAR, NOTHING), np.int64(np.uint32(t))
+    x0, x1 = np.int64(box[0]), np.int64(box[1])
+    n = np.uint64((x1 - x0 + _LANES) // _LANES * _LANES)
+    for y in range(np.int64(box[2]), np.int64(box[3]) + 1):
+        ub_row, uc_row = ub_dy * (y - ay), uc_dy * (y - ay)
+        first = np.uint64(y * stride + x0)
+        for k in range(n):
+            dx = (x0 - ax) + np.float64(np.int64(k))
+            ub, uc = ub_dx * dx + ub_row, uc_dx * dx + uc_row
+            z = np.float32(za + ub * dz_b + uc * dz_c)
+            here = np.int64(z.view(np.int32)) << 32 | own
+            here = here if min(ub, min(uc, 1.0 - ub - uc)) >= -1e-9 else nowhere
+            nearest[first + k] = min(nearest[first + k], here)
 
 
 @njit(cache=True, nogil=True)
