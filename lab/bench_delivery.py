@@ -27,7 +27,7 @@ from mocapd.outputs.base import Sink
 from mocapd.outputs.from_skeleton import rest_skeleton
 from mocapd.outputs.osc.osc_encoding import arguments_offset
 from mocapd.outputs.osc.osc_frame import FRAME, FRAME_TYPES
-from mocapd.outputs.registry import (
+from mocapd.outputs.output_table import (
     OscSection,
     VmcSection,
     VRChatSection,

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import LibraryFacts
-from mocapd.outputs.registry import VRChatSection
+from mocapd.outputs.output_table import VRChatSection
 from mocapd.outputs.vrchat.vrchat_sink import AUTO
 
 # What is imported, and the package that brings it: those with compiled code, of which any may be broken.

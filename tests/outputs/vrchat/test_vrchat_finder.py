@@ -11,7 +11,7 @@ import pytest
 from mocapd.clock import NS_PER_S
 from mocapd.errors import ConfigError
 from mocapd.outputs.messages import Facing
-from mocapd.outputs.registry import VRChatSection, unsafe_outputs
+from mocapd.outputs.output_table import VRChatSection, unsafe_outputs
 from mocapd.outputs.vrchat import vrchat_finder
 from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder, is_of_local_network
 from mocapd.outputs.vrchat.vrchat_sink import AUTO, Params, VRChatSink
