@@ -54,7 +54,7 @@ def main() -> int:
         _uv(
             *("pip", "compile", "--quiet", "--resolution", "lowest-direct", "--no-header"),
             *("--python-version", PYTHONS[0], "--only-binary", ":all:", "--no-annotate"),
-            *(str(PROJECT), "--output-file", str(lowest)),
+            *(str(PROJECT), "--extra", "all", "--output-file", str(lowest)),
         )
         _tell(versions(lowest.read_text()))
         tools = place / "tools.txt"
@@ -76,7 +76,8 @@ def main() -> int:
 def _tell(resolved: dict[str, str]) -> None:
     """Which versions are tried."""
     project = tomllib.loads(PROJECT.read_text())["project"]
-    for text in project["dependencies"]:
+    extras = project["optional-dependencies"]
+    for text in (*project["dependencies"], *extras["print"], *extras["plots"], *extras["vrchat"]):
         version = resolved.get(canonicalize_name(Requirement(text).name), "not on this machine")
         print(f"{text:36}{version}", flush=True)
 

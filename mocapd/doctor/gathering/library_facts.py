@@ -3,10 +3,10 @@
 import importlib
 import platform
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import LibraryFacts
+from mocapd.extras import has_extra, install_command
 from mocapd.outputs.output_table import VRChatSection
 from mocapd.outputs.vrchat.vrchat_sink import AUTO
 
@@ -32,6 +32,5 @@ def library_facts(config: Config) -> LibraryFacts:
             broken[package] = str(error)
     section = config.outputs.get("vrchat")
     wants = isinstance(section, VRChatSection) and section.enabled and section.destination == AUTO
-    return LibraryFacts(
-        platform.python_version(), versions, broken, wants, find_spec("zeroconf") is not None
-    )
+    fix = "" if has_extra("vrchat") else install_command("vrchat")
+    return LibraryFacts(platform.python_version(), versions, broken, wants, fix)
