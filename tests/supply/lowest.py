@@ -25,12 +25,11 @@ TOOLS = (
     "pygltflib",
     "pypdfium2",
     "pytest",
-    "python-osc",
 )
 # Each library is used by one of them; none that compiles much: a few minutes in all.
 TESTS = (
     *("boundary", "config", "control", "doctor", "exports", "geometry", "printing", "body"),
-    *(f"outputs/test_{name}.py" for name in ("client", "foxglove", "recording", "wire")),
+    *(f"outputs/test_{name}.py" for name in ("client", "foxglove", "osc", "recording", "wire")),
     *(f"outputs/test_zenoh_{name}.py" for name in ("network", "sink", "strangers")),
     *(f"web/test_{name}.py" for name in ("access", "connections", "frames_access", "malformed")),
     *(f"web/test_{name}.py" for name in ("metrics", "pictures", "server")),

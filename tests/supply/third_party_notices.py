@@ -86,6 +86,8 @@ def licence_of(package: str) -> str:
     free_text = (told["License"] or "").strip()
     if free_text and len(free_text) <= 20:
         return free_text
+    if free_text.startswith("This is free and unencumbered software"):
+        return "Unlicense"
     return " OR ".join(classifiers) or "not told"
 
 
