@@ -27,15 +27,15 @@ help: ## say what can be made
 env clients: STAMP = $(READY)
 env clients: STAMPS = $(READY)
 env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt
-env: PROJECT := .
+env: PROJECT := .[print]
 env: QUICKLY := false
 env: ## make or renew the environment in .venv
 dev: STAMP = $(READY)-dev
 dev: STAMPS = $(READY) $(READY)-dev
 dev: LOCKS := --requirement locks/dev.txt
-dev: PROJECT := .[dev]
+dev: PROJECT := .[all,dev]
 clients: LOCKS := --requirement locks/clients.txt
-clients: PROJECT := .[dev,clients]
+clients: PROJECT := .[all,dev,clients]
 # uv, itself from the lock, takes a fifth of pip's time; where it gets nowhere (an index of one's own), pip goes on.
 dev clients: QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
 	$(PIP_INSTALL) $(BY_HASH) --requirement $(VENV)/uv.txt && \

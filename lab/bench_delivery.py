@@ -25,9 +25,9 @@ from mocapd.evaluate.bench.free_port import free_port
 from mocapd.evaluate.tables import number, table
 from mocapd.outputs.base import Sink
 from mocapd.outputs.from_skeleton import rest_skeleton
-from mocapd.outputs.osc.osc_encoding import arguments_offset
 from mocapd.outputs.osc.osc_frame import FRAME, FRAME_TYPES
-from mocapd.outputs.registry import (
+from mocapd.outputs.osc.osc_template import bundle, message
+from mocapd.outputs.output_table import (
     OscSection,
     VmcSection,
     VRChatSection,
@@ -41,9 +41,7 @@ _INSTANCE = "bench"
 _READY = "ready"
 _SETTLE_S = 0.5  # before the first frame that counts
 _SILENT_S = 2.0  # after which no more frames come
-_NUMBERS_AT = (
-    16 + 4 + arguments_offset(FRAME, FRAME_TYPES)
-)  # after the bundle's head and the message's size
+_NUMBERS_AT = bundle([message(FRAME, FRAME_TYPES, *(0,) * 7, 0.0, *("",) * 4)])[1][0]
 _frame_numbers = struct.Struct(">iiii")  # person, seq, part, parts
 
 Arrivals = dict[int, int]  # of each frame, by number: CLOCK_MONOTONIC [ns]

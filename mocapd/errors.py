@@ -49,6 +49,10 @@ class NewerFileError(ConfigError):
     """A file of ours is of a schema that only a newer mocapd reads: never written over, never guessed at (78)."""
 
 
+class MissingExtraError(ConfigError):
+    """A library of an extra is not installed: what only some commands or settings need (78)."""
+
+
 class UnavailableError(MocapdError):
     """A resource such as a camera, a port or a service is not to be had now (69 EX_UNAVAILABLE)."""
 

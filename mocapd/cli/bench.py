@@ -63,7 +63,7 @@ def bench_command(
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.capture.kinds.source_kinds import is_simulated
-    from mocapd.outputs.registry import zenoh_section
+    from mocapd.outputs.output_table import zenoh_section
 
     refuse_variant(variant)
     if recording is not None:

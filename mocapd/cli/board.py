@@ -45,9 +45,13 @@ def board(
     Example: mocapd board --out board.pdf --paper A4
     """
     from mocapd.calibration.board_spec import board_size as counts_of
+    from mocapd.extras import require_extra
+
+    require_extra("print", "mocapd board")
+
     from mocapd.printing.board_layout import fitted_board
     from mocapd.printing.board_pdf import board_pdf, flags_of
-    from mocapd.printing.paper_sizes import write_pdf
+    from mocapd.printing.pdf_document import write_pdf
 
     columns, rows = counts_of(board_size)
     made = fitted_board(

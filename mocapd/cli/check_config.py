@@ -41,7 +41,7 @@ def check_config(
     _print_table(rows)
     if not changed:
         _print_calibration(effective.config)
-    from mocapd.outputs.registry import unsafe_outputs
+    from mocapd.outputs.output_table import unsafe_outputs
 
     # a daemon logs those of outputs when it opens them
     for line in (*unsafe_settings(effective), *unsafe_outputs(effective.config.outputs)):

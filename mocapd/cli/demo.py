@@ -51,7 +51,7 @@ def demo(
 
 def watch_command(config: "Config") -> str:
     """The command line that shows the stream of this configuration, to be pasted anywhere."""
-    from mocapd.outputs.registry import ZenohSection, zenoh_section
+    from mocapd.outputs.output_table import ZenohSection, zenoh_section
 
     beside = Path(sys.executable).parent / "mocapd"
     on_path = shutil.which("mocapd")

@@ -18,6 +18,7 @@ from mocapd.cli.options import (
     refuse_variant,
 )
 from mocapd.errors import ConfigError
+from mocapd.extras import require_extra
 
 
 class Joints(StrEnum):
@@ -72,6 +73,8 @@ def evaluate_captures(
         raise ConfigError(
             "no capture is given", "mocapd eval", "name a folder that has a truth.npz"
         )
+    if out is not None:
+        require_extra("plots", "mocapd eval --out")
     effective = effective_config(config, settings, tracker__name=tracker).config
 
     from mocapd.app.libraries import prepare_libraries

@@ -40,7 +40,7 @@ def send_test_command(
     from mocapd.app.terminal.logs import set_up_logs
     from mocapd.outputs.aim import resolved
     from mocapd.outputs.instance import instance_name
-    from mocapd.outputs.registry import OUTPUTS
+    from mocapd.outputs.output_table import OUTPUTS
 
     if output not in OUTPUTS:
         raise ConfigError(

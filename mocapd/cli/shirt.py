@@ -30,7 +30,11 @@ def shirt(
 
     Example: mocapd shirt --out shirt.pdf --size L
     """
-    from mocapd.printing.paper_sizes import write_pdf
+    from mocapd.extras import require_extra
+
+    require_extra("print", "mocapd shirt")
+
+    from mocapd.printing.pdf_document import write_pdf
     from mocapd.printing.shirt_pdf import shirt_pdf
 
     write_pdf(out, shirt_pdf(size, paper, layout), force)

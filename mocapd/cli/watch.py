@@ -11,7 +11,7 @@ from mocapd.errors import one_line
 
 if TYPE_CHECKING:
     from mocapd.client import Body, Link
-    from mocapd.outputs.registry import ZenohSection
+    from mocapd.outputs.output_table import ZenohSection
 
 SHOWN = ("head", "leftHand", "rightHand", "hips")
 
@@ -53,7 +53,7 @@ def watch(
     Example: mocapd watch --json | head -n 1
     """
     from mocapd.client import Client
-    from mocapd.outputs.registry import zenoh_section
+    from mocapd.outputs.output_table import zenoh_section
 
     zenoh = zenoh_section(effective_config(config, settings).config.outputs)
     link = link_of(zenoh, endpoint, instance, timeout_s)

@@ -13,8 +13,8 @@ from mocapd.capture.webcam.controls import Controls
 from mocapd.config import node_params, web_params
 from mocapd.config.config_keys import SectionTable
 from mocapd.errors import ConfigError
+from mocapd.outputs.output_table import OutputSection, default_sections, output_sections
 from mocapd.outputs.prediction.prediction_params import PredictionParams
-from mocapd.outputs.registry import OutputSection, default_sections, output_sections
 from mocapd.pipeline.smoothing import PRESETS
 from mocapd.trackers.registry import entry
 from mocapd.trackers.tracking_state import COAST_S, TrackingStateParams

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 
 import mocapd
-from mocapd.capture.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureStatus
 from mocapd.config.sections import Config
 from mocapd.control.control_messages import (
     CalibrationReport,

@@ -111,13 +111,13 @@ class ClockFacts:
 @dataclass(frozen=True, slots=True)
 class LibraryFacts:
     """python: its version; versions: of what was found; broken: why a library cannot be imported; wants_vrchat: the
-    configuration looks for VRChat in the network; has_vrchat: the extra for it is installed."""
+    configuration looks for VRChat in the network; vrchat_fix: what installs the extra for it, empty where it is there."""
 
     python: str
     versions: Mapping[str, str]
     broken: Mapping[str, str]
     wants_vrchat: bool = False
-    has_vrchat: bool = False
+    vrchat_fix: str = ""
 
 
 @dataclass(frozen=True, slots=True)

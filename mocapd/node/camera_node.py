@@ -10,9 +10,9 @@ from typing import Self
 import zenoh
 
 from mocapd.bus.zenoh_close import close_soon
+from mocapd.capture.camera_thread.suspension import SuspensionWatch
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import MOST_NAME, CameraState, ClockAnswer
-from mocapd.capture.suspension import SuspensionWatch
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params

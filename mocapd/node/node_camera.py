@@ -7,10 +7,10 @@ from contextlib import ExitStack
 import cv2
 import zenoh
 
-from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.camera_thread.capture_status import CaptureState
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import CameraState, PictureStamp
-from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.control_lock import Lockable
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.node.imperfections import Imperfections, Way

@@ -10,16 +10,8 @@ from reportlab.pdfgen.canvas import FILL_EVEN_ODD, Canvas
 
 from mocapd.calibration.board_spec import BoardSpec, aruco_board
 from mocapd.printing.board_layout import EDGE_MM, Layout, Rect, layout_behind, layout_of
-from mocapd.printing.paper_sizes import (
-    BLACK,
-    BOLD,
-    DARK,
-    RULER_MM,
-    About,
-    Document,
-    draw_ruler,
-    write_text,
-)
+from mocapd.printing.paper_sizes import RULER_MM
+from mocapd.printing.pdf_document import BLACK, BOLD, DARK, About, Document, draw_ruler, write_text
 
 _ARM_MM = 3.5  # of a cross, on each side of its middle
 _COURIER_ADVANCE = 0.6  # of each letter, in ems

@@ -5,7 +5,8 @@ from reportlab.pdfgen.canvas import Canvas
 from reportlab.pdfgen.pathobject import PDFPathObject
 
 from mocapd.body.shirt_patches import standard_shirt
-from mocapd.printing.paper_sizes import BLACK, BOLD, DARK, Colour, Size, write_text
+from mocapd.printing.paper_sizes import Size
+from mocapd.printing.pdf_document import BLACK, BOLD, DARK, Colour, write_text
 from mocapd.printing.shirt_pattern import Piece
 from mocapd.types import Floats
 

@@ -5,17 +5,8 @@ from reportlab.pdfgen.canvas import Canvas
 from mocapd.body.shirt_patches import N_COLOURS, Shirt, standard_shirt
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
-from mocapd.printing.paper_sizes import (
-    BOLD,
-    DARK,
-    RULER_HEIGHT_MM,
-    About,
-    Document,
-    Size,
-    draw_ruler,
-    paper_size_mm,
-    write_text,
-)
+from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
+from mocapd.printing.pdf_document import BOLD, DARK, About, Document, draw_ruler, write_text
 from mocapd.printing.shirt_drawing import (
     centre_of,
     colour_of,

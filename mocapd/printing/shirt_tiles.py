@@ -8,7 +8,8 @@ from string import ascii_uppercase
 import numpy as np
 from reportlab.pdfgen.canvas import Canvas
 
-from mocapd.printing.paper_sizes import BOLD, DARK, PALE, Size, paper_size_mm, write_text
+from mocapd.printing.paper_sizes import Size, paper_size_mm
+from mocapd.printing.pdf_document import BOLD, DARK, PALE, write_text
 from mocapd.types import Floats
 
 EDGE_MM = 12.0  # from the paper's edge to the frame; printers leave 5 mm of it white

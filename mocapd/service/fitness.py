@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.service.service import Snapshot
 from mocapd.types import Tracking
 

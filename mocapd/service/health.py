@@ -5,7 +5,7 @@ import os
 
 import mocapd
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.config.sections import Config
 from mocapd.outputs.instance import instance_name
-from mocapd.outputs.registry import build_sinks
+from mocapd.outputs.output_table import build_sinks
 
 
 class OpenOutputs:

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.capture_care import CaptureCare
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.thread import CaptureThread
+from mocapd.capture.camera_thread.capture_care import CaptureCare
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.config.sections import Config
 from mocapd.pipeline.absence import Absence

@@ -8,7 +8,7 @@ import numpy as np
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureStatus
 from mocapd.config.sections import Config
 from mocapd.errors import MocapdError
 from mocapd.latch import Latch

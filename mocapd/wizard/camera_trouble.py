@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.camera_thread.capture_status import CaptureState
 from mocapd.errors import Problem
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.boundary.numbers import brief
-from mocapd.capture.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureStatus
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, Problem
 from mocapd.pipeline.frame_hub import FrameHub

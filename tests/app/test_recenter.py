@@ -16,7 +16,7 @@ from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.reloads import Reloads
 from mocapd.control.socket_place import socket_path
 from mocapd.errors import UnavailableError
-from mocapd.outputs.registry import VRChatSection
+from mocapd.outputs.output_table import VRChatSection
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service
 from tests.outputs.frames import eventually

@@ -6,8 +6,8 @@ import pytest
 from mocapd.calibrate.board.board_look import BoardObservation, Look, motion_px
 from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.extrinsics.board_extrinsics import place_in_world, solve_extrinsics
+from mocapd.calibrate.extrinsics.live_extrinsics import PARAMS
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS
 from tests.calibrate.moving_board import BOARD_M, SPEC, Clock, Session, errors, record, rig_of
 
 RIG = rig_of(3, 1.2)

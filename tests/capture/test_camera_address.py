@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.kinds.source_kinds import open_source
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource

@@ -26,5 +26,5 @@ def test_a_value_of_the_user_is_left_alone(clean_env: dict[str, str]) -> None:
 
 
 def test_capture_does_not_load_numba(clean_env: dict[str, str]) -> None:
-    code = "import mocapd.capture.webcam.v4l2, mocapd.capture.thread, sys; print('numba' in sys.modules)"
+    code = "import mocapd.capture.webcam.v4l2, mocapd.capture.camera_thread.thread, sys; print('numba' in sys.modules)"
     assert said_by(code, clean_env).strip() == "False"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mocapd.capture.frame_faults import FROZEN_NS, FROZEN_VIDEO_NS, FrameFaults
+from mocapd.capture.camera_thread.frame_faults import FROZEN_NS, FROZEN_VIDEO_NS, FrameFaults
 from mocapd.clock import NS_PER_S
 from mocapd.types import Frame
 from tests.capture.films import picture

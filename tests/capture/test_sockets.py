@@ -8,12 +8,12 @@ from pathlib import Path
 import cv2
 import pytest
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.reopening import BackOff, RestartBudget
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.reopening import BackOff, RestartBudget
+from mocapd.capture.camera_thread.thread import MOST_STUCK, CaptureThread
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Fault, Sockets
-from mocapd.capture.thread import MOST_STUCK, CaptureThread
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError
 from mocapd.sim.film import Film

@@ -1,6 +1,6 @@
 """A machine that sleeps: told once, with how long."""
 
-from mocapd.capture.suspension import SuspensionWatch
+from mocapd.capture.camera_thread.suspension import SuspensionWatch
 from mocapd.clock import NS_PER_S, suspended_ns
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.camera_thread.capture_status import CaptureState
+from mocapd.capture.camera_thread.reopening import BackOff, RestartBudget
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.file import FileSource, size_error
 from mocapd.capture.pace import Pace
-from mocapd.capture.reopening import BackOff, RestartBudget
-from mocapd.capture.thread import CaptureThread
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.types import Frame

@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
+from mocapd.capture.camera_thread.rate import RateMeter
 from mocapd.capture.pixels import delivered_jpeg
-from mocapd.capture.rate import RateMeter
 from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
 from mocapd.errors import ConfigError, UnavailableError

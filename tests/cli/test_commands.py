@@ -14,7 +14,7 @@ import pytest
 import mocapd as package
 from mocapd.cli.demo import watch_command
 from mocapd.config.sections import Config
-from mocapd.outputs.registry import ZenohSection
+from mocapd.outputs.output_table import ZenohSection
 from tests.cli.mocapd_process import COMMAND, mocapd, mocapd_here
 from tests.cli.small_capture import FRAMES, write_capture
 

@@ -9,15 +9,16 @@ import struct
 from collections.abc import Iterable
 
 import msgspec
+from pythonosc.osc_message import OscMessage
 
 from mocapd.app.terminal.waving_person import waving_person
 from mocapd.body.shape import mean_shape
 from mocapd.outputs.from_body import skeleton_frame
-from mocapd.outputs.osc import osc_encoding as osc
 from mocapd.outputs.osc.osc_frame import FRAME, FRAME_TYPES, JOINT, JOINT_TYPES
 from mocapd.outputs.wire import Joint, SkeletonFrame
 from tests.golden.make_osc import datagrams, kept, lost, whole
 from tests.golden.make_vmc import kept as kept_vmc
+from tests.outputs.osc_packets import bundle, message
 
 Step = tuple[float, bytes | None]
 Stream = list[Step]
@@ -55,26 +56,26 @@ def with_joint(name: str, **changes: object) -> SkeletonFrame:
     return msgspec.structs.replace(frame, joints={**frame.joints, name: joint})
 
 
-def head(types: str = FRAME_TYPES, /, **changes: osc.Argument) -> bytes:
+def head(types: str = FRAME_TYPES, /, **changes: str | float) -> OscMessage:
     """The message before the joints, of a frame of one datagram."""
-    arguments: dict[str, osc.Argument] = {
+    arguments: dict[str, str | float] = {
         "person": 0, "seq": 1, "part": 0, "parts": 1, "joints": 1, "capture_s": 1, "capture_ns": 0, "latency_s": 0.0,
         "tracking": "live", "tracker": "canned", "cameras": "", "instance": "golden",
     }  # fmt: skip
     values = [*(arguments | changes).values()]
-    return osc.message(FRAME, types, *values)
+    return message(FRAME, types, *values)
 
 
 def joint(
-    name: str = "hips", *, types: str = JOINT_TYPES, more: tuple[osc.Argument, ...] = ()
-) -> bytes:
+    name: str = "hips", *, types: str = JOINT_TYPES, more: tuple[str | float, ...] = ()
+) -> OscMessage:
     """A joint in the T-pose, a metre above the floor."""
     numbers = (0.0, 1.0, 0.0, *(0.0, 0.0, 0.0, 1.0) * 2, 1.0, 0.01)
-    return osc.message(JOINT + name, types, *numbers, *more)
+    return message(JOINT + name, types, *numbers, *more)
 
 
-def bundled(*messages: bytes) -> bytes:
-    return bytes(osc.bundle(messages)[0])
+def bundled(*messages: OscMessage) -> bytes:
+    return bundle(messages)
 
 
 def _garbage() -> list[bytes]:
@@ -113,17 +114,17 @@ def _cut_off() -> list[bytes]:
 
 
 def _wrong_types() -> list[bytes]:
-    short = osc.message(JOINT + "hips", "f" * 11, *(0.0,) * 11)
+    short = message(JOINT + "hips", "f" * 11, *(0.0,) * 11)
     return [
         bundled(head("i" * 8 + "ssss", latency_s=0), joint()),
-        bundled(head(), osc.message(JOINT + "hips", "i" + "f" * 11, 0, *(0.0,) * 11)),
+        bundled(head(), message(JOINT + "hips", "i" + "f" * 11, 0, *(0.0,) * 11)),
         bundled(head(), short),
-        bundled(osc.message(FRAME, ""), joint()),
+        bundled(message(FRAME, ""), joint()),
     ]
 
 
 def _impossible_heads() -> list[bytes]:
-    changes: tuple[dict[str, osc.Argument], ...] = (
+    changes: tuple[dict[str, str | float], ...] = (
         {"person": -1}, {"person": 2**31 - 1}, {"seq": -5}, {"part": 1}, {"part": -1}, {"parts": 0},
         {"parts": 2**31 - 1}, {"joints": -1}, {"joints": 2**31 - 1}, {"capture_ns": -1},
         {"latency_s": float("nan")}, {"tracking": "dancing"},
@@ -134,9 +135,9 @@ def _impossible_heads() -> list[bytes]:
 def _added_fields() -> bytes:
     return bundled(
         head(FRAME_TYPES + "if", seventh=7, eighth=0.5),
-        osc.message("/mocapd/v1/floor", "f", 0.0),
+        message("/mocapd/v1/floor", "f", 0.0),
         joint(types=JOINT_TYPES + "sf", more=("new", 1.0)),
-        osc.message("/mocapd/v1/ball", "s", "x"),
+        message("/mocapd/v1/ball", "s", "x"),
     )
 
 

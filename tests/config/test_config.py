@@ -17,7 +17,7 @@ from mocapd.config.effective import Effective, load_config
 from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection
 from mocapd.errors import ConfigError, InputError
-from mocapd.outputs.registry import OscSection, zenoh_section
+from mocapd.outputs.output_table import OscSection, zenoh_section
 from mocapd.pipeline.bundler import BundlerParams
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.trackers.registry import RENAMED, TRACKERS

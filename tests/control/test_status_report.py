@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.control.control_messages import (
     CalibrationReport,
     CameraStatusReport,
@@ -18,8 +18,8 @@ from mocapd.control.control_messages import (
 )
 from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.status_report import status_report
-from mocapd.outputs import registry
-from mocapd.outputs.registry import OutputEntry
+from mocapd.outputs import output_table
+from mocapd.outputs.output_table import OutputEntry
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.fitness import fitness_of
@@ -40,7 +40,7 @@ OPENING = replace(LIVE, state=CaptureState.OPENING)
 def service(monkeypatch: pytest.MonkeyPatch) -> Iterator[Service]:
     sink = Recorder()
     entry = OutputEntry(Enabled, lambda _section, _name: sink, blocks=False)
-    monkeypatch.setattr(registry, "OUTPUTS", {"recorder": entry})
+    monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     made = datetime(2026, 11, 1, 12, 0)
     session = replace(session_of("a", "b", rig=Rig(ring(2))), calibrated=made)
     with Service(config_of(), session) as one:

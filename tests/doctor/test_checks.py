@@ -196,15 +196,21 @@ def test_the_clock(now_s: float, synchronised: bool | None, verdict: Verdict) ->
 
 
 def test_libraries_and_the_extra_for_vrchat() -> None:
-    facts = LibraryFacts("3.11.2", {"numpy": "2.1"}, {"opencv": "libGL.so.1: no such file"})
+    facts = LibraryFacts(
+        "3.11.2",
+        {"numpy": "2.1"},
+        {"opencv": "libGL.so.1: no such file"},
+        vrchat_fix="pipx inject mocapd zeroconf",
+    )
     found = {one.about: one for one in check_libraries(facts)}
     assert found["library"].verdict is BAD
     assert "libGL" in found["library"].what
     assert found["vrchat"].verdict is OK
     wanting = [*check_libraries(replace(facts, broken={}, wants_vrchat=True))]
     assert [one.verdict for one in wanting] == [OK, BAD]
-    assert "mocapd[vrchat]" in wanting[1].fix
-    has = [*check_libraries(replace(facts, broken={}, wants_vrchat=True, has_vrchat=True))]
+    assert "mocapd[vrchat]" in wanting[1].what
+    assert wanting[1].fix == "pipx inject mocapd zeroconf"
+    has = [*check_libraries(replace(facts, broken={}, wants_vrchat=True, vrchat_fix=""))]
     assert [one.verdict for one in has] == [OK, OK]
 
 

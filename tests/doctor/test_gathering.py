@@ -28,7 +28,7 @@ from mocapd.doctor.gathering.system_facts import (
     state_facts,
     user_facts,
 )
-from mocapd.outputs.registry import ZenohSection
+from mocapd.outputs.output_table import ZenohSection
 from tests.calibration.test_calibration_file import pictures, saved_calibration
 from tests.cli.mocapd_process import Outcome, mocapd_here
 

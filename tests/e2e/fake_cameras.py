@@ -9,7 +9,7 @@ from mocapd.capture.file import size_error
 from mocapd.clock import monotonic_ns
 from mocapd.config.sections import Config
 from mocapd.errors import CameraLost, ConfigError
-from mocapd.outputs.registry import OscSection
+from mocapd.outputs.output_table import OscSection
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session

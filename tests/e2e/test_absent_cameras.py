@@ -11,7 +11,7 @@ import pytest
 from pythonosc.osc_bundle import OscBundle
 
 from mocapd.app.terminal.status_line import status_text
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.service.health import camera_message
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput

@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 
 from mocapd.calibration.from_origin import from_capture
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.capture_folder import folder_source, frame_sets, load_folder
 from mocapd.capture.file import FileSource
 from mocapd.capture.pace import Pace
-from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.v4l2 import decode
 from mocapd.errors import EndOfStream, MocapdError
 from mocapd.types import Bytes, Frame

@@ -7,7 +7,7 @@ from random import Random
 import msgspec
 
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import (
     CameraState,

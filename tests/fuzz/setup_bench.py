@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapd.boundary.parsing import decode_json
 from mocapd.calibration.calibration_record import Calibration
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.identity import parse_identity
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
 from mocapd.capture.webcam.webcam_listing import CameraInfo

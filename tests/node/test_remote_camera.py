@@ -6,15 +6,15 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.camera_thread.capture_status import CaptureState
+from mocapd.capture.camera_thread.reopening import RestartBudget
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.remote_address import parse_remote
 from mocapd.capture.remote.remote_link import RemoteLink
 from mocapd.capture.remote.remote_source import RemoteSource
-from mocapd.capture.reopening import RestartBudget
 from mocapd.capture.simulated.sim import SimSource
-from mocapd.capture.thread import CaptureThread
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.node.imperfections import Imperfections

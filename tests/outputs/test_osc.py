@@ -7,12 +7,19 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from pythonosc.osc_bundle import OscBundle
 from pythonosc.osc_message import OscMessage
-from pythonosc.osc_message_builder import OscMessageBuilder
 
-from mocapd.outputs.osc import osc_encoding as osc
-from mocapd.outputs.osc.osc_frame import FrameBundles
+from mocapd.outputs.osc import osc_template as osc
+from mocapd.outputs.osc.osc_frame import (
+    FRAME,
+    FRAME_TYPES,
+    JOINT,
+    JOINT_TYPES,
+    MAX_INSTANCE_BYTES,
+    FrameBundles,
+)
 from mocapd.outputs.wire import Joint
 from tests.outputs.frames import small_frame, whole_frame
+from tests.outputs.osc_packets import bundle, message
 
 ONE, HALF, QUARTER = b"\x3f\x80\0\0", b"\x3f\x00\0\0", b"\x3e\x80\0\0"
 ZERO = b"\0\0\0\0"
@@ -150,24 +157,40 @@ def test_whatever_a_frame_says_it_fits_its_datagrams(
 
 @pytest.mark.parametrize(
     ("text", "max_bytes", "expected"),
-    [("left", 9, "left"), ("left", 2, "le"), ("äöü", 3, "ä"), ("a\U0001f600", 4, "a")],
+    [
+        ("left", 9, "left"),
+        ("left", 2, "le"),
+        ("äöü", 3, "ä"),
+        ("a\U0001f600", 4, "a"),
+        ("a\0\udcff", 9, "a??"),
+    ],
 )
 def test_texts_are_shortened_between_characters(text: str, max_bytes: int, expected: str) -> None:
     assert osc.shortened(text, max_bytes) == expected
 
 
-@given(st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"])))
-def test_strings_are_terminated_and_padded(text: str) -> None:
-    data = osc.string(text)
-    assert len(data) % 4 == 0
-    assert data.rstrip(b"\0").decode() == text
-    assert data.endswith(b"\0")
+@given(st.lists(st.floats(width=32, allow_nan=False), min_size=13, max_size=13), ANY_TEXT)
+def test_overwritten_numbers_are_byte_for_byte_what_python_osc_builds(
+    numbers: list[float], instance: str
+) -> None:
+    px, py, pz, rx, ry, rz, rw, lx, ly, lz, lw, c, u = numbers
+    joint = Joint((px, py, pz), (rx, ry, rz, rw), (lx, ly, lz, lw), c, u)
+    frame = small_frame(instance=instance, joints=dict.fromkeys(("hips", "leftUpperArm"), joint))
+    head = (0, 7, 0, 1, 2, 1_700_000_005, 123, 1 / 64, "live", "colour", "left,right")
+    expected = bundle(
+        [
+            message(FRAME, FRAME_TYPES, *head, osc.shortened(instance, MAX_INSTANCE_BYTES)),
+            *(message(JOINT + name, JOINT_TYPES, *numbers) for name in frame.joints),
+        ]
+    )
+    assert [bytes(d) for d in FrameBundles(small_frame(instance=instance)).filled(frame)] == [
+        expected
+    ]
 
 
-@given(st.integers(-(2**31), 2**31 - 1), st.floats(width=32, allow_nan=False), st.text("abc/é"))
-def test_messages_are_byte_for_byte_those_of_python_osc(i: int, f: float, s: str) -> None:
-    builder = OscMessageBuilder("/some/address")
-    builder.add_arg(i, "i")
-    builder.add_arg(f, "f")
-    builder.add_arg(s, "s")
-    assert osc.message("/some/address", "ifs", i, f, s) == builder.build().dgram
+@pytest.mark.parametrize("types", ["f", "sf", "ssi", "iifss", "sssssff"])
+def test_the_first_number_is_found_behind_the_strings_before_it(types: str) -> None:
+    values: dict[str, osc.Argument] = {"s": "äbc", "i": 7, "f": 7.0}
+    element = osc.message("/some/address", types, *(values[kind] for kind in types))
+    kind = types.lstrip("s")[0]
+    assert struct.unpack_from(f">{kind}", element.dgram, osc.numbers_offset(element)) == (7,)

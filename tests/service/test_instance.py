@@ -9,7 +9,7 @@ from mocapd.config.effective import load_config
 from mocapd.config.sections import Config
 from mocapd.errors import ConfigError
 from mocapd.outputs.instance import instance_name
-from mocapd.outputs.registry import OscSection, OutputSection, ZenohSection
+from mocapd.outputs.output_table import OscSection, OutputSection, ZenohSection
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session

@@ -11,9 +11,9 @@ import pytest
 
 from mocapd.body.shape import mean_shape
 from mocapd.config.sections import Config, SmoothingSection
-from mocapd.outputs import registry
+from mocapd.outputs import output_table
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, RestSkeleton
-from mocapd.outputs.registry import OutputEntry
+from mocapd.outputs.output_table import OutputEntry
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
@@ -36,7 +36,7 @@ def sink(monkeypatch: pytest.MonkeyPatch) -> Recorder:
     """The only output of `config_of`."""
     recorder = Recorder()
     entry = OutputEntry(Enabled, lambda _section, _name: recorder, blocks=False)
-    monkeypatch.setattr(registry, "OUTPUTS", {"recorder": entry})
+    monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     return recorder
 
 

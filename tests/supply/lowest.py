@@ -25,12 +25,11 @@ TOOLS = (
     "pygltflib",
     "pypdfium2",
     "pytest",
-    "python-osc",
 )
 # Each library is used by one of them; none that compiles much: a few minutes in all.
 TESTS = (
     *("boundary", "config", "control", "doctor", "exports", "geometry", "printing", "body"),
-    *(f"outputs/test_{name}.py" for name in ("client", "foxglove", "recording", "wire")),
+    *(f"outputs/test_{name}.py" for name in ("client", "foxglove", "osc", "recording", "wire")),
     *(f"outputs/test_zenoh_{name}.py" for name in ("network", "sink", "strangers")),
     *(f"web/test_{name}.py" for name in ("access", "connections", "frames_access", "malformed")),
     *(f"web/test_{name}.py" for name in ("metrics", "pictures", "server")),
@@ -54,7 +53,7 @@ def main() -> int:
         _uv(
             *("pip", "compile", "--quiet", "--resolution", "lowest-direct", "--no-header"),
             *("--python-version", PYTHONS[0], "--only-binary", ":all:", "--no-annotate"),
-            *(str(PROJECT), "--output-file", str(lowest)),
+            *(str(PROJECT), "--extra", "all", "--output-file", str(lowest)),
         )
         _tell(versions(lowest.read_text()))
         tools = place / "tools.txt"
@@ -76,7 +75,8 @@ def main() -> int:
 def _tell(resolved: dict[str, str]) -> None:
     """Which versions are tried."""
     project = tomllib.loads(PROJECT.read_text())["project"]
-    for text in project["dependencies"]:
+    extras = project["optional-dependencies"]
+    for text in (*project["dependencies"], *extras["print"], *extras["plots"], *extras["vrchat"]):
         version = resolved.get(canonicalize_name(Requirement(text).name), "not on this machine")
         print(f"{text:36}{version}", flush=True)
 

@@ -59,12 +59,16 @@ def main() -> None:
     asked = tomllib.loads(PROJECT.read_text())
     backend = "\n".join(asked["build-system"]["requires"])
     # all of it at once first; the parts then take their versions from it
-    compile_lock([project, "-", "--extra", "dev", "--output-file", dev, *upgrade], backend)
-    compile_lock([project, "--constraints", dev, "--output-file", run, *upgrade])
+    everything = ["--extra", "all", "--extra", "dev"]
+    compile_lock([project, "-", *everything, "--output-file", dev, *upgrade], backend)
+    compile_lock(
+        [project, "--extra", "print", "--constraints", dev, "--output-file", run, *upgrade]
+    )
     compile_lock(["-", "--constraints", dev, "--output-file", build, *upgrade], backend)
     prefer_the_developers_versions()
-    extras = ["--extra", "dev", "--extra", "clients"]
-    compile_lock([project, "-", *extras, "--output-file", clients], backend)
+    compile_lock(
+        [project, "-", *everything, "--extra", "clients", "--output-file", clients], backend
+    )
 
 
 if __name__ == "__main__":

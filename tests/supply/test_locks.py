@@ -12,6 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from mocapd.extras import EXTRAS
 from tests.supply.lock_files import (
     BUILD,
     CLIENTS,
@@ -37,9 +38,10 @@ def _project() -> dict[str, Any]:
 def _asked(lock: Path) -> list[Requirement]:
     """What pyproject.toml asks for that this lock must answer."""
     project = _project()
-    run, build = project["project"]["dependencies"], project["build-system"]["requires"]
     extras = project["project"]["optional-dependencies"]
-    dev = [*run, *build, *extras["dev"]]
+    run = [*project["project"]["dependencies"], *extras["print"]]
+    build = project["build-system"]["requires"]
+    dev = [*run, *build, *extras["dev"], *extras["plots"], *extras["vrchat"]]
     clients = [*dev, *extras["clients"]]
     asked = {RUN: run, BUILD: build, DEV: dev, CLIENTS: clients}[lock]
     return [Requirement(text) for text in asked]
@@ -48,9 +50,16 @@ def _asked(lock: Path) -> list[Requirement]:
 def _extras() -> list[Requirement]:
     """What a user may have installed besides; who imports it says by name when it is not there."""
     extras = _project()["project"]["optional-dependencies"]
-    return [
-        Requirement(text) for name in extras.keys() - {"dev", "clients"} for text in extras[name]
-    ]
+    return [Requirement(text) for name in EXTRAS for text in extras[name]]
+
+
+def test_the_errors_name_the_extras_and_their_libraries_as_pyproject_has_them() -> None:
+    extras = _project()["project"]["optional-dependencies"]
+    assert {*EXTRAS, "all", "clients", "dev"} == {*extras}
+    (everything,) = map(Requirement, extras["all"])
+    assert everything.extras == {*EXTRAS}
+    for extra, library in EXTRAS.items():
+        assert [Requirement(text).name for text in extras[extra]] == [library]
 
 
 @each_lock

@@ -149,12 +149,12 @@ def test_a_changed_lock_or_project_makes_the_environment_anew(
 def test_a_python_the_lock_is_not_for_gets_what_pip_chooses_and_is_told(checkout: Checkout) -> None:
     checkout.set_version((3, 15, 0))
     calls, said = checkout.make("env")
-    assert [call.split("--")[-1] for call in calls] == ["editable ."]
+    assert [call.split("--")[-1] for call in calls] == ["editable .[print]"]
     assert "locks/" not in calls[0]
     told = [line for line in said.splitlines() if "pip chooses" in line]
     assert len(told) == 1
     assert "3.11 to 3.14" in told[0]
-    assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[dev]"]
+    assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[all,dev]"]
 
 
 def test_what_ci_runs_installs_packages_by_make_alone() -> None:

@@ -23,7 +23,8 @@ the licences and notices that the wheels hold (`*.dist-info/`), and to read the 
 
 ## Python packages
 
-Every package of `locks/run.txt` that Linux installs.
+Every package of `locks/run.txt` that Linux installs: the base and the extra `print`. The extras `plots`
+(matplotlib) and `vrchat` (zeroconf, LGPL 2.1) are in no bundle: whoever asks for them gets them from their publishers.
 
 | package | version | licence |
 |---|---|---|
@@ -52,12 +53,11 @@ _BESIDES = """
   OpenCV, and talks to a network only for a camera at `rtsps://` or `https://` (or sent there by `http://`).
 - **DarkGarden** (in reportlab, `reportlab/fonts/DarkGardenMK.*`) is a font under the GPL, with an exception for
   documents that use it. mocapd does not use it; a bundle may leave these files out.
-- Other fonts carried: DejaVu, STIX, BaKoMa's Computer Modern and Last Resort (in matplotlib, whose licence
-  files speak of each), Bitstream Vera and Type 1 fonts in place of PostScript's (in reportlab; Vera's licence
+- Other fonts carried: Bitstream Vera and Type 1 fonts in place of PostScript's (in reportlab; Vera's licence
   lies beside it, the others tell theirs inside).
 - Linked into code of the wheels, not files of their own: OpenCV's third-party parts (`LICENSE-3RD-PARTY.txt` in
   `cv2/` lists them), some 120 Rust crates in eclipse-zenoh (its bill of materials, `sboms/`, lists them),
-  FreeType and Qhull in matplotlib, Raqm in pillow, and what scipy, numpy and numba name in their licence files.
+  Raqm in pillow, and what scipy, numpy and numba name in their licence files.
 
 ## Files in mocapd itself
 
@@ -86,6 +86,8 @@ def licence_of(package: str) -> str:
     free_text = (told["License"] or "").strip()
     if free_text and len(free_text) <= 20:
         return free_text
+    if free_text.startswith("This is free and unencumbered software"):
+        return "Unlicense"
     return " OR ".join(classifiers) or "not told"
 
 

@@ -19,7 +19,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-from mocapd.capture.thread import CaptureThread
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.webcam.v4l2 import V4l2Source, WebcamSettings
 from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import capture_nodes

@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.capture.capture_status import CaptureState
-from mocapd.capture.thread import CaptureThread
+from mocapd.capture.camera_thread.capture_status import CaptureState
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.webcam.controls import Controls
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.usb_devices import usb_webcams

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError

@@ -41,7 +41,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.capture.kinds.source_kinds import common_origin, open_origin
     from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
     from mocapd.node.imperfections import parse_imperfections
-    from mocapd.outputs.registry import zenoh_section
+    from mocapd.outputs.output_table import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs
 
     signals, notifier = Signals(within_s=END_S), Notifier.of_environment()

@@ -1,6 +1,6 @@
 """Whether a daemon gets on: by what it has done, never by the time that has passed. Pure."""
 
-from mocapd.capture.capture_status import CaptureState
+from mocapd.capture.camera_thread.capture_status import CaptureState
 from mocapd.service.service import Snapshot
 
 

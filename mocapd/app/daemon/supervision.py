@@ -4,7 +4,7 @@ import logging
 
 from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.daemon.progress_watch import ProgressWatch
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.service.service import Snapshot
 from mocapd.types import Tracking
 

@@ -11,8 +11,8 @@ from mocapd.errors import ConfigError
 # what ProtectHome= and PrivateTmp= hide from the service
 HIDDEN = tuple(map(Path, ("/home", "/root", "/run/user", "/tmp", "/var/tmp")))
 _FIX = (
-    "install mocapd for all users, `python3 -m venv /opt/mocapd && /opt/mocapd/bin/pip install mocapd`,"
-    " and run `/opt/mocapd/bin/mocapd install-service`; or take --user"
+    "install mocapd for all users: in its checkout `make dist`, then `python3 -m venv /opt/mocapd &&"
+    " /opt/mocapd/bin/pip install dist/mocapd-*.whl`, and run `/opt/mocapd/bin/mocapd install-service`; or take --user"
 )
 
 

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.service.service import Snapshot
 

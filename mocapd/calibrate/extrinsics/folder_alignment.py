@@ -8,11 +8,11 @@ import numpy as np
 from mocapd.calibrate.board.back_side import usual_back
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.board.recordings import RecordingTimes
-from mocapd.calibrate.extrinsics.board_track import BoardTrack, board_track
-from mocapd.calibrate.extrinsics.instants import IN_STEP, Instants, gather
 from mocapd.calibrate.extrinsics.pose_graph import camera_from_board, seen_poses
-from mocapd.calibrate.extrinsics.time_alignment import AlignedTimes, align_times
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
+from mocapd.calibrate.time_alignment.board_track import BoardTrack, board_track
+from mocapd.calibrate.time_alignment.instants import IN_STEP, Instants, gather
+from mocapd.calibrate.time_alignment.time_alignment import AlignedTimes, align_times
 from mocapd.types import Floats
 
 _FOLLOWED_GAP = 2.6  # instants between positions that the board's motion is taken from

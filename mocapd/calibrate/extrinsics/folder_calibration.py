@@ -19,12 +19,12 @@ from mocapd.calibrate.extrinsics.board_sighting import (
     sight_board,
 )
 from mocapd.calibrate.extrinsics.folder_alignment import align_views
-from mocapd.calibrate.extrinsics.instants import Instants
 from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
-from mocapd.calibrate.extrinsics.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
+from mocapd.calibrate.time_alignment.instants import Instants
+from mocapd.calibrate.time_alignment.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Rig

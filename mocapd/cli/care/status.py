@@ -51,7 +51,7 @@ def status(
     effective, error = config_to_look_after(config, settings)
     chosen = effective.config
     if every:
-        from mocapd.outputs.registry import zenoh_section
+        from mocapd.outputs.output_table import zenoh_section
 
         raise typer.Exit(_print_all(link_of(zenoh_section(chosen.outputs), endpoint), as_json))
     found = daemons_found(chosen)

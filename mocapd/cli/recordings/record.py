@@ -67,7 +67,7 @@ def record(
     from mocapd.clock import seconds as in_seconds
     from mocapd.config.runtime_folder import runtime_folder
     from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
-    from mocapd.outputs.registry import zenoh_section
+    from mocapd.outputs.output_table import zenoh_section
 
     effective = effective_config(config, settings).config
     set_up_logs(effective.log_level)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from mocapd.app.recordings.replay_run import ReplayPlace
     from mocapd.outputs.base import Sink
-    from mocapd.outputs.registry import OutputSection
+    from mocapd.outputs.output_table import OutputSection
 
 SHOW_EVERY_S = 0.25
 
@@ -55,7 +55,7 @@ def replay(
     from mocapd.app.terminal.status_line import StatusLine
     from mocapd.outputs.instance import instance_name
     from mocapd.outputs.mcap.recording_reader import RecordingReader
-    from mocapd.outputs.registry import build_sinks
+    from mocapd.outputs.output_table import build_sinks
 
     flags = {"instance": instance, **vrm_flags(vrm)}
     effective = effective_config(config, settings, None, None, **flags).config

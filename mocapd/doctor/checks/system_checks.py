@@ -88,12 +88,12 @@ def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
         yield bad("library", f"{name}: {why}", "install mocapd anew: pipx reinstall mocapd")
     versions = ", ".join(f"{name} {version}" for name, version in facts.versions.items())
     yield ok("python", f"{facts.python}; {versions}")
-    if facts.wants_vrchat and not facts.has_vrchat:
+    if facts.wants_vrchat and facts.vrchat_fix:
         yield bad(
             "vrchat",
-            'vrchat.destination = "auto" needs the extra, which is not installed',
-            "pip install 'mocapd[vrchat]'",
+            'vrchat.destination = "auto" needs the extra mocapd[vrchat], which is not installed',
+            facts.vrchat_fix,
         )
     else:
-        has = "installed" if facts.has_vrchat else "not installed, and not needed"
+        has = "not installed, and not needed" if facts.vrchat_fix else "installed"
         yield ok("vrchat", f"the extra that finds it is {has}")

@@ -3,11 +3,11 @@
 import importlib
 import platform
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import LibraryFacts
-from mocapd.outputs.registry import VRChatSection
+from mocapd.extras import has_extra, install_command
+from mocapd.outputs.output_table import VRChatSection
 from mocapd.outputs.vrchat.vrchat_sink import AUTO
 
 # What is imported, and the package that brings it: those with compiled code, of which any may be broken.
@@ -32,6 +32,5 @@ def library_facts(config: Config) -> LibraryFacts:
             broken[package] = str(error)
     section = config.outputs.get("vrchat")
     wants = isinstance(section, VRChatSection) and section.enabled and section.destination == AUTO
-    return LibraryFacts(
-        platform.python_version(), versions, broken, wants, find_spec("zeroconf") is not None
-    )
+    fix = "" if has_extra("vrchat") else install_command("vrchat")
+    return LibraryFacts(platform.python_version(), versions, broken, wants, fix)

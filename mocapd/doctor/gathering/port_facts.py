@@ -2,7 +2,7 @@
 
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import PortFacts
-from mocapd.outputs.registry import zenoh_section
+from mocapd.outputs.output_table import zenoh_section
 from mocapd.outputs.socket_owners import holder_of
 
 

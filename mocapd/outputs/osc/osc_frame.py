@@ -8,7 +8,9 @@ frame's strings are, one joint and its header fit: longer strings are cut.
 import struct
 from itertools import pairwise
 
-from mocapd.outputs.osc import osc_encoding as osc
+from pythonosc.osc_message import OscMessage
+
+from mocapd.outputs.osc import osc_template as osc
 from mocapd.outputs.wire import SkeletonFrame
 
 FRAME = "/mocapd/v1/frame"
@@ -72,15 +74,11 @@ class FrameBundles:
             osc.shortened(",".join(frame.cameras), MAX_CAMERAS_BYTES),
             osc.shortened(frame.instance, MAX_INSTANCE_BYTES),
         )
-        header_at = osc.arguments_offset(FRAME, FRAME_TYPES)
+        joints = [_joint_message(name) for name in frame.joints]
         self._bundles: list[tuple[bytearray, int, tuple[int, ...]]] = []
-        for names in _runs(tuple(frame.joints), header, limit_bytes):
-            data, starts = osc.bundle([header, *map(_joint_message, names)])
-            joints_at = tuple(
-                start + osc.arguments_offset(_address(name), JOINT_TYPES)
-                for start, name in zip(starts[1:], names, strict=True)
-            )
-            self._bundles.append((data, starts[0] + header_at, joints_at))
+        for run in _runs(joints, header, limit_bytes):
+            data, (header_at, *joints_at) = osc.bundle([header, *run])
+            self._bundles.append((data, header_at, tuple(joints_at)))
 
     def filled(self, frame: SkeletonFrame) -> list[bytearray]:
         """The datagrams of a frame of this shape; they are overwritten by the next call."""
@@ -107,19 +105,16 @@ class FrameBundles:
         return [data for data, _, _ in self._bundles]
 
 
-def _address(joint: str) -> str:
-    return JOINT + osc.shortened(joint, MAX_JOINT_BYTES)
+def _joint_message(name: str) -> OscMessage:
+    address = JOINT + osc.shortened(name, MAX_JOINT_BYTES)
+    return osc.message(address, JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
 
 
-def _joint_message(name: str) -> bytes:
-    return osc.message(_address(name), JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
-
-
-def _runs(names: tuple[str, ...], header: bytes, limit_bytes: int) -> list[tuple[str, ...]]:
+def _runs(joints: list[OscMessage], header: OscMessage, limit_bytes: int) -> list[list[OscMessage]]:
     """The fewest runs of joints, of nearly equal length, each of which fits with the header."""
-    for count in range(1, max(len(names), 1) + 1):
-        cuts = [len(names) * k // count for k in range(count + 1)]
-        runs = [names[a:b] for a, b in pairwise(cuts)]
-        if all(osc.bundle_size([header, *map(_joint_message, run)]) <= limit_bytes for run in runs):
+    for count in range(1, max(len(joints), 1) + 1):
+        cuts = [len(joints) * k // count for k in range(count + 1)]
+        runs = [joints[a:b] for a, b in pairwise(cuts)]
+        if all(osc.bundle_size([header, *run]) <= limit_bytes for run in runs):
             return runs
     raise ValueError(f"one joint and its header do not fit {limit_bytes} bytes")

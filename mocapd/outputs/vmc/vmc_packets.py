@@ -9,7 +9,9 @@ import struct
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from mocapd.outputs.osc import osc_encoding as osc
+from pythonosc.osc_message import OscMessage
+
+from mocapd.outputs.osc import osc_template as osc
 from mocapd.outputs.vmc.bone_names import unity_name
 from mocapd.outputs.vmc.placing import Numbers
 
@@ -39,7 +41,7 @@ class VmcPackets:
         rest = [bone for bone in bones if not bone.endswith(_LEGS)]
         messages = {
             OK: osc.message(OK, OK_TYPES, 0, 0, 0, 0),
-            TIME: osc.message(TIME, TIME_TYPES, 0),
+            TIME: osc.message(TIME, TIME_TYPES, 0.0),
         }
         if bones:
             messages[ROOT] = _pose_message(ROOT, "root")
@@ -48,12 +50,12 @@ class VmcPackets:
         numbers_at: dict[str, _Place] = {}
         self.datagrams: list[bytearray] = []
         for run in _runs(([*head, *rest], legs), messages, bundling):
-            data, starts = osc.bundle([messages[name] for name in run])
+            data, offsets = osc.bundle([messages[name] for name in run])
             if bundling == "off":
-                data, starts = bytearray(messages[run[0]]), (0,)
+                alone = messages[run[0]]
+                data, offsets = bytearray(alone.dgram), (osc.numbers_offset(alone),)
             self.datagrams.append(data)
-            for name, start in zip(run, starts, strict=True):
-                numbers_at[name] = data, start + _numbers_offset(name)
+            numbers_at |= {name: (data, at) for name, at in zip(run, offsets, strict=True)}
         self._ok_at, self._time_at = numbers_at[OK], numbers_at[TIME]
         self._poses_at = [numbers_at[name] for name in ([ROOT, *bones] if bones else ())]
 
@@ -68,21 +70,12 @@ class VmcPackets:
         _time_number.pack_into(*self._time_at, time_s)
 
 
-def _pose_message(address: str, name: str) -> bytes:
+def _pose_message(address: str, name: str) -> OscMessage:
     return osc.message(address, POSE_TYPES, name, *(0.0,) * 6, 1.0)
 
 
-def _numbers_offset(name: str) -> int:
-    """Where in the message of this name, an address or a bone, the numbers begin [bytes]."""
-    if name in (OK, TIME):
-        return osc.arguments_offset(name, OK_TYPES if name == OK else TIME_TYPES)
-    if name == ROOT:
-        return osc.arguments_offset(ROOT, POSE_TYPES) + len(osc.string("root"))
-    return osc.arguments_offset(BONE, POSE_TYPES) + len(osc.string(unity_name(name)))
-
-
 def _runs(
-    groups: Sequence[list[str]], messages: dict[str, bytes], bundling: Bundling
+    groups: Sequence[list[str]], messages: dict[str, OscMessage], bundling: Bundling
 ) -> Iterator[list[str]]:
     """What goes into one datagram each, by name."""
     if bundling == "one":

@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Sequence
 
-from mocapd.outputs.osc import osc_encoding as osc
+from mocapd.outputs.osc import osc_template as osc
 from mocapd.outputs.wire import Vector
 
 ROOT = "/tracking/trackers/"
@@ -31,12 +31,8 @@ class TrackerBundle:
     """
 
     def __init__(self, addresses: Sequence[str]) -> None:
-        elements = [osc.message(address, TYPES, 0.0, 0.0, 0.0) for address in addresses]
-        self._data, starts = osc.bundle(elements)
-        self._floats_at = tuple(
-            start + osc.arguments_offset(address, TYPES)
-            for start, address in zip(starts, addresses, strict=True)
-        )
+        messages = [osc.message(address, TYPES, 0.0, 0.0, 0.0) for address in addresses]
+        self._data, self._floats_at = osc.bundle(messages)
 
     def filled(self, vectors: Sequence[Vector]) -> bytearray:
         """The datagram with one vector for each address; it is overwritten by the next call."""

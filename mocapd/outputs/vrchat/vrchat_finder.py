@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from mocapd.errors import ConfigError, UnavailableError
+from mocapd.errors import UnavailableError
+from mocapd.extras import require_extra
 from mocapd.outputs.vrchat.host_info import PREFIX, ask_host_info
 
 if TYPE_CHECKING:
@@ -44,15 +45,10 @@ class VRChatFinder:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Returns at once. Raises ConfigError where the library for it is not installed."""
-        try:
-            import zeroconf  # noqa: F401
-        except ImportError:
-            raise ConfigError(
-                "finding VRChat needs the library zeroconf, which is not installed",
-                "vrchat.destination",
-                "pip install 'mocapd[vrchat]', or give VRChat's address, such as 127.0.0.1:9000",
-            ) from None
+        """Returns at once. Raises MissingExtraError where its library is not installed."""
+        require_extra(
+            "vrchat", "vrchat.destination", "give VRChat's address, such as 127.0.0.1:9000"
+        )
         self._ended.clear()
         self._thread = threading.Thread(target=self._run, name="vrchat-finder", daemon=True)
         self._thread.start()

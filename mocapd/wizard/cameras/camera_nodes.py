@@ -6,7 +6,7 @@ A node that is in use by the setup is "busy" to whoever asks; that is left out h
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.kinds.source_kinds import identity_of
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode
 from mocapd.capture.webcam.webcam_listing import CameraInfo

@@ -13,7 +13,7 @@ from dataclasses import asdict, replace
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.light.light_check import light_problems
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.clock import NS_PER_S

@@ -15,6 +15,7 @@ from mocapd.calibrate.board.board_at_rest import (
     looks_like_floor,
 )
 from mocapd.calibrate.board.board_look import Look
+from mocapd.calibrate.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     SceneExtrinsics,
     WorldExtrinsics,
@@ -23,6 +24,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
     with_board,
 )
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError
+from mocapd.calibrate.extrinsics.live_extrinsics import PARAMS, solve_live
 from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
@@ -31,8 +33,6 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.extrinsics.board_collection import ENOUGH, BoardCollection
-from mocapd.wizard.extrinsics.extrinsics_solving import PARAMS, solve_live
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
@@ -60,6 +60,7 @@ class ExtrinsicsWithBoard:
         draft = context.draft
         self._context = context
         self._cameras = draft.cameras
+        self._names = {camera.id: camera.label or camera.id for camera in draft.cameras}
         self._spec = draft.board or usual_board()
         self._seen = self._begin_anew()
         known = {index for own in draft.board_views.values() for index in own}
@@ -167,21 +168,19 @@ class ExtrinsicsWithBoard:
 
     def _begin_anew(self) -> BoardCollection:
         """With those of the step Lens only."""
-        return BoardCollection(self._cameras, self._spec, self._context.draft.board_views)
+        sizes_px = {camera.id: camera.size_px for camera in self._cameras}
+        return BoardCollection(sizes_px, self._spec, self._context.draft.board_views)
 
     def _solve(self) -> None:
         self._seen.try_now()
         self._asked, self._solving = False, True
-        views, earlier = self._seen.views, self._earlier
-        cameras, spec, intrinsics_of = (
-            self._cameras,
-            self._spec,
-            dict(self._context.draft.intrinsics),
-        )
+        views, spec, earlier = self._seen.views, self._spec, self._earlier
+        measured = self._context.draft.intrinsics
+        intrinsics_of = {camera.id: measured[camera.id] for camera in self._cameras}
 
         def job(tell: Tell) -> tuple[SceneExtrinsics, WorldExtrinsics]:
             tell("the room", 0.0)
-            return solve_live(cameras, intrinsics_of, spec, views, earlier)
+            return solve_live(intrinsics_of, spec, views, earlier)
 
         def done(found: tuple[SceneExtrinsics, WorldExtrinsics]) -> None:
             self._solving = False
@@ -287,7 +286,7 @@ class ExtrinsicsWithBoard:
             return "Working out where the cameras stand. You can go on showing the board."
         apart = self._seen.apart()
         if apart and len(self._cameras) > 2:
-            name = apart[0].label or apart[0].id
+            name = self._names[apart[0]]
             sides = ", from either side" if self._spec.two_sided else ""
             return (
                 f"Hold the board where {name} and another camera see it{sides}; "
@@ -328,11 +327,11 @@ class ExtrinsicsWithBoard:
             told += [
                 Problem(
                     "it never sees the board at the same moment as another camera",
-                    camera.label or camera.id,
+                    self._names[name],
                     "hold the board still where it and another camera see it, or turn them together"
                     + ("" if self._spec.two_sided else _FACING),
                 )
-                for camera in self._seen.lonely()
+                for name in self._seen.lonely()
             ]
         # on the floor one camera that sees the board is enough
         wanted = {camera.id: self._stage is BoardPhase.COLLECT for camera in self._cameras}
@@ -342,12 +341,12 @@ class ExtrinsicsWithBoard:
         return {
             "stage": self._stage.value,
             "solving": self._solving,
-            "names": {camera.id: camera.label or camera.id for camera in self._cameras},
+            "names": dict(self._names),
             "moments": self._seen.count,
             "enough": ENOUGH,
             "pairs": [
-                {"a": a.id, "b": b.id, "shared": self._seen.shared(a, b)}
-                for a, b in combinations(self._cameras, 2)
+                {"a": a, "b": b, "shared": self._seen.shared(a, b)}
+                for a, b in combinations(self._names, 2)
             ],
             "at_rest": self._rest.seen,
             "can_solve": self._stage is BoardPhase.COLLECT and self._seen.solvable,

@@ -4,12 +4,12 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
-from mocapd.capture.capture_care import CaptureCare
-from mocapd.capture.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.capture_care import CaptureCare
+from mocapd.capture.camera_thread.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.kinds.source_kinds import identities_of, open_source
 from mocapd.capture.pace import Pace
 from mocapd.capture.source_request import SourceRequest
-from mocapd.capture.thread import CaptureThread
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import MocapdError
 from mocapd.pipeline.bundler import BundlerParams

@@ -13,10 +13,10 @@ from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.daemon.progress_watch import ProgressWatch
 from mocapd.app.daemon.supervision import Supervision
 from mocapd.body.shape import BodyShape, mean_shape
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.config.sections import Config
-from mocapd.outputs import registry
-from mocapd.outputs.registry import OutputEntry
+from mocapd.outputs import output_table
+from mocapd.outputs.output_table import OutputEntry
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.metrics import Metrics
 from mocapd.service.service import Service, Snapshot
@@ -90,7 +90,7 @@ class Setting:
 def daemon(monkeypatch: pytest.MonkeyPatch) -> Iterator[Setting]:
     sink = HeldSink()
     entry = OutputEntry(Enabled, lambda _section, _name: sink, blocks=False)
-    monkeypatch.setattr(registry, "OUTPUTS", {"recorder": entry})
+    monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     config = Config(outputs={"recorder": Enabled()}, state_dir=Path("/nonexistent"))
     cameras, tracker = (FakeCamera("a"), FakeCamera("b")), HeldTracker()
     inputs = tuple(CameraInput(camera, "test", SIZE_PX) for camera in cameras)

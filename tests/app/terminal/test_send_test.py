@@ -20,10 +20,16 @@ from mocapd.body.skeleton import INDEX
 from mocapd.cli.send_test import send_test_command
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError, UnavailableError
-from mocapd.outputs import registry, wire
+from mocapd.outputs import output_table, wire
 from mocapd.outputs.aim import resolved
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.registry import OUTPUTS, OscSection, OutputEntry, VRChatSection, ZenohSection
+from mocapd.outputs.output_table import (
+    OUTPUTS,
+    OscSection,
+    OutputEntry,
+    VRChatSection,
+    ZenohSection,
+)
 from mocapd.types import Floats
 from tests.outputs.frames import free_port
 from tests.outputs.receivers.typed_osc import decoded
@@ -155,7 +161,7 @@ def test_an_output_that_is_new_in_the_table_can_be_tried(
         return NewSink()
 
     monkeypatch.setattr(
-        registry, "OUTPUTS", {**OUTPUTS, "new": OutputEntry(Section, build, blocks=False)}
+        output_table, "OUTPUTS", {**OUTPUTS, "new": OutputEntry(Section, build, blocks=False)}
     )
     assert code_of(output="new", port=39600) == 0
     assert seen == [Section(("127.0.0.1:39600",))]

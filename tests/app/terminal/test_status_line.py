@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from mocapd.app.daemon.supervision import state_text
 from mocapd.app.terminal.status_line import status_text
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles

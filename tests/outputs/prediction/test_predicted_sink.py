@@ -11,9 +11,9 @@ from mocapd.clock import monotonic_ns
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import StateMessage
+from mocapd.outputs.output_table import OUTPUTS, build_sinks, default_sections
 from mocapd.outputs.prediction.predicted_sink import PredictedSink
 from mocapd.outputs.prediction.prediction_params import PredictionParams
-from mocapd.outputs.registry import OUTPUTS, build_sinks, default_sections
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import eventually
 from tests.outputs.prediction.moving import UNIX_NS, frame_at, swinging, walking

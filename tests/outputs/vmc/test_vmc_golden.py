@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from mocapd.outputs.osc.osc_encoding import MAX_DATAGRAM_BYTES
+from mocapd.outputs.osc.osc_template import MAX_DATAGRAM_BYTES
 from mocapd.outputs.vmc.vmc_packets import Bundling
 from mocapd.types import Floats
 from tests.golden import stepping_left

@@ -12,7 +12,7 @@ from mocapd.clock import NS_PER_S
 from mocapd.config.effective import load_config
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.messages import CalibratedCamera, CalibrationInfo
-from mocapd.outputs.registry import OutputSection, VmcSection, build_sinks
+from mocapd.outputs.output_table import OutputSection, VmcSection, build_sinks
 from mocapd.outputs.vmc.vmc_params import Params
 from mocapd.outputs.vmc.vmc_sink import T_PERIOD_S, VmcSink
 from tests.golden import stepping_left

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from mocapd.clock import NS_PER_S
-from mocapd.errors import ConfigError
+from mocapd.errors import MissingExtraError
 from mocapd.outputs.messages import Facing
-from mocapd.outputs.registry import VRChatSection, unsafe_outputs
+from mocapd.outputs.output_table import VRChatSection, unsafe_outputs
 from mocapd.outputs.vrchat import vrchat_finder
 from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder, is_of_local_network
 from mocapd.outputs.vrchat.vrchat_sink import AUTO, Params, VRChatSink
@@ -99,7 +99,9 @@ def test_only_machines_of_local_networks_are_asked(address: str, expected: bool)
 def test_without_the_library_it_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zeroconf", None)
     sink = VRChatSink(Params(AUTO))
-    with pytest.raises(ConfigError, match=r"vrchat\.destination.*pip install 'mocapd\[vrchat\]'"):
+    with pytest.raises(
+        MissingExtraError, match=r"vrchat\.destination.*mocapd\[vrchat\].*zeroconf, or"
+    ):
         sink.open()
     sink.close()
 

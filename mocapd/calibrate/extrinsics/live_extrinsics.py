@@ -1,4 +1,4 @@
-"""The extrinsics from the sightings of the steps Lens and Room: what the step Room's job does."""
+"""The extrinsics of a live setup, from the board at rest before its cameras."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -22,7 +22,6 @@ from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
-from mocapd.wizard.draft import DraftCamera
 
 # positions are never of neighbouring frames, so no motion is followed: one round is enough
 PARAMS = BoardExtrinsicsParams(bundle=BundleParams(rounds=1))
@@ -35,20 +34,20 @@ _DIST = (0.02, 0.05, 0.001, 0.001, 0.05)
 
 
 def solve_live(
-    cameras: Sequence[DraftCamera],
     intrinsics_of: Mapping[str, Intrinsics],
     spec: BoardSpec,
     views: Views,
     earlier: frozenset[int],
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
-    """The extrinsics, and the world as long as no floor is known.
+    """The extrinsics of the cameras of `intrinsics_of`, in its order, and the world without a known floor.
 
-    `earlier`: indices of sightings from the step Lens. If they do not fit, the cameras
-    may have been moved since, and it is solved without. Raises ConfigError.
+    views: by camera and index of the sighting; earlier: indices of the sightings that the intrinsics were measured
+    from. Where these contradict the others, somebody may have moved a camera since: the second solution ties no
+    cameras by them. Raises ConfigError.
     """
     refusal: ContradictionError | None = None
     try:
-        found = _solve(cameras, intrinsics_of, spec, views)
+        found = _solve(intrinsics_of, spec, views)
         if not earlier or _refused(found[0]) <= _MOST_REFUSED:
             return found
     except ContradictionError as error:
@@ -56,7 +55,7 @@ def solve_live(
             raise
         refusal = error
     try:
-        return _solve(cameras, intrinsics_of, spec, _apart(views, earlier))
+        return _solve(intrinsics_of, spec, _apart(views, earlier))
     except ConfigError:
         # this step's own views may be too few to say it again
         if isinstance(refusal, MirroredError):
@@ -65,15 +64,16 @@ def solve_live(
 
 
 def _solve(
-    cameras: Sequence[DraftCamera],
     intrinsics_of: Mapping[str, Intrinsics],
     spec: BoardSpec,
     views: Views,
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
-    names = [camera.id for camera in cameras]
-    sizes_px = [camera.size_px for camera in cameras]
-    chosen = {camera.id: _chosen(camera, views) for camera in cameras}
-    known = _known([intrinsics_of[name] for name in names], [_alone(name, views) for name in names])
+    names = list(intrinsics_of)
+    sizes_px = [intrinsics.size_px for intrinsics in intrinsics_of.values()]
+    chosen = {
+        name: _chosen(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()
+    }
+    known = _known(list(intrinsics_of.values()), [_alone(name, views) for name in names])
     bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(known=known))
     extrinsics = solve_extrinsics(
         names, sizes_px, intrinsics_of, chosen, spec, replace(PARAMS, bundle=bundle)
@@ -87,16 +87,16 @@ def _alone(name: str, views: Views) -> list[BoardView]:
     return [view for index, view in views[name].items() if index not in others]
 
 
-def _chosen(camera: DraftCamera, views: Views) -> dict[int, BoardView]:
-    """All that are shared, and the best of those alone."""
-    alone = _alone(camera.id, views)
-    kept = {view.index for view in choose_views(alone, camera.size_px, _ALONE)}
+def _chosen(name: str, size_px: tuple[int, int], views: Views) -> dict[int, BoardView]:
+    """All views that cameras share, and the best of those of this camera alone."""
+    alone = _alone(name, views)
+    kept = {view.index for view in choose_views(alone, size_px, _ALONE)}
     dropped = {view.index for view in alone} - kept
-    return {index: view for index, view in views[camera.id].items() if index not in dropped}
+    return {index: view for index, view in views[name].items() if index not in dropped}
 
 
 def _known(measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownIntrinsics:
-    """Lenses without pictures of their own stay near what was measured."""
+    """Intrinsics without pictures of their own stay near their measured values."""
     rows = np.stack([intrinsics_row(intrinsics.K, intrinsics.dist) for intrinsics in measured])
     deviation = np.full(rows.shape, np.inf)
     for i, (intrinsics, views) in enumerate(zip(measured, alone, strict=True)):

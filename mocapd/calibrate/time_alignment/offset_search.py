@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.calibrate.extrinsics.board_alignment import Affine, aligned
-from mocapd.calibrate.extrinsics.board_track import BoardTrack
+from mocapd.calibrate.time_alignment.board_alignment import Affine, aligned
+from mocapd.calibrate.time_alignment.board_track import BoardTrack
 from mocapd.types import Floats, Ints
 
 MOST_OFFSET_S = 10.0  # of two recordings that somebody started by hand

@@ -6,9 +6,9 @@ from itertools import combinations
 
 import numpy as np
 
-from mocapd.calibrate.extrinsics.board_track import BoardTrack
-from mocapd.calibrate.extrinsics.clock_map import SAME_CLOCK, ClockMap, clock_map
-from mocapd.calibrate.extrinsics.offset_search import PairOffsets, find_offsets
+from mocapd.calibrate.time_alignment.board_track import BoardTrack
+from mocapd.calibrate.time_alignment.clock_map import SAME_CLOCK, ClockMap, clock_map
+from mocapd.calibrate.time_alignment.offset_search import PairOffsets, find_offsets
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import pytest
 
 from mocapd.config.effective import load_config
-from mocapd.outputs import registry
-from mocapd.outputs.registry import (
+from mocapd.outputs import output_table
+from mocapd.outputs.output_table import (
     OUTPUTS,
     OutputEntry,
     OutputSection,
@@ -41,7 +41,7 @@ def test_a_line_in_the_table_is_all_that_a_new_output_needs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     slow = OutputEntry(SlowSection, lambda _section, _name: SlowSink(), blocks=True)
-    monkeypatch.setattr(registry, "OUTPUTS", {**OUTPUTS, "slow": slow})
+    monkeypatch.setattr(output_table, "OUTPUTS", {**OUTPUTS, "slow": slow})
     assert "slow" not in [sink.name for sink in build_sinks(default_sections(), "pc")]
     flags = {"slow.enabled": "true", "slow.level": "7"}
     effective = load_config(flags, env={"MOCAPD_OSC_ENABLED": "false"}, candidates=())

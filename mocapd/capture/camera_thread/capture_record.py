@@ -3,9 +3,9 @@
 import logging
 import threading
 
-from mocapd.capture.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.rate import RateMeter
-from mocapd.capture.reopening import RestartBudget
+from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.rate import RateMeter
+from mocapd.capture.camera_thread.reopening import RestartBudget
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.errors import AmbiguousCameraError, ConfigError, MocapdError
 from mocapd.types import Frame

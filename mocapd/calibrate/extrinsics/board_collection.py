@@ -1,6 +1,6 @@
-"""Sightings of the board collected for the extrinsics: whether they are enough, and who shares none."""
+"""Sightings of the board, collected live for the extrinsics: whether they suffice, and which cameras share none."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -8,24 +8,24 @@ from mocapd.calibrate.board.board_look import BoardObservation, Look
 from mocapd.calibrate.board.board_sightings import BoardSightings, Views
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
-from mocapd.wizard.draft import DraftCamera
 
 ENOUGH = 10  # sightings in all
-_OWN = 5  # of them in this step: those of the step Lens were held near one camera
+_OWN = 5  # of them new: for the intrinsics the board was held near one camera
 _SHARED = 4  # of each camera with the others
 _MORE = 3  # sightings before another try
 
 
 class BoardCollection:
-    """What was seen of the board, with that of the step Lens to begin with."""
+    """The views of the board by camera and sighting; it begins with those that the intrinsics were measured from."""
 
-    def __init__(self, cameras: Sequence[DraftCamera], spec: BoardSpec, earlier: Views) -> None:
-        self._cameras = tuple(cameras)
-        self._sightings = BoardSightings(
-            {camera.id: camera.size_px for camera in cameras}, corners_m(spec)
-        )
+    def __init__(
+        self, sizes_px: Mapping[str, tuple[int, int]], spec: BoardSpec, earlier: Views
+    ) -> None:
+        """sizes_px: width and height of the pictures by camera."""
+        self._cameras = tuple(sizes_px)
+        self._sightings = BoardSightings(sizes_px, corners_m(spec))
         self._sightings.add(earlier)
-        self._own = 0  # sightings of this step
+        self._own = 0  # new sightings
         self._tried = 0  # of them at the last try
 
     @property
@@ -79,23 +79,19 @@ class BoardCollection:
         """By camera the motion [px per 1/30 s] under which the board is at rest."""
         return self._sightings.still_px()
 
-    def apart(self) -> list[DraftCamera]:
-        """Cameras that do not yet hang together with most others."""
+    def apart(self) -> list[str]:
+        """Cameras outside of the largest group that shared sightings link."""
         together = self._sightings.largest_group(_SHARED)
-        return [camera for camera in self._cameras if camera.id not in together]
+        return [name for name in self._cameras if name not in together]
 
-    def lonely(self) -> list[DraftCamera]:
+    def lonely(self) -> list[str]:
         """Cameras that share no sighting with any other."""
         return [
-            camera
-            for camera in self._cameras
-            if not any(
-                self._sightings.shared(camera.id, other.id)
-                for other in self._cameras
-                if other.id != camera.id
-            )
+            name
+            for name in self._cameras
+            if not any(self.shared(name, other) for other in self._cameras if other != name)
         ]
 
-    def shared(self, a: DraftCamera, b: DraftCamera) -> int:
+    def shared(self, a: str, b: str) -> int:
         """How many sightings two cameras share."""
-        return self._sightings.shared(a.id, b.id)
+        return self._sightings.shared(a, b)

@@ -11,10 +11,10 @@ from contextlib import contextmanager
 from typing import Protocol
 
 from mocapd.capture.base import CountsTorn, LookedAfter, Notices, Pluggable, Source
-from mocapd.capture.capture_record import CaptureRecord
-from mocapd.capture.capture_status import CaptureStatus
-from mocapd.capture.frame_faults import FrameFaults
-from mocapd.capture.reopening import BackOff, RestartBudget
+from mocapd.capture.camera_thread.capture_record import CaptureRecord
+from mocapd.capture.camera_thread.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.frame_faults import FrameFaults
+from mocapd.capture.camera_thread.reopening import BackOff, RestartBudget
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import (
     CameraLost,

@@ -3,8 +3,8 @@
 import logging
 from collections.abc import Collection
 
-from mocapd.capture.suspension import SuspensionWatch
-from mocapd.capture.thread import CaptureThread
+from mocapd.capture.camera_thread.suspension import SuspensionWatch
+from mocapd.capture.camera_thread.thread import CaptureThread
 
 _LOG = logging.getLogger(__name__)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.calibrate.extrinsics.offset_search import PairOffsets
+from mocapd.calibrate.time_alignment.offset_search import PairOffsets
 from mocapd.types import Floats
 
 _UNSURE = 2.1  # steps between pictures, around a jump, in which it may have been as well
