@@ -11,6 +11,7 @@ from mocapd.evaluate.truth import Truth
 from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
+STILL_S = 10.0
 TREMBLE_HZ = 2.0  # faster motion of somebody who stands still is trembling
 _SURE = 0.8  # confidence
 _TOES = ("leftToes", "rightToes")
@@ -94,8 +95,8 @@ def acceleration_error_mm(apart_m: Floats, rows: np.ndarray) -> float:
 
 
 def rest_figures(track: RecordedTrack, from_s: float) -> Figures:
-    """Of somebody who stands still from `from_s` [s] to the end of a recording at one rate."""
-    rows = np.flatnonzero(track.times_s >= from_s)
+    """Of somebody who stands still for STILL_S from `from_s` [s] of a recording at one rate."""
+    rows = np.flatnonzero((track.times_s >= from_s) & (track.times_s < from_s + STILL_S))
     if len(rows) < 10:
         return Figures()
     times_s = track.times_s[rows]

@@ -148,7 +148,7 @@ def standing_sessions(scene: Scenario) -> list[tuple[PlannedSession, float]]:
     for number, (rig, cameras) in enumerate(_rigs(scene).items()):
         for worn, clothes in (("shirt", scene.clothes), ("plain", _CLOTHES)):
             scenario = msgspec.structs.replace(
-                scene, name=f"rest_{rig}_{worn}", seed=3200 + number, loop_s=still_s + 10.4, person_appears_s=EMPTY_S,
+                scene, name=f"rest_{rig}_{worn}", seed=3200 + number, loop_s=still_s + 10.9, person_appears_s=EMPTY_S,
                 scribble_s=1.0, cameras=cameras, body=_BODY, clothes=clothes, motion=MotionSpec(keyframes=keys),
                 lights=_steady(scene),
             )  # fmt: skip
