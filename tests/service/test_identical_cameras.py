@@ -1,4 +1,4 @@
-"""Two webcams alike but for their ports: held back after both were unplugged, until each sees its own room."""
+"""Two identical webcams: held back after both were unplugged, until each sees its own room."""
 
 import threading
 from collections.abc import Callable
