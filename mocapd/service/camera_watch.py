@@ -175,9 +175,15 @@ class CameraWatch:
         self._swapped.shows_room_of(name, other)
 
     def _forget_misplaced(self) -> None:
-        """What cameras remember that contradict their calibration is the wrong room: nothing is remembered until they are
-        back."""
-        now = {name for name in self._cameras if self._swapped.misplaced_with(name) is not None}
+        """A camera that contradicts its calibration, though it was taken for itself, remembers the wrong room: it remembers
+        nothing until it is back."""
+        with self._lock:
+            now = {
+                name
+                for name in self._cameras
+                if self._swapped.misplaced_with(name) is not None
+                and self._identical.trust(name) is Trust.KNOWN
+            }
         for name in now ^ self._misplaced:
             if name in now:
                 self._memories[name] = LandmarkMemory(self._cameras[name])
@@ -206,6 +212,7 @@ class CameraWatch:
         if notice and notice != before:
             _log.warning("%s: %s", name, notice)
         elif trust is Trust.KNOWN:
+            self._swapped.examine_again(name)
             _log.info("%s: is itself, by the room that it sees", name)
 
     def _likeliest(self, pixels: Bytes, among: Iterable[str]) -> tuple[str, float]:

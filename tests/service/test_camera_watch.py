@@ -6,13 +6,14 @@ from pathlib import Path
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import Mounting
+from mocapd.calibrate.bump.landmarks import find_landmarks
 from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Sockets
 from mocapd.clock import nanoseconds
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.camera_watch import CameraWatch
 from mocapd.service.room_memory import RoomMemory
-from mocapd.types import Bytes, Frame, Rig
+from mocapd.types import Bytes, Camera, Frame, Rig
 from tests.calibrate.distant_scene import Room, camera, turn
 from tests.calibrate.test_changed_places import room
 from tests.capture.socket_control import SocketControl
@@ -100,18 +101,43 @@ def test_cameras_that_are_exchanged_while_it_runs_are_known_by_the_rooms_that_th
     assert both.show(left.picture(), right.picture(), times=5) == {Mounting.STEADY}
 
 
+def identical(cameras: tuple[Camera, ...], folder: Path) -> tuple[Watching, FrameHub]:
+    """Webcams that only their ports tell apart, and what takes their frames."""
+    names = tuple(one.name for one in cameras)
+    webcams = {name: f"usb:1-{k}:1bcf:28c4:" for k, name in enumerate(names, 1)}
+    sockets = Sockets(SocketControl(folder / "sockets.json", webcams).path)
+    sources = [SocketCamera(name, sockets, FakeCamera) for name in names]
+    both, taken = Watching(None, *names), FrameHub(names)
+    both.watch = CameraWatch(sources, Rig(cameras), taken, RoomMemory(folder))
+    return both, taken
+
+
+def test_identical_webcams_that_points_and_memory_call_swapped_keep_their_memory(
+    tmp_path: Path,
+) -> None:
+    cameras, (a, b) = room("symmetrical")
+    RoomMemory(tmp_path).write(
+        {one.name: one for one in cameras},
+        {
+            one.name: [find_landmarks(pixels, one)]
+            for one, pixels in zip(cameras, (a, b), strict=True)
+        },
+    )
+    both, taken = identical(cameras, tmp_path)
+    assert both.show(b, a, times=14) == {Mounting.SWAPPED}
+    assert {taken.newest(name) for name in both.names} == {None}
+    assert all("were swapped" in both.watch.notice(name) for name in both.names)
+    for name in both.names:
+        both.watch.went(name)
+    assert both.show(a, b, times=5) == {Mounting.STEADY}
+
+
 def test_identical_webcams_that_were_swapped_at_the_first_start_take_part_once_they_are_put_right(
     tmp_path: Path,
 ) -> None:
     cameras, (a, b) = room("close")
-    names = tuple(one.name for one in cameras)
-    webcams = {name: f"usb:1-{k}:1bcf:28c4:" for k, name in enumerate(names, 1)}
-    sockets = Sockets(SocketControl(tmp_path / "sockets.json", webcams).path)
-    sources = [SocketCamera(name, sockets, FakeCamera) for name in names]
-    taken = FrameHub(names)
-    watch = CameraWatch(sources, Rig(cameras), taken, RoomMemory(tmp_path))
-    both = Watching(None, *names)
-    both.watch = watch
+    both, taken = identical(cameras, tmp_path)
+    watch, names = both.watch, both.names
     assert both.show(b, a, times=3) == {Mounting.SWAPPED}
     for name in names:
         watch.went(name)

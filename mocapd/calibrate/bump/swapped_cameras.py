@@ -85,6 +85,13 @@ class SwappedCameras:
             self._shows[camera] = other
             self._sure = self._sure | {camera} if is_sure else self._sure - {camera}
 
+    def examine_again(self, camera: str) -> None:
+        """It was plugged in anew and is known to be in its place: earlier evidence of points and people is void."""
+        for pair in self._pairs:
+            if camera in pair.names and pair.places is Places.CHANGED:
+                pair.places, pair.is_by_people = Places.UNKNOWN, False
+                pair.looks = pair.next_ns = 0
+
     def compare_points(self, newest: Mapping[str, Frame]) -> None:
         """Evidence of the room's points, of one due pair at most; newest: pictures, each of its camera's size."""
         for pair in self._pairs:
