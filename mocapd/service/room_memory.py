@@ -1,5 +1,5 @@
-"""What webcams that are alike saw when they were last known, kept in the state directory: after a restart too it is by
-this that they are told apart. Written privately, as it is a small picture of the room.
+"""What identical webcams saw when they were last known, kept in the state directory: after a restart too they are told
+apart by this. Private to its owner, as it is a small picture of the room.
 """
 
 import hashlib
@@ -82,7 +82,7 @@ class RoomMemory:
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
             where = f", and is kept as {set_aside(self._path, why).name}"
         _log.warning(
-            "%s cannot be used (%s)%s; it is made anew: until then alike cameras are told apart by their ports alone",
+            "%s cannot be used (%s)%s; it is made anew: until then identical cameras are told apart by their ports alone",
             *(self._path, error.what, where),
         )
 
@@ -100,7 +100,7 @@ class RoomMemory:
         except OSError as error:
             if not self._failed:
                 _log.warning(
-                    "what alike cameras see cannot be kept for the next start (%s): %s -- make room or the folder "
+                    "what identical cameras see cannot be kept for the next start (%s): %s -- make room or the folder "
                     "writable",
                     *(error.strerror, self._path),
                 )

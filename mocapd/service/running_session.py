@@ -19,11 +19,9 @@ from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.size_guard import SizeGuard
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.service.mountings import Mountings
+from mocapd.service.camera_watch import CameraWatch
 from mocapd.service.room_memory import RoomMemory
 from mocapd.service.step_watch import StepWatch
-from mocapd.service.twins import Twins
-from mocapd.service.view_watch import ViewWatch
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
 
@@ -50,11 +48,10 @@ class RunningSession:
         sizes_px = {name: c.size_px for name, c in self.inputs.items() if any(c.size_px)}
         guard = SizeGuard(sizes_px, collector)
         sources = [camera.source for camera in session.cameras]
-        self._twins = Twins(sources, session.rig, guard, RoomMemory(config.state_dir))
-        self._views = ViewWatch(session.rig, session.known.wearer.stature_m)
+        rooms, stature_m = RoomMemory(config.state_dir), session.known.wearer.stature_m
+        self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m)
         # who looks at the pictures joins it
-        self.hub = FrameHub(self.inputs, self._twins, self._views, bundler=bundler)
-        self._mountings = Mountings(session.rig, self.hub)
+        self.hub = FrameHub(self.inputs, self._cameras, bundler=bundler)
         self._captures = [
             CaptureThread(
                 c.source,
@@ -62,7 +59,7 @@ class RunningSession:
                 died,
                 c.expected_hz,
                 size_px=c.size_px if any(c.size_px) else None,
-                presence=self._twins,
+                presence=self._cameras,
             )
             for c in session.cameras
         ]
@@ -78,13 +75,13 @@ class RunningSession:
             bodies,
             died,
             _absence(config, session),
-            lambda: self._views.off_m,
+            lambda: self._cameras.off_m,
         )
 
     def start(self) -> None:
         """Begin; returns at once."""
         self._loop.start()
-        self._views.start()
+        self._cameras.start()
         self._plugs.start()
         for capture in self._captures:
             capture.start()
@@ -92,7 +89,7 @@ class RunningSession:
     def stop(self) -> None:
         """First everything lets go, then everything ends, within STOP_S."""
         self._plugs.stop()
-        self._views.stop()
+        self._cameras.stop()
         self._loop.let_go()
         for capture in self._captures:
             capture.let_go()
@@ -117,7 +114,7 @@ class RunningSession:
         }
 
     def _noticed(self, status: CaptureStatus) -> CaptureStatus:
-        notice = self._twins.notice(status.camera) or self._views.notice(status.camera)
+        notice = self._cameras.notice(status.camera)
         return replace(status, notice=notice) if notice else status
 
     def metrics(self) -> Metrics:
@@ -126,10 +123,7 @@ class RunningSession:
 
     def mountings(self) -> Mapping[str, Mounting]:
         """How each camera is mounted, as last seen."""
-        return {
-            name: Mounting.SWAPPED if self._views.is_exchanged(name) else self._mountings.of(name)
-            for name in self.inputs
-        }
+        return {name: self._cameras.mounting(name) for name in self.inputs}
 
     @property
     def detail(self) -> str:
@@ -137,9 +131,8 @@ class RunningSession:
         return self._steps.detail
 
     def look(self) -> None:
-        """After the cameras' mountings, and twins among them, about once a second, by one thread."""
-        self._mountings.look()
-        self._twins.look()
+        """Whether cameras were bumped or swapped, about once a second, by one thread."""
+        self._cameras.look()
 
     def watch(self) -> None:
         """What hangs or has slept is set right; about once a second or more often, by one thread. Raises

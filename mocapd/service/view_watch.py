@@ -1,24 +1,21 @@
 """Compares now and then what live cameras show with their calibration and their times, by the checks of recordings.
 
-While it collects, half a minute or so, each frame costs its capture thread a copy of a small picture. The rest is done
-in a thread that gives way to all others. Then it rests for minutes.
+While it collects, half a minute or so, each frame costs its capture thread a copy of a small picture. A thread of low
+priority does the rest. Then it rests for minutes.
 """
 
-import logging
 import os
 import threading
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 
 import numpy as np
 
 from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
-from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import WORK_PX
 from mocapd.clock import seconds
 from mocapd.types import Bytes, Frame, Rig
-
-_log = logging.getLogger(__name__)
 
 _LONGEST_S = 120.0  # of collecting, when little moves
 _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
@@ -29,16 +26,21 @@ _SPEED_M_S = 0.5  # of joints, as people move
 
 
 class ViewWatch:
-    """Joins a frame hub. `put` is called by capture threads, `start`, `stop` by the owner, the rest by anybody."""
+    """`put` is called by capture threads, `start` and `stop` by the owner, the rest by any thread."""
 
     def __init__(
-        self, rig: Rig | None, stature_m: float | None = None, longest_s: float = _LONGEST_S
+        self,
+        rig: Rig | None,
+        newest: Callable[[str], Frame | None],
+        stature_m: float | None = None,
+        longest_s: float = _LONGEST_S,
     ) -> None:
-        """No rig: there is nothing to compare with. longest_s: of collecting, when little moves."""
+        """No rig: there is nothing to compare with. newest: the newest frame of a camera, from any thread; longest_s: of
+        collecting, when little moves."""
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
+        self._newest = newest
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
         self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
-        self._newest: dict[str, Frame] = {}
         self._is_collecting = bool(self._sizes)
         self._stopping = threading.Event()
         self._result = CheckResult()
@@ -61,25 +63,18 @@ class ViewWatch:
         step = max(1, max(self._sizes[frame.camera]) // WORK_PX)
         small = np.ascontiguousarray(frame.pixels[step // 2 :: step, step // 2 :: step])
         self._waiting.append((frame.camera, frame.t_ns, small, float(step)))
-        self._newest[frame.camera] = frame
+
+    @property
+    def result(self) -> CheckResult:
+        """Of the last comparison; another object after each."""
+        return self._result
 
     @property
     def off_m(self) -> float:
-        """By how much views contradict each other for good, as last compared [m]; what moves is off where a camera is late,
-        whose times are not corrected here."""
+        """By how much the views contradict each other for good, as last compared [m]. Where a camera is late, what moves is
+        off: its times are not corrected here."""
         late_s = max((abs(one.late_s) for one in self._result.findings), default=0.0)
         return max(self._result.off_m, _SPEED_M_S * late_s)
-
-    def notice(self, camera: str) -> str:
-        """What people must do about a camera; empty when nothing."""
-        return "; ".join(str(one) for one in self._result.findings if camera in one.cameras)
-
-    def is_exchanged(self, camera: str) -> bool:
-        """Whether it shows what another camera should."""
-        return any(
-            one.mistake is Mistake.EXCHANGED and camera in one.cameras
-            for one in self._result.findings
-        )
 
     def _run(self) -> None:
         with suppress(OSError, AttributeError):  # of this thread alone, where the system knows that
@@ -88,7 +83,6 @@ class ViewWatch:
             result = self._compared()
             if result is None:
                 return
-            self._tell(result)
             self._result = result
             self._stopping.wait(_REST_WARNED_S if result.findings else _REST_S)
             self._waiting.clear()
@@ -108,20 +102,8 @@ class ViewWatch:
                 first_s = t_s if first_s is None else first_s
             if first_s is not None and (check.has_enough or t_s - first_s > self._longest_s):
                 self._is_collecting = False
-                for camera in self._sizes:
-                    if camera in self._newest:
-                        check.put_whole(self._newest.pop(camera))
+                for frame in map(self._newest, self._sizes):
+                    if frame is not None:
+                        check.put_whole(frame)
                 return check.result()
         return None
-
-    def _tell(self, result: CheckResult) -> None:
-        before = {_key(one) for one in self._result.findings}
-        for one in result.findings:
-            if _key(one) not in before:
-                _log.warning("%s", one)
-        if self._result.findings and not result.findings and result.looked:
-            _log.info("what the cameras show agrees with their calibration again")
-
-
-def _key(finding: CaptureFinding) -> tuple[Mistake, tuple[str, ...]]:
-    return finding.mistake, finding.cameras

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.bump.bump_watch import BumpWatch, Mounting
+from mocapd.calibrate.bump.landmark_memory import LandmarkMemory
 from mocapd.capture.capture_folder import folder_source, load_folder, sources_in_step
 from mocapd.capture.pace import Pace
 from mocapd.clock import nanoseconds, seconds
@@ -27,17 +28,21 @@ CAPTURES = (  # and which camera of each
 )
 
 
+def watch_of(lens: Camera) -> BumpWatch:
+    return BumpWatch(LandmarkMemory(lens))
+
+
 class Watching:
-    """Shows a watch one picture a second."""
+    """Shows the watch of each room's camera one picture a second."""
 
     def __init__(self, *rooms: Room) -> None:
         self.rooms = rooms or (Room(camera()),)
-        self.watch = BumpWatch([room.camera for room in self.rooms])
+        self.watches = [watch_of(room.camera) for room in self.rooms]
         self.t_s = 0.0
 
     def show(self, picture: Bytes, room: int = 0) -> Mounting:
         self.t_s += 1.0
-        return self.watch.look(self.rooms[room].camera.name, nanoseconds(self.t_s), picture)
+        return self.watches[room].look(nanoseconds(self.t_s), picture)
 
     def steady(self, seconds_s: int = 5) -> None:
         for _ in range(seconds_s):
@@ -53,7 +58,7 @@ def test_a_bump_is_told_in_time_whatever_its_axis(axis: str, degrees: float) -> 
     began_s = w.t_s
     while w.show(w.rooms[0].picture(turn(axis, degrees))) is not Mounting.BUMPED:
         assert w.t_s - began_s < NOTICED_S
-    assert w.watch.turn_deg("left") == pytest.approx(degrees, abs=0.1)
+    assert w.watches[0].turn_deg == pytest.approx(degrees, abs=0.1)
 
 
 def test_somebody_walking_about_for_minutes_is_no_bump() -> None:
@@ -65,7 +70,7 @@ def test_somebody_walking_about_for_minutes_is_no_bump() -> None:
             int(np.clip(y + rng.normal(0, 5), 0, 55)),
         )
         assert w.show(w.rooms[0].picture(person_px=(x, y))) is not Mounting.BUMPED
-    assert w.watch.mounting("left") is Mounting.STEADY
+    assert w.watches[0].mounting is Mounting.STEADY
 
 
 def test_somebody_who_moves_a_little_and_stays_there_is_no_bump() -> None:
@@ -127,7 +132,6 @@ def test_nothing_is_claimed_where_there_is_nothing_to_see() -> None:
     w = Watching()
     for _ in range(20):
         assert w.show(np.full((240, 320, 3), 128, np.uint8)) is Mounting.UNKNOWN
-    assert w.watch.mounting("nobody") is Mounting.UNKNOWN
 
 
 def test_a_camera_put_back_is_steady_again_and_its_neighbour_was_all_along() -> None:
@@ -159,16 +163,16 @@ def test_recorded_cameras_are_steady_until_they_are_turned(
         frame = one.frames[lens.name]
         if not shown or frame.t_ns - shown[-1].t_ns >= nanoseconds(0.99):
             shown.append(replace(frame, pixels=frame.pixels.copy()))
-    undisturbed = BumpWatch([lens])
-    said = [undisturbed.look(lens.name, f.t_ns, f.pixels) for f in shown]
+    undisturbed = watch_of(lens)
+    said = [undisturbed.look(f.t_ns, f.pixels) for f in shown]
     assert Mounting.BUMPED not in said
     assert said[-1] is Mounting.STEADY
-    bumped, (axis, other) = BumpWatch([lens]), (("yaw", "roll"), ("pitch", "yaw"))[k]
+    bumped, (axis, other) = watch_of(lens), (("yaw", "roll"), ("pitch", "yaw"))[k]
     for f in shown[:3]:
-        bumped.look(lens.name, f.t_ns, f.pixels)
+        bumped.look(f.t_ns, f.pixels)
     for before, f in pairwise(shown[2:]):
         pixels = turned(turned(f.pixels, lens, axis, 1.0), lens, other, 0.5)
-        if bumped.look(lens.name, f.t_ns, pixels) is Mounting.BUMPED:
+        if bumped.look(f.t_ns, pixels) is Mounting.BUMPED:
             break
         assert seconds(before.t_ns - shown[2].t_ns) < NOTICED_S
-    assert bumped.mounting(lens.name) is Mounting.BUMPED
+    assert bumped.mounting is Mounting.BUMPED

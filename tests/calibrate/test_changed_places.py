@@ -1,6 +1,5 @@
 """Two cameras that have changed places are told by the room, however symmetrically they stand; the dark tells nothing."""
 
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -9,14 +8,12 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.bump.changed_places import Places, places_of
-from mocapd.calibrate.bump.places_watch import PlacesWatch
 from mocapd.calibrate.consistency.findings import Mistake
 from mocapd.calibrate.consistency.hypotheses import exchanged_finding
 from mocapd.calibrate.consistency.room_judge import with_the_room
-from mocapd.clock import nanoseconds
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World
-from mocapd.types import Bytes, Camera, Frame
+from mocapd.types import Bytes, Camera
 from tests.sim import small
 
 THINGS: list[dict[str, Any]] = [
@@ -72,30 +69,3 @@ def test_the_room_says_that_a_picture_was_cut_and_takes_back_what_it_contradicts
     [finding] = with_the_room(cameras, (a, cut), ())
     assert finding.mistake is Mistake.ZOOMED
     assert "points of the room" in finding.what
-
-
-def newest(pictures: tuple[Bytes, Bytes], at_s: float) -> dict[str, Frame]:
-    names = [camera.name for camera in room("close")[0]]
-    shown = zip(names, pictures, strict=True)
-    return {name: Frame(name, 0, nanoseconds(at_s), one) for name, one in shown}
-
-
-def test_it_is_told_once_and_again_when_they_are_put_back() -> None:
-    cameras, (a, b) = room("close")
-    watch, names = PlacesWatch(cameras), (cameras[0].name, cameras[1].name)
-    assert watch.look(newest((b, a), 1.0)) == (names, Places.CHANGED)
-    assert all(watch.is_swapped(name) for name in names)
-    assert watch.look(newest((b, a), 20.0)) is None  # known
-    assert watch.look(newest((a, b), 40.0)) == (names, Places.RIGHT)
-    assert not any(watch.is_swapped(name) for name in names)
-    assert watch.look(newest((b, a), 60.0)) is None  # what happens later is a bump
-
-
-def test_cameras_that_tell_nothing_are_not_looked_at_for_ever() -> None:
-    cameras, (a, b) = room("close")
-    watch = PlacesWatch((cameras[0], replace(cameras[1], name="right")))
-    dark = np.zeros_like(a)
-    for k in range(20):
-        assert watch.look(newest((a, dark), 11.0 * k)) is None
-    assert watch.look(newest((b, a), 1000.0)) is None
-    assert watch.look({}) is None

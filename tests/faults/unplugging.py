@@ -38,7 +38,7 @@ class Findings:
         default_factory=list
     )  # MB, threads, descriptors
     checked: int = 0  # uses of a camera in a body
-    swaps: int = 0  # of the twins, told
+    swaps: int = 0  # of identical webcams, reported
     held: int = 0  # pictures of another webcam, of which nothing was made
 
 
@@ -66,22 +66,22 @@ class Hands:
         if self._has_serial(name):  # by which it is known wherever it is
             self._wait_for_picture(name, began_s)
 
-    def swap_twins(self) -> None:
+    def swap_identical(self) -> None:
         """The two that only their ports tell apart, each into the other's: they must take no part, and say why."""
-        twins = [name for name in WEBCAMS if not self._has_serial(name)]
-        for name in twins:
+        identical = [name for name in WEBCAMS if not self._has_serial(name)]
+        for name in identical:
             self._control.plug(name)
         time.sleep(2.5)  # each has been seen where it belongs
-        for name in twins:
+        for name in identical:
             self._control.unplug(name)
         time.sleep(0.3)
-        for name, other in zip(twins, reversed(twins), strict=True):
+        for name, other in zip(identical, reversed(identical), strict=True):
             self._control.plug(name, self._control.port_of(other))
         until_s = time.monotonic() + SETTLED_S
-        while not all("were swapped" in self._daemon.told[name].detail for name in twins):
+        while not all("were swapped" in self._daemon.told[name].detail for name in identical):
             if time.monotonic() > until_s:
-                told = {name: self._daemon.told[name].detail for name in twins}
-                self.found.wrong.append(f"swapped twins are not told: {told}")
+                told = {name: self._daemon.told[name].detail for name in identical}
+                self.found.wrong.append(f"swapped webcams are not told: {told}")
                 return
             time.sleep(0.02)
         self.found.swaps += 1
@@ -116,7 +116,7 @@ class Hands:
 
     def _pull(self, name: str) -> None:
         status = self._daemon.told.get(name)
-        # a twin in another's port is another camera's, whose loss that is
+        # an identical one in another's port is another camera's, whose loss that is
         was_live = self._has_serial(name) and status is not None and status.state == "live"
         began_s = time.monotonic()
         self._control.unplug(name)
@@ -173,7 +173,7 @@ def run(extent: Extent) -> Came:
                 hands.act()
                 hands.pause()
                 if count % SETTLE_EVERY == SETTLE_EVERY // 2:
-                    hands.swap_twins()
+                    hands.swap_identical()
                 if count % SETTLE_EVERY == 0:
                     hands.settle()
                 if daemon.process.poll() is not None:
@@ -199,7 +199,7 @@ def _figures(actions: int, found: Findings) -> str:
         found.wrong.append("nothing was compared")
     parts = [
         f"{actions} times, {found.checked} uses of a picture compared, {found.held} pictures of another webcam held back, "
-        f"{found.swaps} swaps of twins told",
+        f"{found.swaps} swaps of identical webcams told",
         f"a loss told after {_span(found.told_s)} s, a picture after {_span(found.back_s)} s, all four at work after "
         f"{_span(found.settled_s)} s",
     ]

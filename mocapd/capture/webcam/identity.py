@@ -72,7 +72,7 @@ def match_identity(
     other configured camera (`others`) owns is taken for the same camera, moved, unless a twin of it
     that is configured too is away: it may be that one. Twins of which more than one could be meant
     are refused: guessing would swap two calibrations. That twins were swapped in their own sockets
-    cannot be seen here: see service.twins.
+    cannot be seen here: see service.identical_cameras.
     Raises UnavailableError when it is absent, AmbiguousCameraError when it cannot be told.
     """
     if wanted in present:

@@ -1,4 +1,4 @@
-"""Two webcams alike but for their ports: held back after both were unplugged, until each sees its own room."""
+"""Two identical webcams: held back after both were unplugged, until each sees its own room."""
 
 import threading
 from collections.abc import Callable
@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from mocapd.boundary.pictures import decode_picture
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Sockets
+from mocapd.service.camera_watch import CameraWatch
 from mocapd.service.room_memory import FILE_NAME, RoomMemory
-from mocapd.service.twins import Twins
 from mocapd.sim.film import Film, load_film
 from mocapd.types import Bytes, Frame, Rig
 from tests.capture.socket_control import SocketControl
@@ -45,7 +46,7 @@ def wait_until(condition: Callable[[], bool]) -> bool:
 
 
 class Daemon:
-    """Twins as a session has them, whose cameras are shown what a test wants."""
+    """The watch as a session has it, whose cameras show what a test wants."""
 
     def __init__(
         self,
@@ -59,7 +60,7 @@ class Daemon:
         sockets = Sockets(control.path)
         sources = [SocketCamera(name, sockets, lambda w: SimSource(film, w)) for name in webcams]
         self.film, self.through = film, Through()
-        self.twins = Twins(sources, rig, self.through, memory)
+        self.watch = CameraWatch(sources, rig, self.through, memory)
         self._t_ns = 0
 
     def send(
@@ -70,13 +71,13 @@ class Daemon:
         jpegs = self.film.frames[seen_by or camera]
         if pixels is None:
             pixels = decode_picture(jpegs[index % len(jpegs)], cv2.IMREAD_COLOR)
-        self.twins.put(Frame(camera, self._t_ns // S, self._t_ns, pixels))
-        self.twins.look()
+        self.watch.put(Frame(camera, self._t_ns // S, self._t_ns, pixels))
+        self.watch.look()
         return bool(self.through.frames) and self.through.frames[-1].t_ns == self._t_ns
 
     def both_unplugged(self) -> None:
         for name in ALIKE:
-            self.twins.went(name)
+            self.watch.went(name)
 
 
 @pytest.fixture
@@ -92,7 +93,7 @@ def test_back_where_they_were_they_are_known_by_what_they_see(daemon: Daemon) ->
     for name in ALIKE:
         assert not daemon.send(name, index=20)
         assert daemon.send(name, index=21)
-        assert daemon.twins.notice(name) == ""
+        assert daemon.watch.notice(name) == ""
 
 
 def test_swapped_they_take_no_part_until_they_are_put_back(daemon: Daemon) -> None:
@@ -100,12 +101,14 @@ def test_swapped_they_take_no_part_until_they_are_put_back(daemon: Daemon) -> No
     for name, other in (("left", "right"), ("right", "left")):
         assert not daemon.send(name, seen_by=other, index=20)
         assert not daemon.send(name, seen_by=other, index=21)
-        assert f"sees what {other} saw" in daemon.twins.notice(name)
-        assert "plug each into the port where it was" in daemon.twins.notice(name)
+        assert f"sees what {other} saw" in daemon.watch.notice(name)
+        assert "plug each into the port where it was" in daemon.watch.notice(name)
+        assert daemon.watch.mounting(name) is Mounting.SWAPPED
     daemon.both_unplugged()
     for name in ALIKE:
         daemon.send(name)
         assert daemon.send(name)
+        assert daemon.watch.mounting(name) is not Mounting.SWAPPED
 
 
 def test_what_is_known_of_neither_is_asked_about(daemon: Daemon) -> None:
@@ -114,15 +117,15 @@ def test_what_is_known_of_neither_is_asked_about(daemon: Daemon) -> None:
     anywhere = np.asarray(cv2.GaussianBlur(anywhere, (0, 0), 2.0), np.uint8)
     assert not daemon.send("left", pixels=anywhere)
     assert not daemon.send("left", pixels=anywhere)
-    assert "cannot be told from right" in daemon.twins.notice("left")
-    assert "start mocapd anew" in daemon.twins.notice("left")
+    assert "cannot be told from right" in daemon.watch.notice("left")
+    assert "start mocapd anew" in daemon.watch.notice("left")
 
 
 def test_one_that_is_unplugged_alone_is_not_doubted(daemon: Daemon) -> None:
-    daemon.twins.went("left")
+    daemon.watch.went("left")
     assert daemon.send("right")
     assert daemon.send("left", seen_by="right")  # in its own port, and the other one is in its own
-    daemon.twins.went("right")
+    daemon.watch.went("right")
     assert daemon.send("right")
 
 
@@ -135,9 +138,9 @@ def test_before_either_was_seen_whoever_starts_is_believed(film: Film, tmp_path:
 
 def test_the_last_of_two_is_itself_when_the_other_is_known(film: Film, tmp_path: Path) -> None:
     daemon = Daemon(film, tmp_path, ALIKE, film.setup.rig)
-    daemon.twins.went("right")
+    daemon.watch.went("right")
     assert daemon.send("left")
-    daemon.twins.went("left")
+    daemon.watch.went("left")
     assert not daemon.send("right")
     daemon.send("left")
     assert daemon.send("left")
@@ -183,7 +186,7 @@ def test_swapped_while_mocapd_was_off_they_take_no_part(again: Restart) -> None:
     for name, other in (("left", "right"), ("right", "left")):
         assert not daemon.send(name, seen_by=other, index=9)
         assert not daemon.send(name, seen_by=other, index=10)
-        assert f"sees what {other} saw" in daemon.twins.notice(name)
+        assert f"sees what {other} saw" in daemon.watch.notice(name)
 
 
 def test_as_they_were_they_are_known_after_a_start(again: Restart) -> None:
@@ -191,7 +194,7 @@ def test_as_they_were_they_are_known_after_a_start(again: Restart) -> None:
     for name in ALIKE:
         daemon.send(name, index=9)
         assert daemon.send(name, index=10)
-        assert daemon.twins.notice(name) == ""
+        assert daemon.watch.notice(name) == ""
 
 
 def test_what_they_see_after_a_start_and_never_saw_is_believed_and_told(
@@ -201,10 +204,10 @@ def test_what_they_see_after_a_start_and_never_saw_is_believed_and_told(
     dark = np.zeros((120, 160, 3), np.uint8)
     daemon.send("left", pixels=dark)
     assert daemon.send("left", pixels=dark)
-    assert "does not see what it saw when mocapd ran last" in daemon.twins.notice("left")
+    assert "does not see what it saw when mocapd ran last" in daemon.watch.notice("left")
     daemon.send("left")  # the light goes on
     assert daemon.send("left")
-    assert daemon.twins.notice("left") == ""
+    assert daemon.watch.notice("left") == ""
 
 
 def test_another_calibration_begins_anew(again: Restart, film: Film) -> None:

@@ -1,0 +1,117 @@
+"""Which cameras show what another one should: the one place where this is decided, from three kinds of evidence.
+
+- Points of the room that two cameras both see contradict the calibration as it is, and fit it with the cameras exchanged
+  (`changed_places.py`): from the first pictures on, without any memory.
+- A camera shows the room that another one remembers (`landmark_memory.py`): also where the two have nothing in view
+  together. Of different cameras each must show the other's; of identical ones, which are easily confused, one is enough.
+- The views of people say so (`consistency/`): where the room says nothing.
+
+Of a pair the latest evidence counts, and points of the room against what people say.
+"""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from mocapd.calibrate.bump.changed_places import Places, PlacesParams, places_of
+from mocapd.clock import nanoseconds
+from mocapd.types import Camera, Frame
+
+_AGAIN_S = 10.0  # from one look at a pair to the next: it takes a fifth of a second
+_LOOKS = 6  # at a pair whose points say nothing: it has too little in view together
+
+
+@dataclass(slots=True, eq=False)
+class _Pair:
+    """What is known of two cameras; looks: at their common points; next_ns: when they are due again."""
+
+    cameras: tuple[Camera, Camera]
+    places: Places = Places.UNKNOWN
+    is_by_people: bool = False  # that they have changed places
+    looks: int = 0
+    next_ns: int = 0
+    names: tuple[str, str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.names = self.cameras[0].name, self.cameras[1].name
+
+    def is_due(self, t_ns: int) -> bool:
+        if t_ns < self.next_ns or self.places is Places.RIGHT:
+            return False
+        return self.places is Places.CHANGED or self.looks < _LOOKS
+
+
+class SwappedCameras:
+    """Collects the evidence, and says which cameras are swapped. One thread gives evidence; any may ask."""
+
+    def __init__(self, cameras: Sequence[Camera], params: PlacesParams | None = None) -> None:
+        self._params = params
+        self._pairs = [_Pair(pair) for pair in combinations(cameras, 2)]
+        self._shows: dict[str, str] = {}  # by camera, the other one whose room it shows
+        self._sure: frozenset[str] = frozenset()  # of these one side is enough
+        self._mixed: frozenset[str] = (
+            frozenset()
+        )  # more than two that are exchanged among each other
+
+    def misplaced_with(self, camera: str) -> str | None:
+        """The camera whose calibration fits what this one shows, by points or people: what it remembers is of the wrong
+        place."""
+        for pair in self._pairs:
+            if pair.places is Places.CHANGED and camera in pair.names:
+                return pair.names[pair.names[0] == camera]
+        return None
+
+    def partner(self, camera: str) -> str | None:
+        """The camera whose view this one shows; None when it shows its own, as far as is known."""
+        misplaced_with = self.misplaced_with(camera)
+        if misplaced_with is not None:
+            return misplaced_with
+        other = self._shows.get(camera)
+        if other is not None and (camera in self._sure or self._shows.get(other) == camera):
+            return other
+        return None
+
+    def is_swapped(self, camera: str) -> bool:
+        """Whether it shows what another camera should, known or not which."""
+        return camera in self._mixed or self.partner(camera) is not None
+
+    def shows_room_of(self, camera: str, other: str | None, is_sure: bool = False) -> None:
+        """Evidence of memory: a camera shows the room that another one remembers; None: it does not. is_sure: whatever the
+        other one shows."""
+        if other is None:
+            self._shows.pop(camera, None)
+            self._sure -= {camera}
+        else:
+            self._shows[camera] = other
+            self._sure = self._sure | {camera} if is_sure else self._sure - {camera}
+
+    def examine_again(self, camera: str) -> None:
+        """It was plugged in anew and is known to be in its place: earlier evidence of points and people is void."""
+        for pair in self._pairs:
+            if camera in pair.names and pair.places is Places.CHANGED:
+                pair.places, pair.is_by_people = Places.UNKNOWN, False
+                pair.looks = pair.next_ns = 0
+
+    def compare_points(self, newest: Mapping[str, Frame]) -> None:
+        """Evidence of the room's points, of one due pair at most; newest: pictures, each of its camera's size."""
+        for pair in self._pairs:
+            first, second = (newest.get(name) for name in pair.names)
+            if first is None or second is None or not pair.is_due(first.t_ns):
+                continue
+            pair.looks += 1
+            pair.next_ns = first.t_ns + nanoseconds(_AGAIN_S)
+            places = places_of(pair.cameras, (first.pixels, second.pixels), self._params)
+            if places is not Places.UNKNOWN:
+                pair.places, pair.is_by_people = places, False
+            return
+
+    def take_views(self, exchanged: Iterable[Collection[str]]) -> None:
+        """Evidence of people: all groups of cameras that a comparison of views found exchanged."""
+        groups = [set(names) for names in exchanged]
+        for pair in self._pairs:
+            if set(pair.names) in groups:
+                pair.is_by_people |= pair.places is not Places.CHANGED
+                pair.places = Places.CHANGED
+            elif pair.is_by_people:
+                pair.places, pair.is_by_people = Places.UNKNOWN, False
+        self._mixed = frozenset(name for one in groups if len(one) > 2 for name in one)
