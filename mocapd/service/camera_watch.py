@@ -89,7 +89,7 @@ class CameraWatch:
             self._onwards.put(frame)
 
     def went(self, camera: str) -> None:
-        """See capture.thread.Presence."""
+        """See `capture.camera_thread.thread.Presence`."""
         with self._lock:
             self._newest.pop(camera, None)
             self._identical.went(camera)
