@@ -1,6 +1,6 @@
 """Score captures and simulated sessions, also against the methods that a tracker is measured by; write evaluation.md.
 
-python -m lab.evaluation CAPTURE... --tracker colour --compare --out docs
+python -m lab.evaluation CAPTURE... --tracker shirt --compare --out docs
 """
 
 import json

@@ -30,7 +30,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.tracking.body_tracker import BodyTracker
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
 from mocapd.types import Camera, Floats, Rig
 
 
@@ -102,7 +103,8 @@ def find_extrinsics(
 def rms_cm(known: _CaptureKnowledge, rig: Rig, database: PoseDatabase) -> tuple[float, float]:
     """Of the upper body's joints, tracked with this rig: as it is, and once the whole track is moved
     rigidly onto the truth, because a room without a board has a world of its own."""
-    tracker = ColourTracker(rig, known.stature_m, known.colours, known.W, database)
+    shirt = ShirtCue(rig, known.stature_m, known.colours, known.W, database)
+    tracker = BodyTracker("shirt", rig, known.stature_m, shirt, clothes=None)
     track = track_all(
         tracker, mean_shape(known.stature_m), frame_sets(known.folder), lambda _: None
     )

@@ -1,6 +1,6 @@
 """Simulate scenes that are known to be hard, score them, and write failures.md.
 
-python -m lab.failures --tracker flex --joints full --out docs
+python -m lab.failures --tracker markerless --joints full --out docs
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Simulate a recording in which a jacket, the dark and an unplugged camera interrupt, and write supervisor.md.
+"""Simulate a recording in which a jacket, the dark and an unplugged camera interrupt, and write cues.md.
 
 python -m lab.interruptions --tracker auto --out docs
 """
@@ -17,7 +17,7 @@ from lab.command_line import (
 )
 from lab.pages import interruptions_page as page
 from lab.simulated import recorded_set
-from lab.studies import speakers
+from lab.studies import cue_changes
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.calibration.from_origin import from_capture
 from mocapd.cli.options import ConfigOption, SetOption
@@ -32,7 +32,7 @@ def interruptions(
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Which tracker speaks when something interrupts, and how far joints jump when another one takes over."""
+    """Which cues carry the body when something interrupts, and how far joints step when they change."""
     effective = prepared_config(config, settings, tracker)
     own = effective.tracker
     session = recorded_set.interrupted()
@@ -41,8 +41,8 @@ def interruptions(
         known = from_capture(case.folder).assuming(own.stature_m)
         resources = cached(effective.cache_dir, progress, own.tracking)
         ready = ready_tracker(own.name, known, resources)
-        found = speakers.interruptions(case, ready, progress)
-    tables = page.figures_table(found), page.switches_table(found), page.errors_table(found)
+        found = cue_changes.interruptions(case, ready, progress)
+    tables = page.figures_table(found), page.changes_table(found), page.errors_table(found)
     sys.stdout.write((json.dumps(page.as_json(found)) if as_json else "\n\n".join(tables)) + "\n")
     if out is not None:
         command = repeat("lab.interruptions", "--tracker", own.name, "--out", out)

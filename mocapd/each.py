@@ -1,4 +1,4 @@
-"""What is done with each of several things, or aside, one after the other unless who makes the tracker brings threads.
+"""What is done with each of several things, one after the other unless who makes the tracker brings threads.
 
 The numeric core starts none of its own. Whatever is done with one thing touches nothing of another's: the result is the same,
 bit by bit, in whatever order.
@@ -19,25 +19,6 @@ class Each(Protocol):
         ...
 
 
-class Aside(Protocol):
-    """Begins work that touches nothing of what goes on meanwhile. What is returned waits for its end, and raises what it
-    raised."""
-
-    def __call__(self, work: Callable[[], None]) -> Callable[[], None]:
-        """See Aside."""
-        ...
-
-
 def in_turn(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
     """See Each."""
     return [work(one) for one in of]
-
-
-def at_once(work: Callable[[], None]) -> Callable[[], None]:
-    """See Aside."""
-    work()
-    return _done
-
-
-def _done() -> None:
-    """There is nothing to wait for."""

@@ -35,19 +35,19 @@ def _compile(tracker: str) -> None:
     ready_tracker(tracker, _room(), cached(CACHE, _quiet), _quiet)
 
 
-def film_and_flex() -> None:
+def film_and_markerless() -> None:
     """The renderer's kernels, the film, and the kernels of the tracker without a shirt."""
-    _compile("flex")
+    _compile("markerless")
 
 
-def database_and_colour() -> None:
+def database_and_shirt() -> None:
     """The pose database, and the kernels of the tracker with the shirt; it waits for the film."""
-    make_caches("colour", CACHE, _quiet)
-    _compile("colour")
+    make_caches("shirt", CACHE, _quiet)
+    _compile("shirt")
 
 
 PARTS: Mapping[str, Callable[[], None]] = {
-    one.__name__: one for one in (film_and_flex, database_and_colour)
+    one.__name__: one for one in (film_and_markerless, database_and_shirt)
 }
 
 

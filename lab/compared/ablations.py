@@ -1,4 +1,4 @@
-"""The trackers without a shirt, each with one step that decides nothing: edits of their `Params`."""
+"""Ablations of the cue `clothes` and of `hecht2009`: edits of their params under which one step never triggers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -6,8 +6,7 @@ from types import MappingProxyType
 
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.published.hecht2009.params import Params as Hecht2009Params
-from mocapd.trackers.flex.params import Params
-from mocapd.trackers.steadying import Following
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 
 _SOFT_M, _SOFT_RAD = 1e3, 1e3  # standard deviations that hold nothing
 _CERTAIN = 1e-6  # share of a limb's pixels, which any limb that is drawn has
@@ -15,60 +14,54 @@ _FOREVER = 1 << 30
 _MORE_THAN_SAME = 1.01  # share of two regions' colours that is the same, correlation of two patches
 
 
-def _no_joints(params: Params) -> Params:
+def _no_joints(params: ClothesParams) -> ClothesParams:
     term = replace(params.joints.term, weight=0.0)
     return replace(params, joints=replace(params.joints, term=term))
 
 
-def _no_texture(params: Params) -> Params:
+def _no_texture(params: ClothesParams) -> ClothesParams:
     return replace(params, distances=replace(params.distances, least_alike=_MORE_THAN_SAME))
 
 
-def _no_depths(params: Params) -> Params:
+def _no_depths(params: ClothesParams) -> ClothesParams:
     return replace(params, depths=replace(params.depths, least_alike=_MORE_THAN_SAME))
 
 
-def _no_floor(params: Params) -> Params:
+def _no_floor(params: ClothesParams) -> ClothesParams:
     return replace(params, floor=FloorParams(under_sd_m=_SOFT_M, standing_sd_m=_SOFT_M))
 
 
-def _no_arm_search(params: Params) -> Params:
+def _no_arm_search(params: ClothesParams) -> ClothesParams:
     return replace(params, limbs=replace(params.limbs, uncertain_arm=_CERTAIN))
 
 
-def _no_leg_search(params: Params) -> Params:
+def _no_leg_search(params: ClothesParams) -> ClothesParams:
     never = replace(params.legs, uncertain=_CERTAIN)
     return replace(params, legs=never, crossed_looks=_FOREVER)
 
 
-def _no_faces(params: Params) -> Params:
+def _no_faces(params: ClothesParams) -> ClothesParams:
     return replace(params, facing=replace(params.facing, sure=float("inf")))
 
 
-def _no_turns(params: Params) -> Params:
+def _no_turns(params: ClothesParams) -> ClothesParams:
     return replace(params, turning=replace(params.turning, sure=float("inf")))
 
 
-def _no_shadows(params: Params) -> Params:
+def _no_shadows(params: ClothesParams) -> ClothesParams:
     return replace(params, background=replace(params.background, likely_shadow=(1.0, 0.0)))
 
 
-def _no_look_alikes(params: Params) -> Params:
+def _no_look_alikes(params: ClothesParams) -> ClothesParams:
     return replace(params, alike=_MORE_THAN_SAME)
 
 
-def _no_limits(params: Params) -> Params:
+def _no_limits(params: ClothesParams) -> ClothesParams:
     soft = replace(params.fit, limit_sd_rad=_SOFT_RAD, collision_sd_m=_SOFT_M)
     return replace(params, fit=soft)
 
 
-def _not_steady(params: Params) -> Params:
-    at_once = Following(sure=1.0, doubtful=0.0, least=1.0, doubtful_rad_s=_SOFT_RAD)
-    steadying = replace(params.steadying, sure_rad_s=_SOFT_RAD).with_all(at_once)
-    return replace(params, steadying=steadying)
-
-
-FLEX_ABLATIONS: Mapping[str, Callable[[Params], Params]] = MappingProxyType(
+CLOTHES_ABLATIONS: Mapping[str, Callable[[ClothesParams], ClothesParams]] = MappingProxyType(
     {
         "no joints": _no_joints,
         "no texture": _no_texture,
@@ -81,7 +74,6 @@ FLEX_ABLATIONS: Mapping[str, Callable[[Params], Params]] = MappingProxyType(
         "no turns": _no_turns,
         "no look-alikes": _no_look_alikes,
         "no limits": _no_limits,
-        "not steady": _not_steady,
     }
 )
 

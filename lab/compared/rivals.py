@@ -5,16 +5,17 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from lab.compared.ablations import FLEX_ABLATIONS, HECHT2009_ABLATIONS
+from lab.compared.ablations import CLOTHES_ABLATIONS, HECHT2009_ABLATIONS
 from lab.compared.compare import BASELINE
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params as Hecht2009Params
 from mocapd.published.wang2011.params import published
 from mocapd.session.side_by_side import each_camera
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.trackers.flex.params import Params
-from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
+from mocapd.tracking.build import ProfileParams
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.known import known_shape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,13 +35,16 @@ def ready_rival(rival: Rival, resources: Resources, calibration: Calibration) ->
 # By tracker and label.
 RIVALS: Mapping[str, Mapping[str, Rival]] = MappingProxyType(
     {
-        "colour": {
+        "shirt": {
             "paper": Rival("wang2011", published()),
             BASELINE: Rival("wang2011", published(baseline=True)),
         },
-        "flex": {
+        "markerless": {
             "paper": Rival("hecht2009", Hecht2009Params()),
-            **{label: Rival("flex", edit(Params())) for label, edit in FLEX_ABLATIONS.items()},
+            **{
+                label: Rival("markerless", ProfileParams(clothes=edit(ClothesParams())))
+                for label, edit in CLOTHES_ABLATIONS.items()
+            },
         },
         "hecht2009": {
             label: Rival("hecht2009", edit(Hecht2009Params()))

@@ -37,7 +37,7 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
 from mocapd.shirt.colour.whitening import fold
-from mocapd.trackers.colour.params import Params
+from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet
 
 _PRIOR_WEIGHT = 6.0  # C = 6 / s, s being the side of the shirt's square
@@ -81,7 +81,7 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
     """
     folder = result.case.folder
     shirt = from_capture(folder).shirt or ShirtColours()
-    params, colours = Params(), colour_model(shirt.model)
+    params, colours = ShirtParams(), colour_model(shirt.model)
     factors = image_scales(folder.rig.cameras, params.fit.work_width_px)
     segmenters: dict[str, _CaptureSegmenter] = {}
     for i, (camera, recorded) in enumerate(zip(folder.rig.cameras, folder.cameras, strict=True)):

@@ -16,7 +16,7 @@ from mocapd.capture.capture_folder import frame_sets
 from mocapd.evaluate.capture_eval import BuildTracker
 from mocapd.evaluate.recovery import recovery
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.trackers.base import Probe, Track, Tracker, unprobed
+from mocapd.tracking.base import Probe, Track, Tracker, unprobed
 from mocapd.types import BodyState, FrameSet
 
 STEP_M = 1e-4  # between the statures of two runs

@@ -20,7 +20,7 @@ from mocapd.types import Floats
 PAGE = "failures.md"
 PLOT = "images/failures.png"
 WANTED_S = 2.0  # in which somebody who is in the open again is known rightly
-REMEDIED = "flex"  # the tracker whose remedies are told
+REMEDIED = "markerless"  # the tracker whose remedies are listed
 
 _PAGE = """\
 # What the published tracker got wrong

@@ -1,4 +1,4 @@
-"""The page of the docs about the supervisor: what interrupts, who spoke then, and how far joints went."""
+"""The page of the docs about the cues: what interrupts, which of them carried the body then, and how far joints went."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from lab.pages.plots import Spans, speakers_plot
-from lab.studies.speakers import Interruptions
+from lab.pages.plots import Spans, cues_plot
+from lab.studies.cue_changes import APPROACH_S, Interruptions
 from mocapd.evaluate.plots import save
 from mocapd.evaluate.tables import number, table
 from mocapd.evaluate.write_out import write_out
 from mocapd.sim.scenario import Scenario
 
-PAGE = "supervisor.md"
-PLOT = "images/supervisor.png"
-LIMIT_CM = 10.0  # a joint may go beyond its motion in a frame in which another speaks
-_WANTED_PERCENT, _WANTED_FRAMES = 98.0, 10
+PAGE = "cues.md"
+PLOT = "images/cues.png"
+LIMIT_CM = 10.0  # a joint may go beyond its motion in a frame at a change of cues
+_WANTED_PERCENT = 98.0
 
 _PAGE = """\
 # When something interrupts
@@ -29,20 +29,20 @@ Written by this command, which makes everything below anew; do not edit by hand:
 ```
 
 A simulated recording of 24 s, two cameras: somebody in the shirt puts a jacket on over it and takes it off, the lamps go out,
-one camera is unplugged and comes back, the person leaves the room and returns. In each frame the tracker `auto` chooses who
-speaks: `colour` (the shirt), `flex` (any clothes), or both joined to one body, `colour+flex`. How it chooses is in
-[its README](../mocapd/trackers/supervisor/README.md).
+one camera is unplugged and comes back, the person leaves the room and returns. Each frame says which cues carried the body:
+`shirt` (trunk and arms alone), `clothes` (all of it), or `shirt+clothes` (trunk and arms by the shirt, legs and head by the
+clothes). How far a cue is believed is in [the tracker's README](../mocapd/tracking/README.md).
 
 {figures}
 
-![Who speaks over time, and the farthest step of a joint]({plot})
+![The cues over time, and the farthest step of a joint]({plot})
 
-{switches}
+{changes}
 
 *In view*: hips and neck are in the picture of a camera that delivers; the first frames after somebody came, in which a person
-is not believed yet, count. *Switch*: from the last frame that one told to the first that is what the next one knows; in
-between the body glides. *Step*: how far a joint goes from frame to frame beyond its true motion, which is the tracker's own
-error, too. *Ghosts*: frames with a body, when nobody has been in the room for longer than a body coasts.
+is not believed yet, count. *Step*: how far a joint goes from frame to frame beyond its true motion, and so the tracker's own
+error counts, too; at a change: in the {approach_s:g} s in which the published pose approaches what those cues found.
+*Ghosts*: frames with a body, when nobody has been in the room for longer than a body coasts.
 
 {errors}
 """
@@ -62,40 +62,37 @@ def spans_of(scenario: Scenario) -> dict[str, Spans]:
 
 def figures_table(of: Interruptions) -> str:
     """What is wanted and what was measured."""
-    frames = [one.frames for one in of.switches]
-    steps = [one.step_cm for one in of.switches]
+    steps = [one.step_cm for one in of.changes]
     rows = [
-        ["a body is told, of the frames with somebody in view", f">= {_WANTED_PERCENT:g} %", f"{100 * of.published:.1f} %"],
-        ["frames that a switch takes, at most", f"<= {_WANTED_FRAMES}", number(max(frames, default=np.nan), 0)],
-        ["step of a joint at a switch, at most", f"<= {LIMIT_CM:g} cm", f"{number(max(steps, default=np.nan), 1)} cm"],
-        ["step of a joint at any time, at most", "", f"{number(_largest(of), 1)} cm"],
+        ["frames with a body, while somebody is in view", f">= {_WANTED_PERCENT:g} %", f"{100 * of.published:.1f} %"],
+        ["step of a joint at a change of cues", f"<= {LIMIT_CM:g} cm", f"{number(max(steps, default=np.nan), 1)} cm"],
+        ["step of a joint at any time", "", f"{number(_largest(of), 1)} cm"],
         ["ghosts", "0", str(of.ghosts)],
     ]  # fmt: skip
     return table(["", "wanted", "measured"], rows)
 
 
-def switches_table(of: Interruptions) -> str:
-    """One row for each switch."""
+def changes_table(of: Interruptions) -> str:
+    """One row for each change of cues."""
     rows = [
         [
             f"{one.before} to {one.after}",
             number(one.at_s, 2),
-            str(one.frames),
             number(one.step_cm, 1),
         ]
-        for one in of.switches
+        for one in of.changes
     ]
-    return table(["switch", "at [s]", "frames", "step [cm]"], rows)
+    return table(["change", "at [s]", "step [cm]"], rows)
 
 
 def errors_table(of: Interruptions) -> str:
-    """How far off the joints of the whole body were, by who spoke."""
-    shares = {who: float((of.told.tracker == who).mean()) for who in of.error_cm}
+    """How far off the joints of the whole body were, by the cues that carried it."""
+    shares = {cues: float((of.bodies.carrier == cues).mean()) for cues in of.error_cm}
     rows = [
-        [who, number(100.0 * shares[who], 0), number(error, 1)]
-        for who, error in of.error_cm.items()
+        [cues, number(100.0 * shares[cues], 0), number(error, 1)]
+        for cues, error in of.error_cm.items()
     ]
-    return table(["who spoke", "frames [%]", "RMS, full body [cm]"], rows)
+    return table(["cues", "frames [%]", "RMS, full body [cm]"], rows)
 
 
 def as_json(of: Interruptions) -> dict[str, Any]:
@@ -104,8 +101,8 @@ def as_json(of: Interruptions) -> dict[str, Any]:
         "published_percent": 100.0 * of.published,
         "largest_step_cm": _plain(_largest(of)),
         "ghosts": of.ghosts,
-        "rms_cm": {who: _plain(error) for who, error in of.error_cm.items()},
-        "switches": [asdict(one) | {"step_cm": _plain(one.step_cm)} for one in of.switches],
+        "rms_cm": {cues: _plain(error) for cues, error in of.error_cm.items()},
+        "changes": [asdict(one) | {"step_cm": _plain(one.step_cm)} for one in of.changes],
     }
 
 
@@ -118,10 +115,11 @@ def write_page(
     """Write the page and its plot; the paths. Raises CannotCreateError."""
     path = directory / PAGE
     text = _PAGE.format(
-        command=command, plot=PLOT, figures=figures_table(of), switches=switches_table(of), errors=errors_table(of)
+        command=command, plot=PLOT, figures=figures_table(of), changes=changes_table(of), errors=errors_table(of),
+        approach_s=APPROACH_S,
     )  # fmt: skip
     write_out(path, text)
-    save(speakers_plot(of, LIMIT_CM, spans), directory / PLOT)
+    save(cues_plot(of, LIMIT_CM, spans), directory / PLOT)
     return [path, directory / PLOT]
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.compared.compare import BASELINE, FULL, ShoulderAngles
 from lab.compared.roc import Roc
-from lab.studies.speakers import Interruptions
+from lab.studies.cue_changes import Interruptions
 from mocapd.types import Floats
 
 Spans = Sequence[tuple[float, float]]  # from, to [s]
@@ -36,24 +36,24 @@ def shoulder_plot(captures: Sequence[ShoulderAngles]) -> Figure:
     return figure
 
 
-def speakers_plot(of: Interruptions, limit_cm: float, spans: Mapping[str, Spans]) -> Figure:
-    """Who spoke over time, and below it the farthest that a joint went in a frame; spans: by what happened, when [s]."""
+def cues_plot(of: Interruptions, limit_cm: float, spans: Mapping[str, Spans]) -> Figure:
+    """The cues over time, and below them the farthest that a joint went in a frame; spans: by what happened, when [s]."""
     figure = Figure(figsize=(10.0, 4.6), layout="constrained")
-    who, steps = figure.subplots(2, 1, sharex=True, height_ratios=(1.0, 1.3))
-    times_s, told = of.told.times_s, of.told.tracker
-    rows = [*dict.fromkeys(str(name) for name in told if name), "nobody"]
-    at = np.array([rows.index(str(name) or "nobody") for name in told])
-    who.plot(times_s, np.where(of.in_view, at, np.nan), ".", color="tab:blue", markersize=5)
-    who.plot(times_s, np.where(of.in_view, np.nan, at), ".", color="0.75", markersize=5)
-    who.set_yticks(range(len(rows)), rows)
-    who.set_ylim(len(rows) - 0.5, -0.5)
-    who.set_title("who speaks (grey: nobody is in view)", fontsize=10)
+    cues, steps = figure.subplots(2, 1, sharex=True, height_ratios=(1.0, 1.3))
+    times_s, carrier = of.bodies.times_s, of.bodies.carrier
+    rows = [*dict.fromkeys(str(name) for name in carrier if name), "nobody"]
+    at = np.array([rows.index(str(name) or "nobody") for name in carrier])
+    cues.plot(times_s, np.where(of.in_view, at, np.nan), ".", color="tab:blue", markersize=5)
+    cues.plot(times_s, np.where(of.in_view, np.nan, at), ".", color="0.75", markersize=5)
+    cues.set_yticks(range(len(rows)), rows)
+    cues.set_ylim(len(rows) - 0.5, -0.5)
+    cues.set_title("which cues carry the body (grey: nobody is in view)", fontsize=10)
     steps.plot(times_s, of.step_cm, color="tab:red", linewidth=0.9)
     steps.axhline(limit_cm, color="0.4", linewidth=0.9, linestyle="--")
     steps.set_title("farthest step of a joint beyond its true motion", fontsize=10)
     steps.set_ylabel("[cm]")
     steps.set_xlabel("time [s]")
-    for panel in (who, steps):
+    for panel in (cues, steps):
         panel.grid(axis="x", alpha=0.3)
         for colour, (what, when) in zip(_SPANS, spans.items(), strict=False):
             for number, (from_s, to_s) in enumerate(when):

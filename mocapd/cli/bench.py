@@ -59,7 +59,7 @@ def bench_command(
 ) -> None:
     """Time trackers on decoded frames, stage by stage; or the whole daemon; or recording.
 
-    Example: mocapd bench --tracker colour --json
+    Example: mocapd bench --tracker shirt --json
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.capture.kinds.source_kinds import is_simulated

@@ -64,7 +64,7 @@ def track(
 
     Writes joints and rotations. Twice the same input gives the same file.
 
-    Example: mocapd track captures/office --out office.npz --tracker colour
+    Example: mocapd track captures/office --out office.npz --tracker shirt
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs

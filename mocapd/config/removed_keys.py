@@ -23,7 +23,7 @@ REMOVED: Mapping[str, str] = {
     "tracker.variant": 'the published method is a tracker now: tracker.name = "wang2011"',
     "tracker.colour_model": "it is shirt.colour_model now: write colour_model = ... under [shirt]",
     "tracker.confirm_s": "no other value did better: leave it out",
-    "tracker.auto.trackers": 'name one tracker: tracker.name = "colour" for the shirt, "flex" for any clothes',
+    "tracker.auto.trackers": 'name one tracker: tracker.name = "shirt" or "markerless"',
     **_each("tracker.canned", "loop_s waves sway_m", _STUDY),
     **_each("tracker.colour", "learn_shape live_match accept_match", _STUDY),
     **_each("tracker.colour_paper", "baseline tolerant", _STUDY),

@@ -17,7 +17,7 @@ from mocapd.outputs.output_table import OutputSection, default_sections, output_
 from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.pipeline.smoothing import PRESETS
 from mocapd.trackers.registry import entry
-from mocapd.trackers.tracking_state import COAST_S, TrackingStateParams
+from mocapd.tracking.tracking_state import COAST_S, TrackingStateParams
 
 
 def default_cache_dir() -> Path:
@@ -81,7 +81,8 @@ class BundlerSection:
 class TrackerSection:
     """Which tracker, and what it needs to know of the wearer.
 
-    name: auto, the best of what can run; or one: colour, flex, canned (moves by itself), wang2011, hecht2009 (as published)
+    name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009
+      (as published)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
     stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]

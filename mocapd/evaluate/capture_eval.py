@@ -18,7 +18,7 @@ from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.session.capture_checks import CheckedCapture, check_capture
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.trackers.base import Probe, Track, Tracker, unprobed
+from mocapd.tracking.base import Probe, Track, Tracker, unprobed
 from mocapd.types import BodyState, Bytes, FrameSet
 
 BuildTracker = Callable[[Calibration], ReadyTracker]

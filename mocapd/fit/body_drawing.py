@@ -32,6 +32,11 @@ def image_scales(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
     ]
 
 
+def work_size(camera: Camera, image_scale: int) -> tuple[int, int]:
+    """Width and height of a camera's work picture, both even."""
+    return camera.size_px[0] // image_scale & ~1, camera.size_px[1] // image_scale & ~1
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class PartialRender:
     """Part of the body drawn in one camera, with the posed joints; triangle_at (h,w): which of the part's, or -1."""
@@ -80,10 +85,7 @@ class IdMapRenderer:
 
     def region(self, state: MotionState, dt_s: float, margin: int) -> Roi | None:
         """The work-picture region around the body as this camera sees it; None when it is not in view."""
-        w, h = (
-            self.camera.size_px[0] // self.image_scale,
-            self.camera.size_px[1] // self.image_scale,
-        )
+        w, h = work_size(self.camera, self.image_scale)
         body = self._shaper(state.factors)
         self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
         n_seen, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)

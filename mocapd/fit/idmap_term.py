@@ -64,7 +64,7 @@ def sum_rows(
         *pictures, search.offsets, len(search.offsets), search.grid_px, search.radius_px,
         search.robust_px, search.phase, search.every, search.edge_weight, xy,
         triangles, sleeves, sleeve_start, patch, centres, d_centres, bones, weights,
-        rest, d_rest, parents, joint_of_group, group_of_joint, share_of_joint,
+        rest, d_rest, parents, group_of_joint, share_of_joint,
         R, joints, d_joints, n_shape, *camera, weight, *sums,
     )  # fmt: skip
     return cost

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import surface_row_of_arrays
+from mocapd.fit.nearest_pixel_kernels import CELL, colours_in_reach, nearest, nearest_hidden
 from mocapd.fit.row_products_kernels import add_products
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
@@ -57,101 +57,7 @@ class AlignmentSums(NamedTuple):
     unexplained: Array
 
 
-def offsets_by_distance(radius_px: int) -> NDArray[np.int32]:
-    """Offsets (N,2) x, y within a radius, nearest first, without the centre."""
-    r = np.arange(-radius_px, radius_px + 1)
-    x, y = np.meshgrid(r, r)
-    offsets = np.stack([x.ravel(), y.ravel()], axis=1)
-    squared = (offsets**2).sum(axis=1)
-    keep = (squared > 0) & (squared <= radius_px**2)
-    order = np.lexsort((offsets[:, 0], offsets[:, 1], squared))
-    inside: NDArray[np.int32] = offsets[order][keep[order]].astype(np.int32)
-    return inside
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _nearest(
-    ids: NDArray[np.uint8],
-    x: int,
-    y: int,
-    k: int,
-    offsets: NDArray[np.int32],
-    n_offsets: int,
-) -> int:
-    """Index of the nearest offset at which ids == k, or -1."""
-    h, w = ids.shape
-    for i in range(n_offsets):
-        u = x + offsets[i, 0]
-        v = y + offsets[i, 1]
-        if 0 <= u < w and 0 <= v < h and ids[v, u] == k:
-            return i
-    return -1
-
-
-@njit(cache=True, nogil=True)
-def _nearest_hidden(
-    x: int,
-    y: int,
-    reach: float,
-    xy: Array,
-    triangles: NDArray[np.int32],
-    sleeves: Ints,
-    sleeve_start: Ints,
-    k: int,
-) -> int:
-    """Place in `sleeves` of the triangle of colour k whose middle is nearest, seen or not; or -1."""
-    best, found = reach * reach, -1
-    for s in range(sleeve_start[k], sleeve_start[k + 1]):
-        t = sleeves[s]
-        middle_x, middle_y = triangle_middle(xy, triangles, t)
-        r2 = (x - middle_x) ** 2 + (y - middle_y) ** 2
-        if r2 < best:
-            best, found = r2, s
-    return found
-
-
 _BLOCK = 128  # rows that are multiplied at a time
-_CELL = 8  # px of the grid that tells which colours are within reach
-
-
-@njit(cache=True, nogil=True)
-def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
-    """Bit k of a cell of _CELL px is set where colour k may be within `radius` [px] of the cell: spares
-    the search where it must fail. Bit 0 tells nothing."""
-    h, w = ids.shape
-    gh, gw = h // _CELL + 1, w // _CELL + 1
-    own = np.zeros((gh, gw), np.int32)
-    flat = ids.ravel()
-    side = np.uint64(_CELL)
-    for y in range(h):
-        cells = own[y // _CELL]
-        row = np.uint64(y * w)
-        for gx in range(np.uint64(w // _CELL)):
-            # most hold nothing; of unsigned places, which need no check, all eight are loaded at once
-            first = row + gx * side
-            some = np.uint8(0)
-            for i in range(side):
-                some |= flat[first + i]
-            if some == 0:
-                continue
-            bits = np.int32(0)
-            for i in range(side):
-                bits |= np.int32(1) << flat[first + i]
-            cells[gx] |= bits
-        for x in range(w // _CELL * _CELL, w):
-            cells[gw - 1] |= np.int32(1) << ids[y, x]
-    reach = int(np.ceil(radius / _CELL))
-    rows = np.zeros((gh, gw), np.int32)
-    for gy in range(gh):
-        for gx in range(gw):
-            for o in range(max(0, gx - reach), min(gw, gx + reach + 1)):
-                rows[gy, gx] |= own[gy, o]
-    out = np.zeros((gh, gw), np.int32)
-    for gy in range(gh):
-        for o in range(max(0, gy - reach), min(gh, gy + reach + 1)):
-            for gx in range(gw):
-                out[gy, gx] |= rows[o, gx]
-    return out
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -180,7 +86,6 @@ def accumulate(
     rest: Array,
     d_rest: Array,
     parents: Ints,
-    joint_of_group: Ints,
     group_of_joint: Ints,
     share_of_joint: Array,
     R: Array,
@@ -212,11 +117,18 @@ def accumulate(
     """
     h, w = model_ids.shape
     P = H.shape[0]
-    row = np.empty(P)
+    J = len(parents)
+    moved = np.zeros(
+        (J, 4)
+    )  # by each joint: the sum of what the bones below it carry, and of their weights
+    axes = np.empty((J, 3, 3))  # about which a joint's group turns, as columns
+    for j in range(J):
+        for i in range(3):
+            for c in range(3):
+                axes[j, i, c] = R[parents[j], i, c] if parents[j] >= 0 else (1.0 if i == c else 0.0)
     rows = np.empty((_BLOCK, P + 1))
     n_rows = 0
     square = np.zeros((P + 1, P + 1))
-    g = np.empty(3)
     cost = 0.0
     r2_robust = robust_px * robust_px
     counted = 0.5 * every * grid_px * grid_px
@@ -253,8 +165,8 @@ def accumulate(
                     if k_model == 0:
                         continue
                     i = -1
-                    if near_image[y // _CELL, x // _CELL] >> k_model & 1:
-                        i = _nearest(image_ids, x, y, k_model, offsets, n_offsets)
+                    if near_image[y // CELL, x // CELL] >> k_model & 1:
+                        i = nearest(image_ids, x, y, k_model, offsets, n_offsets)
                     row_weight = weight
                     if k_image == 0:
                         row_weight *= pixel_weight[y, x] / 255.0
@@ -267,13 +179,13 @@ def accumulate(
                     if k_image == 0:
                         continue
                     i = -1
-                    if near_model[y // _CELL, x // _CELL] >> k_image & 1:
-                        i = _nearest(model_ids, x, y, k_image, offsets, n_offsets)
+                    if near_model[y // CELL, x // CELL] >> k_image & 1:
+                        i = nearest(model_ids, x, y, k_image, offsets, n_offsets)
                     if i >= 0:
                         dx, dy = -float(offsets[i, 0]), -float(offsets[i, 1])
                         t = triangle_at[y + offsets[i, 1], x + offsets[i, 0]]
                     else:
-                        s = _nearest_hidden(
+                        s = nearest_hidden(
                             x, y, reach, xy, triangles, sleeves, sleeve_start, k_image
                         )
                         if s < 0:
@@ -295,7 +207,7 @@ def accumulate(
                     cost += row_weight * r2 * f
                     row_weight *= f * f
                 nx, ny = dx / length, dy / length
-                point = centres[t]
+                point, scale = centres[t], np.sqrt(row_weight)
                 X = Y = Z = 0.0
                 for bb in range(triangle_bones.shape[1]):
                     wt = triangle_weights[t, bb]
@@ -303,38 +215,73 @@ def accumulate(
                         continue
                     j = triangle_bones[t, bb]
                     qx, qy, qz = point[0] - rest[j, 0], point[1] - rest[j, 1], point[2] - rest[j, 2]
-                    X += wt * (R[j, 0, 0] * qx + R[j, 0, 1] * qy + R[j, 0, 2] * qz + joints[j, 0])
-                    Y += wt * (R[j, 1, 0] * qx + R[j, 1, 1] * qy + R[j, 1, 2] * qz + joints[j, 1])
-                    Z += wt * (R[j, 2, 0] * qx + R[j, 2, 1] * qy + R[j, 2, 2] * qz + joints[j, 2])
+                    px = wt * (R[j, 0, 0] * qx + R[j, 0, 1] * qy + R[j, 0, 2] * qz + joints[j, 0])
+                    py = wt * (R[j, 1, 0] * qx + R[j, 1, 1] * qy + R[j, 1, 2] * qz + joints[j, 1])
+                    pz = wt * (R[j, 2, 0] * qx + R[j, 2, 1] * qy + R[j, 2, 2] * qz + joints[j, 2])
+                    X += px
+                    Y += py
+                    Z += pz
+                    while j >= 0:
+                        moved[j, 0] += px
+                        moved[j, 1] += py
+                        moved[j, 2] += pz
+                        moved[j, 3] += wt
+                        j = parents[j]
                 cx = cam_R[0, 0] * X + cam_R[0, 1] * Y + cam_R[0, 2] * Z + cam_t[0]
                 cy = cam_R[1, 0] * X + cam_R[1, 1] * Y + cam_R[1, 2] * Z + cam_t[1]
                 cz = cam_R[2, 0] * X + cam_R[2, 1] * Y + cam_R[2, 2] * Z + cam_t[2]
-                ux = nx * fx / cz
-                uy = ny * fy / cz
+                ux = scale * nx * fx / cz
+                uy = scale * ny * fy / cz
                 uz = -(ux * cx + uy * cy) / cz
-                for c in range(3):
-                    g[c] = cam_R[0, c] * ux + cam_R[1, c] * uy + cam_R[2, c] * uz
-                surface_row_of_arrays(
-                    point,
-                    triangle_bones[t],
-                    triangle_weights[t],
-                    d_centres[:, t],
-                    g,
-                    rest,
-                    parents,
-                    joint_of_group,
-                    group_of_joint,
-                    share_of_joint,
-                    R,
-                    joints,
-                    d_rest,
-                    d_joints,
-                    n_shape,
-                    row,
-                )
-                scale = np.sqrt(row_weight)
-                for p in range(P):
-                    rows[n_rows, p] = scale * row[p]
+                gx = cam_R[0, 0] * ux + cam_R[1, 0] * uy + cam_R[2, 0] * uz
+                gy = cam_R[0, 1] * ux + cam_R[1, 1] * uy + cam_R[2, 1] * uz
+                gz = cam_R[0, 2] * ux + cam_R[1, 2] * uy + cam_R[2, 2] * uz
+                for p in range(3, P):
+                    rows[n_rows, p] = 0.0
+                rows[n_rows, 0] = gx
+                rows[n_rows, 1] = gy
+                rows[n_rows, 2] = gz
+                for j in range(J):
+                    if moved[j, 3] == 0.0:
+                        continue
+                    group = group_of_joint[j]
+                    if group >= 0:
+                        f = share_of_joint[j]
+                        wj = moved[j, 3]
+                        rx = moved[j, 0] - wj * joints[j, 0]
+                        ry = moved[j, 1] - wj * joints[j, 1]
+                        rz = moved[j, 2] - wj * joints[j, 2]
+                        # a . (r x g) summed over the group's axes a
+                        mx = f * (ry * gz - rz * gy)
+                        my = f * (rz * gx - rx * gz)
+                        mz = f * (rx * gy - ry * gx)
+                        k = 3 + 3 * group
+                        rows[n_rows, k] += (
+                            axes[j, 0, 0] * mx + axes[j, 1, 0] * my + axes[j, 2, 0] * mz
+                        )
+                        rows[n_rows, k + 1] += (
+                            axes[j, 0, 1] * mx + axes[j, 1, 1] * my + axes[j, 2, 1] * mz
+                        )
+                        rows[n_rows, k + 2] += (
+                            axes[j, 0, 2] * mx + axes[j, 1, 2] * my + axes[j, 2, 2] * mz
+                        )
+                    moved[j, 0] = moved[j, 1] = moved[j, 2] = moved[j, 3] = 0.0
+                if n_shape > 0:
+                    for bb in range(triangle_bones.shape[1]):
+                        wt, j = triangle_weights[t, bb], triangle_bones[t, bb]
+                        # g in the bone's frame
+                        hx = wt * (R[j, 0, 0] * gx + R[j, 1, 0] * gy + R[j, 2, 0] * gz)
+                        hy = wt * (R[j, 0, 1] * gx + R[j, 1, 1] * gy + R[j, 2, 1] * gz)
+                        hz = wt * (R[j, 0, 2] * gx + R[j, 1, 2] * gy + R[j, 2, 2] * gz)
+                        for n in range(n_shape):
+                            rows[n_rows, P - n_shape + n] += (
+                                hx * (d_centres[n, t, 0] - d_rest[n, j, 0])
+                                + hy * (d_centres[n, t, 1] - d_rest[n, j, 1])
+                                + hz * (d_centres[n, t, 2] - d_rest[n, j, 2])
+                                + wt * gx * d_joints[n, j, 0]
+                                + wt * gy * d_joints[n, j, 1]
+                                + wt * gz * d_joints[n, j, 2]
+                            )
                 rows[n_rows, P] = scale * r
                 n_rows += 1
                 if n_rows == _BLOCK:

@@ -1,4 +1,4 @@
-"""A body in motion as the colour tracker carries it from frame to frame."""
+"""A body in motion, as it is carried from frame to frame."""
 
 from dataclasses import dataclass, replace
 

@@ -63,6 +63,8 @@ def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
         "leftUpperArm": upper, "rightUpperArm": upper, "leftLowerArm": elbow, "rightLowerArm": elbow,
     }, 1.0)  # fmt: skip
     information = np.diag(np.concatenate([np.zeros(3), 1.0 / sd**2]))
+    if model.space.whole:
+        _hold_feet(model, information)
     return _priors(model, p, rest, information, 0.0)
 
 
@@ -81,16 +83,35 @@ def narrow_prior(model: BodyModel, p: FitParams) -> PosePriors:
 
 def _hold_whole(model: BodyModel, rest: Floats, information: Floats) -> None:
     """Trunk, neck and legs of a whole body, where they usually are."""
-    sds = {side + bone: sd for side in ("left", "right") for bone, sd in _LEG_SD_RAD.items()}
-    for name, sd in {**sds, "neck": _NECK_SD_RAD, "spine": _WHOLE_SPINE_SD_RAD}.items():
-        first = 3 + 3 * model.space.group(name)
-        columns = slice(first, first + 3)
-        information[columns, columns] = np.diag(1.0 / np.square(sd))
+    for name, sd in {"neck": _NECK_SD_RAD, "spine": _WHOLE_SPINE_SD_RAD}.items():
+        _hold(model, information, name, sd)
     half_neck = rotations.exp(0.5 * np.array(_NECK_REST_RAD))
     rest[INDEX["neck"]] = rest[INDEX["head"]] = half_neck
+    _hold_legs(model, rest, information, tuple(_LEG_REST_RAD))
+
+
+def _hold_feet(model: BodyModel, information: Floats) -> None:
+    """Feet do not roll or turn far below their shins, and bend as they like: what shows of a shoe says little of it."""
+    _, turn, roll = _LEG_SD_RAD["Foot"]
+    for side in ("left", "right"):
+        _hold(model, information, side + "Foot", (1.0, turn, roll))
+
+
+def _hold_legs(model: BodyModel, rest: Floats, information: Floats, bones: tuple[str, ...]) -> None:
+    """These bones of both legs, where they usually are."""
     for side, mirror in (("left", 1.0), ("right", -1.0)):
-        for bone, (x, y, z) in _LEG_REST_RAD.items():
+        for bone in bones:
+            x, y, z = _LEG_REST_RAD[bone]
             rest[INDEX[side + bone]] = rotations.exp(np.array([x, mirror * y, mirror * z]))
+            _hold(model, information, side + bone, _LEG_SD_RAD[bone])
+
+
+def _hold(
+    model: BodyModel, information: Floats, joint: str, sd_rad: tuple[float, float, float]
+) -> None:
+    first = 3 + 3 * model.space.group(joint)
+    columns = slice(first, first + 3)
+    information[columns, columns] = np.diag(1.0 / np.square(sd_rad))
 
 
 def usual_leg(side: str) -> Floats:

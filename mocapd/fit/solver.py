@@ -25,8 +25,9 @@ from mocapd.fit.collision_term import TorsoHull, arm_chains
 from mocapd.fit.depth_agreement_kernels import compare_depths
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_term import CameraRows, search_within
-from mocapd.fit.idmap_term_kernels import ComparedPictures, Search, offsets_by_distance
+from mocapd.fit.idmap_term_kernels import ComparedPictures, Search
 from mocapd.fit.motion_state import MotionState, moved, stepped
+from mocapd.fit.nearest_pixel_kernels import offsets_by_distance
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
 from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.fit.seen_depth import GRID_PX

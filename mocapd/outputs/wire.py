@@ -81,7 +81,8 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     tracker: Annotated[
         str,
         Meta(
-            description="which tracker spoke: `colour`, `flex`, `colour+flex`, `canned`; `auto`: nobody"
+            description="what carried the body: `shirt`, `clothes`, `shirt+clothes`, or a tracker without cues (`canned`); "
+            "of nobody the tracker's name"
         ),
     ]
     tracking: Annotated[str, Meta(description="`live`, `coasting` (predicted) or `lost`")]

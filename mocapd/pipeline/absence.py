@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.clock import NS_PER_S, nanoseconds, seconds
-from mocapd.trackers.tracking_state import faded, grown
+from mocapd.tracking.tracking_state import faded, grown
 from mocapd.types import BodyState, Tracking
 
 COASTING_EVERY_NS = NS_PER_S // 10

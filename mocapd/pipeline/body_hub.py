@@ -4,7 +4,7 @@ import threading
 from dataclasses import dataclass
 from typing import Protocol
 
-from mocapd.trackers.base import Track
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, FrameSet, Skeleton
 
 

@@ -12,8 +12,8 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Track, Tracker
-from mocapd.trackers.doubt import doubted
+from mocapd.tracking.base import Track, Tracker
+from mocapd.tracking.doubt import doubted
 from mocapd.types import FrameSet
 
 OnDeath = Callable[[BaseException], None]

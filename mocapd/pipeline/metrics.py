@@ -8,7 +8,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
-from mocapd.trackers.lost_reason import LostReason
+from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
 
 

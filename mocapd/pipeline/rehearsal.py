@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.body.shape import BodyShape
 from mocapd.clock import NS_PER_S
-from mocapd.trackers.base import Tracker
+from mocapd.tracking.base import Tracker
 from mocapd.types import Bytes, Camera, Frame, FrameSet, Rig
 
 STEPS = 8  # the person is found in the first, believed in a few, followed in the rest

@@ -10,7 +10,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
 from mocapd.session.camera_inputs import CameraInput
-from mocapd.trackers.lost_reason import LostReason
+from mocapd.tracking.lost_reason import LostReason
 
 
 def health_message(

@@ -12,9 +12,9 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.output_file import FileKind, OutputFile
-from mocapd.trackers.base import RoomLearner, Tracker
-from mocapd.trackers.doubt import doubted
-from mocapd.trackers.lost_reason import LostReason
+from mocapd.tracking.base import RoomLearner, Tracker
+from mocapd.tracking.doubt import doubted
+from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
@@ -54,7 +54,7 @@ def learn_room(tracker: Tracker, frames: Iterable[FrameSet], count: int) -> None
     ConfigError when it learns none."""
     if not isinstance(tracker, RoomLearner):
         raise ConfigError(
-            f"the tracker {tracker.name!r} learns no room", "--room", "leave it out, or add --tracker flex"
+            f"the tracker {tracker.name!r} learns no room", "--room", "leave it out, or add --tracker markerless"
         )  # fmt: skip
     tracker.learn_room(islice(frames, None, None, max(1, -(-count // _ROOM_LOOKS))))
 

@@ -26,8 +26,8 @@ from mocapd.session.camera_inputs import CameraInput, camera_inputs, in_rig_orde
 from mocapd.session.tracker_setup import Progress, cached, ready_tracker
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder, stroked_image
 from mocapd.shirt.colour.strokes import read_labelled
-from mocapd.trackers.base import Tracker
 from mocapd.trackers.registry import entry, require_known
+from mocapd.tracking.base import Tracker
 from mocapd.types import Rig
 
 _log = logging.getLogger(__name__)

@@ -12,12 +12,12 @@ from mocapd.body.shape import BodyShape
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.rehearsal import rehearse
-from mocapd.session.side_by_side import aside, each_camera
+from mocapd.session.side_by_side import each_camera
 from mocapd.trackers import registry
-from mocapd.trackers.base import Tracker
-from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.base import Tracker
+from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracking_state import TrackingStateParams
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
 
@@ -87,9 +87,7 @@ def _pooled(resources: Resources) -> Iterator[Resources]:
     """With threads to make caches, and a log to tell of them."""
     pool = ThreadPoolExecutor(_THREADS)
     try:
-        yield replace(
-            resources, map_chunks=pool.map, tell=_log.warning, each=each_camera(), aside=aside()
-        )
+        yield replace(resources, map_chunks=pool.map, tell=_log.warning, each=each_camera())
     finally:
         # who was told to end does not wait for all that is queued
         pool.shutdown(wait=False, cancel_futures=True)

@@ -1,1 +1,1 @@
-"""From frame sets to bodies. Every tracker is a pure step machine behind `base.Tracker`."""
+"""The trackers that a configuration can name: the body tracker of each profile, those of the papers, and a canned one."""

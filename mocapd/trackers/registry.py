@@ -10,13 +10,13 @@ import numpy as np
 
 from mocapd.boundary.files import is_absent, is_file
 from mocapd.calibration.calibration_record import Calibration
-from mocapd.each import Aside, Each, at_once, in_turn
+from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
-from mocapd.trackers.base import Tracker, no_time_passes
-from mocapd.trackers.supervisor.kinds import KINDS
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.base import Tracker, no_time_passes
+from mocapd.tracking.profiles import PROFILES
+from mocapd.tracking.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
@@ -38,7 +38,7 @@ class Resources:
     cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
     that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
     must be done without; tracking: when a person counts as lost, None for the defaults; params: other numbers than a
-    tracker's own, by its name, for studies; each: of a tracker's cameras; aside: what it can do before it knows all;
+    tracker's own, by its name, for studies; each: of a tracker's cameras;
     now_ns: a clock, by which work that would take too long at one frame set goes on at the next; for recordings it
     stands still, as they wait as long as it takes.
     """
@@ -50,7 +50,6 @@ class Resources:
     tracking: TrackingStateParams | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
-    aside: Aside = at_once
     now_ns: Callable[[], int] = no_time_passes
 
 
@@ -125,19 +124,49 @@ def _database(resources: Resources) -> "PoseDatabase":
     return loaded.database
 
 
-def _colour(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.trackers.colour.build import build_colour_tracker
+def _lacks(name: str, calibration: Calibration, cameras: Collection[str]) -> Mapping[str, str]:
+    """By each cue of this profile that the wearer may have, what it lacks."""
+    profile = PROFILES[name]
+    lacking = {}
+    if profile.shirt and (calibration.wearer.has_shirt or not profile.clothes):
+        lacking["shirt"] = _rig_lacks(calibration, cameras)
+    if profile.clothes:
+        lacking["clothes"] = _pair_lacks(calibration, cameras)
+    return lacking
 
-    return build_colour_tracker(
-        calibration, _database(resources), params, resources.tracking, resources.each
-    )
 
+def _profile(name: str) -> TrackerEntry:
+    """A body tracker, which is content with any of its cues."""
+    profile = PROFILES[name]
 
-def _flex(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.trackers.flex.build import build_flex_tracker
+    def lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+        missing = list(_lacks(name, calibration, cameras).values())
+        return missing[0] if all(missing) else ""
 
-    return build_flex_tracker(
-        calibration, params, resources.tracking, resources.each, resources.now_ns
+    def build_it(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
+        from mocapd.tracking.build import build_body_tracker
+
+        cameras = calibration.rig.names if calibration.rig else ()
+        lacking = _lacks(name, calibration, cameras)
+        if lacking.get("clothes") and "shirt" in lacking and len(cameras) > 1:
+            resources.tell(
+                f"legs and head are done without: the cue 'clothes' {lacking['clothes']}"
+            )
+        shirt = "shirt" in lacking and (not lacking["shirt"] or "clothes" not in lacking)
+        clothes = "clothes" in lacking and (not lacking["clothes"] or not shirt)
+        return build_body_tracker(
+            name, calibration, _database(resources) if shirt else None, clothes, params, resources.tracking,
+            resources.each, resources.now_ns,
+        )  # fmt: skip
+
+    return TrackerEntry(
+        build_it,
+        lacks,
+        sees=True,
+        reads_shirt=profile.shirt and not profile.clothes,
+        reads_outline=profile.clothes and not profile.shirt,
+        make_caches=_database if profile.shirt else _quiet,
+        caches=(CACHE_NAME,) if profile.shirt else (),
     )
 
 
@@ -153,55 +182,12 @@ def _hecht2009(calibration: Calibration, params: Any, resources: Resources) -> T
     return build_hecht2009_tracker(calibration, params, resources.tracking)
 
 
-def _auto_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For one that is content with any of its trackers: what the first lacks, when all lack something."""
-    missing = [TRACKERS[name].lacks(calibration, cameras) for name in KINDS]
-    return missing[0] if all(missing) else ""
-
-
-def _auto(calibration: Calibration, _params: Any, resources: Resources) -> Tracker:
-    from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
-
-    cameras = calibration.rig.names if calibration.rig else ()
-    wanted = [
-        name for name in KINDS if calibration.wearer.has_shirt or not TRACKERS[name].reads_shirt
-    ]
-    lacking = {name: TRACKERS[name].lacks(calibration, cameras) for name in wanted}
-    # with nobody who can run, building the first tells why
-    able = [name for name in wanted if not lacking[name]] or wanted[:1]
-    for name in wanted:
-        if name not in able and len(cameras) >= KINDS[name].least_cameras:
-            resources.tell(f"the tracker {name!r} is done without: it {lacking[name]}")
-    return Supervisor(
-        [Candidate(build(name, calibration, resources), KINDS[name]) for name in able],
-        aside=resources.aside,
-    )
-
-
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
-        "auto": TrackerEntry(
-            _auto,
-            _auto_lacks,
-            sees=True,
-            make_caches=_database,
-            caches=(CACHE_NAME,),
-        ),
+        "auto": _profile("auto"),
         "canned": TrackerEntry(_canned, _nothing_lacks, sees=False),
-        "colour": TrackerEntry(
-            _colour,
-            _rig_lacks,
-            sees=True,
-            reads_shirt=True,
-            make_caches=_database,
-            caches=(CACHE_NAME,),
-        ),
-        "flex": TrackerEntry(
-            _flex,
-            _pair_lacks,
-            sees=True,
-            reads_outline=True,
-        ),
+        "shirt": _profile("shirt"),
+        "markerless": _profile("markerless"),
         "hecht2009": TrackerEntry(
             _hecht2009,
             _pair_lacks,
@@ -220,7 +206,12 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
 
 # Names of earlier versions, accepted for one release: the configuration puts the present name in their place.
 RENAMED: Mapping[str, str] = MappingProxyType(
-    {"colour_paper": "wang2011", "flex_paper": "hecht2009"}
+    {
+        "colour": "shirt",
+        "flex": "markerless",
+        "colour_paper": "wang2011",
+        "flex_paper": "hecht2009",
+    }
 )
 
 

@@ -43,18 +43,20 @@ class BackgroundParams:
 
 
 class RoomBackground:
-    """Mean and age of each pixel of one camera's work pictures; the only state is theirs."""
+    """One camera's background, whichever cues look at it: mean (h,w,3) and age (h,w) of each pixel of its work pictures;
+    lights: how often its light jumped."""
 
     def __init__(self, height: int, width: int, params: BackgroundParams) -> None:
         self._params = params
-        self._mean = np.zeros((height, width, 3), np.float32)
-        self._age = np.zeros((height, width), np.uint8)
+        self.mean = np.zeros((height, width, 3), np.float32)
+        self.age = np.zeros((height, width), np.uint8)
         self.reset()
 
     def reset(self) -> None:
         """Nothing is known."""
-        self._mean[:] = 0.0
-        self._age[:] = 0
+        self.mean[:] = 0.0
+        self.lights = 0
+        self.age[:] = 0
         self._looks = 0
 
     @property
@@ -64,46 +66,47 @@ class RoomBackground:
 
     def known_room(self) -> tuple[Singles, Bytes]:
         """The empty room (h,w,3) in the present light, and where it is known (h,w)."""
-        return self._mean, (self._age >= self._params.known_looks).astype(np.uint8)
+        return self.mean, (self.age >= self._params.known_looks).astype(np.uint8)
 
     def seed(self, picture: Bytes, body: Bytes) -> None:
         """Take a picture (h,w,3) for the background where `body` (h,w) is 0, as when a body is handed over."""
         beside = body == 0
-        self._mean[beside] = picture[beside]
-        self._age[beside] = self._params.known_looks
+        self.mean[beside] = picture[beside]
+        self.age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
     def know(self, room: Bytes, known: NDArray[np.bool_]) -> None:
         """Take the empty room (h,w,3) for the background where it is known (h,w)."""
-        self._mean[:] = room
-        self._age[:] = np.where(known, self._params.known_looks, 0)
+        self.mean[:] = room
+        self.age[:] = np.where(known, self._params.known_looks, 0)
         self._looks = self._params.first_looks
 
     def doubt(self, picture: Bytes, body: Bytes) -> None:
         """Forget the background where `body` (h,w) is not 0 and the picture (h,w,3) looks like it: that is the body itself,
         of somebody who never left."""
-        off = np.abs(picture - self._mean).max(axis=-1)
-        self._age[(body > 0) & (off <= self._params.tolerance)] = 0
+        off = np.abs(picture - self.mean).max(axis=-1)
+        self.age[(body > 0) & (off <= self._params.tolerance)] = 0
 
     def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:
         """Take for background what `uncovered` says of a picture (h,w,3), of what stands before it (h,w), where it becomes
         BACKGROUND, and of a body (h,w) and its arms (h,w)."""
         ghosts = uncovered(
-            picture, self._mean.astype(np.uint8), before, body, arms, self._params.uncovered
+            picture, self.mean.astype(np.uint8), before, body, arms, self._params.uncovered
         )
-        self._mean[ghosts] = picture[ghosts]
+        self.mean[ghosts] = picture[ghosts]
         before[ghosts] = BACKGROUND
 
     def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
         """By how much each channel (3,) became brighter when a lamp went on or off, whose light the background then takes;
         None while the light stays. body (h,w): not 0 where somebody is expected."""
         p = self._params
-        share = changed(picture, body, self._mean, self._age, p.lamp_tolerance)
+        share = changed(picture, body, self.mean, self.age, p.lamp_tolerance)
         if share <= p.lamp_share:
             return None
-        seen = (body == 0) & (self._age >= p.known_looks)
-        before, now = self._mean[seen].mean(axis=0), picture[seen].mean(axis=0)
-        relight_background(picture, body, self._mean, self._age)
+        seen = (body == 0) & (self.age >= p.known_looks)
+        before, now = self.mean[seen].mean(axis=0), picture[seen].mean(axis=0)
+        relight_background(picture, body, self.mean, self.age)
+        self.lights += 1
         return np.asarray(np.clip((now + 1.0) / (before + 1.0), 0.1, 10.0), np.float64)
 
     def learn(self, picture: Bytes, body: Bytes) -> None:
@@ -113,9 +116,7 @@ class RoomBackground:
         else:
             phases = (self._looks % _PHASES,)
         for phase in phases:
-            learn_background(
-                picture, body, self._mean, self._age, self._params.rate, phase, _PHASES
-            )
+            learn_background(picture, body, self.mean, self.age, self._params.rate, phase, _PHASES)
         self._looks += 1
 
     def learn_unknown(self, picture: Bytes, body: Bytes, within: tuple[int, int, int, int]) -> None:
@@ -124,7 +125,7 @@ class RoomBackground:
         x0, y0, x1, y1 = within
         here, p = np.s_[y0:y1, x0:x1], self._params
         learn_unknown(
-            picture[here], body, p.known_looks, p.tolerance, self._mean[here], self._age[here]
+            picture[here], body, p.known_looks, p.tolerance, self.mean[here], self.age[here]
         )
 
     def before(self, picture: Bytes, within: tuple[int, int, int, int] | None = None) -> Bytes:
@@ -132,13 +133,13 @@ class RoomBackground:
 
         within: x0, y0, x1, y1 of the only region that is asked for; BACKGROUND elsewhere.
         """
-        p, whole = self._params, np.zeros_like(self._age)
+        p, whole = self._params, np.zeros_like(self.age)
         x0, y0, x1, y1 = within or (0, 0, whole.shape[1], whole.shape[0])
         if x1 <= x0 or y1 <= y0:  # who was followed is in no part of the picture
             return whole
         first = np.empty((y1 - y0, x1 - x0), np.uint8)
         stands_before(
-            picture, self._mean, self._age, x0, y0, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, first
+            picture, self.mean, self.age, x0, y0, p.known_looks, p.tolerance, p.sure_shadow, p.likely_shadow, first
         )  # fmt: skip
         one = cv2.LUT(first, _STANDS)
         one = cv2.morphologyEx(one, cv2.MORPH_OPEN, _SPECK)

@@ -96,7 +96,7 @@ def test_an_unknown_tracker(track: Track) -> None:
 
 
 def test_the_option_of_earlier_versions_names_what_to_write_now(track: Track) -> None:
-    outcome = track("--tracker", "colour", "--variant", "paper")
+    outcome = track("--tracker", "shirt", "--variant", "paper")
     assert_one_line(outcome, 78, "--variant", "wang2011")
 
 

@@ -12,9 +12,9 @@ from mocapd.clock import monotonic_ns
 from mocapd.outputs.base import Sink
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.service.publisher import Publisher
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 
 STATURE_M = 1.75

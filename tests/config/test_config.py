@@ -285,7 +285,7 @@ def test_reading_the_configuration_loads_no_numba() -> None:
 
 
 @dataclass(frozen=True)
-class _Colour:
+class _Shirt:
     """learn: whether it learns"""
 
     learn: bool = True
@@ -298,10 +298,10 @@ class _Waves:
 
 @dataclass(frozen=True)
 class _Chosen:
-    name: str = "colour"
-    own: Annotated[
-        Mapping[str, Any], SectionTable(lambda: {"colour": _Colour, "canned": _Waves})
-    ] = field(default_factory=dict)
+    name: str = "shirt"
+    own: Annotated[Mapping[str, Any], SectionTable(lambda: {"shirt": _Shirt, "canned": _Waves})] = (
+        field(default_factory=dict)
+    )
 
 
 @dataclass(frozen=True)
@@ -311,10 +311,10 @@ class _Whole:
 
 def test_sections_of_a_table_stand_beside_the_keys_of_the_section_that_holds_them() -> None:
     keys = {key.path: key for key in keys_of(_Whole)}
-    assert list(keys) == ["tracker.name", "tracker.colour.learn", "tracker.canned.count"]
-    assert keys["tracker.colour.learn"].help == "whether it learns"
+    assert list(keys) == ["tracker.name", "tracker.shirt.learn", "tracker.canned.count"]
+    assert keys["tracker.shirt.learn"].help == "whether it learns"
     whole = build(_Whole, {"tracker.name": "canned", "tracker.canned.count": 3})
-    assert whole.tracker.own == {"colour": _Colour(), "canned": _Waves(3)}
+    assert whole.tracker.own == {"shirt": _Shirt(), "canned": _Waves(3)}
 
 
 @pytest.mark.parametrize(("former", "present"), list(RENAMED.items()))

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapd.errors import ConfigError
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
 from mocapd.types import Tracking
 
 LIVE, COASTING, LOST = Tracking.LIVE, Tracking.COASTING, Tracking.LOST

@@ -13,17 +13,14 @@ from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, bu
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.trackers.base import Tracker
-from mocapd.trackers.colour.build import build_colour_tracker
-from mocapd.trackers.flex.build import build_flex_tracker
-from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build
-from mocapd.trackers.supervisor.kinds import KINDS
-from mocapd.trackers.supervisor.supervisor import Candidate, Supervisor
+from mocapd.tracking.base import Tracker
+from mocapd.tracking.known import known_shape
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
-from tests.trackers.stepping import Stepping
+from tests.tracking.profiles import auto_tracker, markerless_tracker, shirt_tracker
+from tests.tracking.stepping import Stepping
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
 PERIOD_NS = 33_333_333
@@ -33,13 +30,13 @@ N_BEFORE = 24  # of an empty room, in which a background is learned
 
 @dataclass(frozen=True)
 class TrackerCase:
-    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; speakers: what
-    its bodies may say of who told them, its own name where empty."""
+    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; carriers: which
+    cues its bodies may be carried by, none for a tracker that names itself."""
 
     tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
-    speakers: tuple[str, ...] = ()
+    carriers: tuple[str, ...] = ()
 
 
 def frame_sets(
@@ -110,10 +107,12 @@ def filmed() -> Filmed:
     )
 
 
-def shirt_case(build_tracker: Callable[[Calibration, PoseDatabase], Tracker]) -> TrackerCase:
+def shirt_case(
+    build_tracker: Callable[[Calibration, PoseDatabase], Tracker], *carriers: str
+) -> TrackerCase:
     shown = filmed()
-    tracker = build_tracker(shown.known, shown.database)
-    return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
+    tracker = Stepping(build_tracker(shown.known, shown.database), known_shape(shown.known))
+    return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 
 @cache
@@ -135,30 +134,18 @@ def filmed_from_empty() -> Filmed:
     return Filmed(known, filmed().database, frame_sets(shown), frame_sets(empty))
 
 
-def plain_case(build_tracker: Callable[[Calibration], Tracker]) -> TrackerCase:
+def plain_case(build_tracker: Callable[[Calibration], Tracker], *carriers: str) -> TrackerCase:
     shown = filmed_from_empty()
-    tracker = build_tracker(shown.known)
-    return TrackerCase(Stepping(tracker, known_shape(shown.known)), shown.person, shown.empty)
-
-
-def auto_case() -> TrackerCase:
-    shown = filmed()
-    both = (build_colour_tracker(shown.known, shown.database), build_flex_tracker(shown.known))
-    tracker = Supervisor([Candidate(one, KINDS[one.name]) for one in both])
-    return TrackerCase(
-        Stepping(tracker, known_shape(shown.known)),
-        shown.person,
-        shown.empty,
-        ("auto", "colour", "flex", "colour+flex"),
-    )
+    tracker = Stepping(build_tracker(shown.known), known_shape(shown.known))
+    return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
 CASES: Mapping[str, Callable[[], TrackerCase]] = {
-    "auto": auto_case,
+    "auto": lambda: shirt_case(auto_tracker, "shirt", "clothes", "shirt+clothes"),
     "canned": canned_case,
-    "colour": lambda: shirt_case(build_colour_tracker),
+    "shirt": lambda: shirt_case(shirt_tracker, "shirt"),
     "wang2011": lambda: shirt_case(build_wang2011_tracker),
-    "flex": lambda: plain_case(build_flex_tracker),
+    "markerless": lambda: plain_case(markerless_tracker, "clothes"),
     "hecht2009": lambda: plain_case(build_hecht2009_tracker),
 }

@@ -33,7 +33,7 @@ def report(**changed: Any) -> StatusReport:
         instance="pc",
         state_dir="/home/me/.local/state/mocapd",
         state="tracking",
-        tracker="colour",
+        tracker="shirt+clothes",
         tracking="live",
         rate_hz=29.97,
         latency_median_ms=21.4,

@@ -13,8 +13,8 @@ from mocapd.outputs.output_table import OscSection
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
 from mocapd.types import Frame, FrameSet
 from tests.capture.films import SIZE_PX, picture
 

@@ -12,8 +12,8 @@ from mocapd.config.sections import Config
 from mocapd.service.service import Service, Snapshot
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
 from mocapd.types import FrameSet
 from tests.capture.films import SIZE_PX
 from tests.e2e.fake_cameras import FakeCamera

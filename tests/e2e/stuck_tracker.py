@@ -9,8 +9,8 @@ from mocapd.errors import MocapdError
 from mocapd.service.service import Service
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
 from mocapd.types import FrameSet
 from tests.e2e.fake_cameras import FakeCamera
 

@@ -158,7 +158,7 @@ def begin(clean_env: dict[str, str], tmp_path: Path) -> Iterator[Callable[[str],
 def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
     begin: Callable[[str], Running],
 ) -> None:
-    daemon = begin("colour")
+    daemon = begin("shirt")
     received = daemon.subscribe(FRAMES)
 
     frames = received["zenoh"]
@@ -169,7 +169,7 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
     last = next(frame for frame in reversed(live) if len(frame["cameras"]) > 1)
     assert last["schema"] == "mocapd.Skeleton.v1"
     assert last["instance"] == "e2e"
-    assert last["tracker"] == "colour"
+    assert last["tracker"] == "shirt"
     assert last["cameras"] == ["cam0", "cam1"]
     assert len(last["joints"]) == 22
     assert max(received["osc"].values()) >= FRAMES

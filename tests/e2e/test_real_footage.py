@@ -63,9 +63,9 @@ def frames_of(name: str, video: Path) -> Iterator[Frame]:
 
 
 def found_in(rig: Rig, sets: Iterator[FrameSet], cache_dir: Path) -> list[float]:
-    """The times at which the colour tracker sees somebody [s]; the pictures alone tell it who."""
+    """The times at which the tracker `shirt` sees somebody [s]; the pictures alone tell it who."""
     resources = cached(cache_dir, lambda *_: None)
-    ready = ready_tracker("colour", Calibration(rig, Wearer(1.75)), resources)
+    ready = ready_tracker("shirt", Calibration(rig, Wearer(1.75)), resources)
     track = track_all(ready.tracker, ready.shape, sets, _nobody)
     return [float(t) for t in track.times_s]
 

@@ -103,7 +103,7 @@ def track(platform: Platform, capture: Path, here: Path) -> Result:
     if not place.is_dir():
         shutil.copytree(capture, place)
     out, log = platform.work / f"track-{platform.python}.npz", platform.log("track")
-    words = ("-m", "mocapd.cli.main", "track", platform.chroot.inside(place), "--tracker", "colour")
+    words = ("-m", "mocapd.cli.main", "track", platform.chroot.inside(place), "--tracker", "shirt")
     command = platform.command(*words, "--out", platform.chroot.inside(out))
     code = platform.chroot.run(command, log, platform.env, TRACK_S)
     if code != 0:
@@ -197,6 +197,6 @@ def track_here(capture: Path, out: Path) -> None:
         "track",
         str(capture),
         "--tracker",
-        "colour",
+        "shirt",
     ]
     subprocess.run([*command, "--out", str(out)], cwd=ROOT, capture_output=True, check=True)

@@ -12,8 +12,8 @@ from mocapd.evaluate.bench.bench_endurance import endure
 from mocapd.evaluate.bench.bench_input import CHUNK, BenchInput
 from mocapd.evaluate.bench.bench_step import REST, bench_tracker
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.trackers.base import Track, Tracker
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track, Tracker
 from mocapd.types import BodyState, Frame, FrameSet
 from tests.cli.mocapd_process import mocapd
 from tests.cli.small_capture import FRAMES, write_capture

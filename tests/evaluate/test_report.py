@@ -65,7 +65,7 @@ def test_an_untracked_capture_has_no_figures_and_spoils_the_mean() -> None:
 
 
 def test_the_page_names_its_command_and_no_date() -> None:
-    text = page([result_of("desk", 0.02)], "colour", "upper", "mocapd eval desk --out scores")
+    text = page([result_of("desk", 0.02)], "shirt", "upper", "mocapd eval desk --out scores")
     assert "mocapd eval desk --out scores\n```" in text
     assert not re.search(r"20[2-9]\d", text)
     assert "{" not in text

@@ -1,6 +1,6 @@
 """An hour's frames in a quarter of an hour: nothing grows.
 
-The scene with the jacket, filmed at four times the usual rate, so that both trackers and their supervisor work, somebody
+The scene with the jacket, filmed at four times the usual rate, so that both cues and the change between them work, somebody
 leaves and comes back, and frames are dropped as on a machine that is too slow. Every output sends; a game and a page take.
 """
 

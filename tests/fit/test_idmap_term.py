@@ -13,10 +13,9 @@ from mocapd.fit.idmap_term_kernels import (
     AlignmentSums,
     ComparedPictures,
     Search,
-    colours_in_reach,
-    offsets_by_distance,
 )
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.nearest_pixel_kernels import colours_in_reach, offsets_by_distance
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.types import Bytes

@@ -45,7 +45,7 @@ id = "right"
 source = "rtsp://admin:secret@192.168.1.20:554/stream?channel=1"
 
 [tracker]
-name = "colour"
+name = "shirt"
 stature_m = 1.72
 coast_s = 0.5
 

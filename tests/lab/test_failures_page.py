@@ -64,7 +64,7 @@ def test_the_page_names_the_command_every_scene_and_its_remedy(tmp_path: Path) -
     sessions = scenes()
     results = [as_tracked(one, np.full(FRAMES, 0.02)) for one in sessions]
     found = page.outcomes(sessions, results, "upper")
-    paths = page.write_page(tmp_path, found, "flex", "full", "python -m lab.failures")
+    paths = page.write_page(tmp_path, found, "markerless", "full", "python -m lab.failures")
     assert all(path.stat().st_size for path in paths)
     text = paths[0].read_text()
     assert "python -m lab.failures" in text

@@ -41,7 +41,7 @@ def test_only_trackers_that_have_rivals_are_compared(
     outcome = lab(clean_env, "evaluation", capture, "--tracker", "canned", "--compare")
     assert outcome.code == 78
     assert "canned" in outcome.err
-    assert "--tracker colour" in outcome.err
+    assert "--tracker shirt" in outcome.err
 
 
 def test_predictions_of_a_still_body_are_scored(capture: Path, clean_env: dict[str, str]) -> None:

@@ -63,7 +63,7 @@ def track() -> RecordedTrack:
         np.zeros((*shape, 3)) + up_m,
         np.tile([0.0, 0.0, 0.0, 1.0], (*shape, 1)),
         np.full(shape, 0.5),
-        np.array(["colour"] * 5),
+        np.array(["shirt"] * 5),
         np.full(shape, 0.02),
     )
 

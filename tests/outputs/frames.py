@@ -35,7 +35,7 @@ def small_frame(**changes: object) -> SkeletonFrame:
         "capture_monotonic_ns": CAPTURE_NS,
         "capture_unix_ns": CAPTURE_NS + UNIX_OFFSET_NS,
         "publish_monotonic_ns": PUBLISH_NS,
-        "tracker": "colour",
+        "tracker": "shirt",
         "tracking": "live",
         "cameras": ("left", "right"),
         "joints": {
@@ -61,7 +61,7 @@ def left_hand_up() -> tuple[BodyState, Skeleton]:
     body = BodyState(
         CAPTURE_NS,
         Tracking.LIVE,
-        "colour",
+        "shirt",
         pose,
         joint_positions(skeleton, pose),
         confidence,

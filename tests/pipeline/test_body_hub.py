@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.pipeline.body_hub import BodyHub, BodySample
-from mocapd.trackers.base import Track
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, FrameSet, Tracking
 
 SHAPE = mean_shape(1.75)

@@ -14,9 +14,9 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.trackers.base import Probe, Track, Tracker, lost_body, unprobed
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.trackers.lost_reason import LostReason
+from mocapd.tracking.base import Probe, Track, Tracker, lost_body, unprobed
+from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
 

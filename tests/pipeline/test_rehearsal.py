@@ -4,8 +4,8 @@ import numpy as np
 
 from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.pipeline.rehearsal import STEPS, rehearse
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, Camera, FrameSet, Rig
 
 

@@ -39,10 +39,10 @@ Limbs are not told of them: that needs two cameras.
 
 ## A man on a beam
 Four cameras around a man who balances on a beam (Pose2Sim, `SinglePerson`, BSD-3-Clause, copyright 2022 perfanalytics;
-cameras calibrated by them). `flex` sees the two before him, 2.9 m apart; he never leaves their pictures, so the room is
+cameras calibrated by them). `markerless` sees the two before him, 2.9 m apart; he never leaves their pictures, so the room is
 learned from the whole clip (`mocapd track --room whole`). His height, {stature_m:.2f} m, was measured in the pictures.
 
-| | cameras that `flex` sees | those behind him, which it never sees |
+| | cameras that `markerless` sees | those behind him, which it never sees |
 |---|---:|---:|
 | frames with the skeleton inside of him, of all {frames} | {share:.0f} % | {share_elsewhere:.0f} % |
 | of the frames in which he is told: points along the bones inside of him, mean | {points:.1f} % | {points_elsewhere:.1f} % |

@@ -17,12 +17,12 @@ from mocapd.clock import seconds
 from mocapd.geometry.camera_model import project
 from mocapd.geometry.rig_file import camera_from_dict
 from mocapd.session.offline import learn_room
-from mocapd.trackers.flex.build import build_flex_tracker
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, UNKNOWN
 from mocapd.vision.room_background import BackgroundParams, RoomBackground
 from tests.real_videos.contact_sheet import draw_skeleton
+from tests.tracking.profiles import markerless_tracker
 
 CAMERAS = ("cam01", "cam02")  # neighbours before him, 2.9 m apart: what the tracker sees
 OTHERS = ("cam03", "cam04")  # behind him: what it never sees
@@ -63,7 +63,7 @@ def beam_walk(folder: Path, tiles: int, every: int = 1) -> BeamWalk:
     """He is tracked in every frame and looked at in one of `every`, with so many pictures of it."""
     cameras = {camera.name: camera for camera in beam_rig(folder).cameras}
     seeing = tuple(cameras[name] for name in CAMERAS)
-    tracker = build_flex_tracker(Calibration(Rig(seeing), Wearer(STATURE_M)))
+    tracker = markerless_tracker(Calibration(Rig(seeing), Wearer(STATURE_M)))
     shape = mean_shape(STATURE_M)
 
     def sets(names: Sequence[str]) -> Iterator[FrameSet]:

@@ -13,7 +13,7 @@ from mocapd.outputs.messages import RestSkeleton, StateMessage
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.service.publisher import REST_EVERY_NS, Publisher
-from mocapd.trackers.base import Track
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, FrameSet, Skeleton, Tracking
 from tests.outputs.frames import left_hand_up
 

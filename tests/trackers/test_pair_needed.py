@@ -14,7 +14,7 @@ from mocapd.types import Rig
 
 (ONE,) = nominal_rig("left", (320, 240)).cameras
 PERSON = Wearer(1.75, has_shirt=False)
-NAMES = ("flex", "hecht2009", "auto")
+NAMES = ("markerless", "hecht2009", "auto")
 
 
 @pytest.mark.parametrize("name", NAMES)

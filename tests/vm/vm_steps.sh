@@ -23,7 +23,7 @@ step "A calibration of two cameras, by socket and serial number; the service"
 cp -r "$proof/state" /var/lib/mocapd
 chown -R mocapd: /var/lib/mocapd
 # one processor, that acts the webcams too: the search for somebody without a shirt is too much for it
-sed -i 's/^\[tracker\]/[tracker]\nname = "colour"/' /etc/mocapd/config.toml
+sed -i 's/^\[tracker\]/[tracker]\nname = "shirt"/' /etc/mocapd/config.toml
 told mocapd check-config --changed
 began=$SECONDS
 told systemctl enable --now mocapd

@@ -18,9 +18,9 @@ from mocapd.pipeline.latency_histogram import LatencyHistogram
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context

@@ -11,8 +11,8 @@ from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
-from tests.trackers.filmed import Filmed, film, tracker_of
-from tests.trackers.stepping import Stepping
+from tests.tracking.shirt_film import Filmed, film, tracker_of
+from tests.tracking.stepping import Stepping
 
 pytestmark = pytest.mark.kernels
 

@@ -16,7 +16,7 @@ from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
-from mocapd.trackers.base import Probe, Track, unprobed
+from mocapd.tracking.base import Probe, Track, unprobed
 from mocapd.types import BodyState, Camera, Floats, Frame, FrameSet, Pose, Rig, Tracking
 from tests.geometry.rigs import looking_at
 

@@ -16,9 +16,8 @@ from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError, InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.trackers.flex.build import build_flex_tracker
-from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import Resources, build, measuring_tracker
+from mocapd.tracking.known import known_shape
 from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.check.check_step import missing
@@ -31,8 +30,9 @@ from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName, after_shirt
 from mocapd.wizard.wizard import Wizard
 from mocapd.wizard.wizard_view import WizardView
-from tests.trackers.flex.plain_film import plain_film
-from tests.trackers.stepping import Stepping
+from tests.tracking.plain_film import plain_film
+from tests.tracking.profiles import markerless_tracker
+from tests.tracking.stepping import Stepping
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft
 from tests.wizard.test_wizard import WAIT_S, ScriptedStep, make
@@ -157,8 +157,8 @@ def test_without_a_shirt_auto_needs_no_pose_database_and_says_when_nothing_can_r
     known = plain_film().known
     plain = Calibration(known.rig, Wearer(1.75, has_shirt=False))
     assert build("auto", plain, Resources()).name == "auto"
-    assert measuring_tracker("auto", has_shirt=False) == "flex"
-    assert measuring_tracker("colour", has_shirt=True) == "colour"
+    assert measuring_tracker("auto", has_shirt=False) == "markerless"
+    assert measuring_tracker("shirt", has_shirt=True) == "shirt"
     assert known.rig is not None
     alone = replace(plain, rig=Rig(known.rig.cameras[:1]))
     with pytest.raises(ConfigError, match="two of the calibrated cameras"):
@@ -177,7 +177,7 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
     for one in (rig, turned):
         shape, into = known_shape(film.known), TrackingMeasures()
         watched = MeasuringTracker(
-            build_flex_tracker(film.known), one, shape, into.add, by_outline=True
+            markerless_tracker(film.known), one, shape, into.add, by_outline=True
         )
         stepping = Stepping(watched, shape)
         for frames in film.frames:

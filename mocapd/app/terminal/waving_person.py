@@ -7,9 +7,9 @@ from mocapd.body.skeleton import INDEX, global_from_local, joint_positions, loca
 from mocapd.clock import seconds
 from mocapd.geometry import rotations
 from mocapd.pipeline.body_hub import BodySample
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import UNCERTAINTY_M, canned_pose
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, Floats, FrameSet, Pose, Tracking
 
 LOOP = CannedMotion(loop_s=4.0, waves=6, sway_m=0.25)  # to the left in its first second

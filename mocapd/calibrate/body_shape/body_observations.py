@@ -9,7 +9,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation, observe_body
 from mocapd.clock import nanoseconds
-from mocapd.trackers.base import Track
+from mocapd.tracking.base import Track
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Tracking
 
 _SURE = 0.15  # mean confidence of the arms' joints in an observation that counts

@@ -25,7 +25,7 @@ from mocapd.fit.motion_state import (
     stepped,
 )
 from mocapd.fit.solver import Fitter, View
-from mocapd.trackers.base import Track
+from mocapd.tracking.base import Track
 from mocapd.types import Camera, Floats, FrameSet
 
 _PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture

@@ -24,8 +24,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.shirt.segmentation.shirt_appearance import fresh
-from mocapd.trackers.colour import detection
-from mocapd.trackers.colour.params import Params
+from mocapd.tracking.cues.shirt import shirt_search as detection
+from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Bytes, Camera
 
 MEAN_STATURE_M = 1.72  # a picture from one camera does not tell size from distance
@@ -63,9 +63,9 @@ class LightReader:
         model: ColourModel,
         database: PoseDatabase,
         stature_m: float = MEAN_STATURE_M,
-        params: Params | None = None,
+        params: ShirtParams | None = None,
     ) -> None:
-        self._params = params if params is not None else Params()
+        self._params = params if params is not None else ShirtParams()
         self._cameras, self._database = tuple(cameras), database
         self._refinement = LightRefinement(self._cameras, model, stature_m, self._params)
         self._segmenters = self._refinement.segmenters

@@ -21,7 +21,7 @@ from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balan
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
 from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
-from mocapd.trackers.colour.params import Params
+from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Camera
 
 # turns in a row that may be no better: with one camera pose and light then drift off together
@@ -54,7 +54,7 @@ class LightRefinement:
     """The body's fitter and a segmenter a camera; keeps buffers, and each segmenter its light."""
 
     def __init__(
-        self, cameras: Sequence[Camera], model: ColourModel, stature_m: float, params: Params
+        self, cameras: Sequence[Camera], model: ColourModel, stature_m: float, params: ShirtParams
     ) -> None:
         self._params, self._model = params, model
         scales = image_scales(cameras, params.fit.work_width_px)

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.fit.idmap_term import CameraRows, search_within
-from mocapd.fit.idmap_term_kernels import ComparedPictures, offsets_by_distance
+from mocapd.fit.idmap_term_kernels import ComparedPictures
 from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.nearest_pixel_kernels import offsets_by_distance
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics

@@ -13,7 +13,8 @@ from mocapd.geometry.camera_model import to_camera
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.colour.tracker import ColourTracker
+from mocapd.tracking.body_tracker import BodyTracker
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Tracking
 
 # The body's own points that one camera can place in its picture: joint centres, because the middle
@@ -90,7 +91,14 @@ class PatchTracks:
         self.cameras = place_nominally(bare_cameras) if rig is None else rig.cameras
         rigs = [Rig((camera,)) for camera in self.cameras] if rig is None else [rig]
         self._trackers = [
-            ColourTracker(one, stature_m, colour_model, white_balance, database) for one in rigs
+            BodyTracker(
+                "shirt",
+                one,
+                stature_m,
+                ShirtCue(one, stature_m, colour_model, white_balance, database),
+                None,
+            )
+            for one in rigs
         ]
         self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.observations: list[PatchObservation] = []

@@ -17,7 +17,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, step_between
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry.camera_model import to_camera
-from mocapd.trackers.base import Track, Tracker
+from mocapd.tracking.base import Track, Tracker
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 
 EVERY = 4  # frames: one in so many is measured

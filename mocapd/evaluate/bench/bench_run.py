@@ -12,7 +12,7 @@ from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
 from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
 from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
 from mocapd.trackers.registry import TRACKERS
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.tracking_state import TrackingStateParams
 
 
 @dataclass(frozen=True, slots=True, eq=False)

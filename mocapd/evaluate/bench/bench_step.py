@@ -11,7 +11,7 @@ from mocapd.body.shape import BodyShape
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.trackers.base import Tracker
+from mocapd.tracking.base import Tracker
 from mocapd.types import FrameSet
 
 REST = "rest"  # what is left of a step after its last named stage

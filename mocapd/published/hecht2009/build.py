@@ -3,8 +3,8 @@
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.tracker import Hecht2009Tracker
-from mocapd.trackers.known import known_rig, stature_m
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.known import known_rig, stature_m
+from mocapd.tracking.tracking_state import TrackingStateParams
 from mocapd.vision.face.lbp_cascade import frontal_faces
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.published.hecht2009.evidence import CameraEvidence
-from mocapd.trackers.flex.params import StartParams
-from mocapd.trackers.flex.stance import blobs_of, standing
+from mocapd.tracking.cues.clothes.clothes_params import StartParams
+from mocapd.tracking.initialisers.stance import blobs_of, standing
 from mocapd.types import Floats
 
 _HEAD_MIDDLE = 0.935  # of the stature, above the floor

@@ -48,8 +48,8 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
 from mocapd.published.hecht2009.params import FLOOR_M, Params
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
-from mocapd.trackers.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -71,7 +71,7 @@ class _Known:
 
 
 class Hecht2009Tracker:
-    """Two calibrated cameras or more see a whole person; see `mocapd.trackers.base.Tracker` for the promises."""
+    """Two calibrated cameras or more see a whole person; see `mocapd.tracking.base.Tracker` for the promises."""
 
     name = "hecht2009"
 

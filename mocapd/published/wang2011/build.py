@@ -5,8 +5,8 @@ from mocapd.published.wang2011.params import Params, published
 from mocapd.published.wang2011.tracker import Wang2011Tracker
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.known import known_rig, stature_m
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.known import known_rig, stature_m
+from mocapd.tracking.tracking_state import TrackingStateParams
 
 
 def build_wang2011_tracker(

@@ -27,14 +27,14 @@ from mocapd.published.wang2011.placement import blended_local, constraints, gues
 from mocapd.published.wang2011.segmenter import Sight, Wang2011Segmenter
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.trackers.base import (
+from mocapd.tracking.base import (
     Probe,
     Track,
     lost_body,
     require_stature,
     unprobed,
 )
-from mocapd.trackers.tracking_state import TrackingState, TrackingStateParams, faded
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded
 from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Tracking
 from mocapd.vision.raster_kernels import label_triangles
 
@@ -52,7 +52,7 @@ _WELL_SEEN = 40.0  # samples of a joint's patches, best camera
 
 
 class Wang2011Tracker:
-    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.trackers.base for the promises.
+    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.tracking.base for the promises.
 
     It knows nothing of the wearer's proportions and learns none: what it finds with the mean body's is
     told of the body that it is handed.

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
-from mocapd.fit.body_drawing import Outline, Roi
+from mocapd.fit.body_drawing import Outline, Roi, work_size
 from mocapd.fit.fit_params import TICK_S
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
@@ -32,15 +32,14 @@ from mocapd.shirt.segmentation.segmentation_kernels import (
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.types import Bytes, Camera, Floats, Ints, Singles
-from mocapd.vision.background_kernels import changed, learn_background
-from mocapd.vision.background_light import relight_background
+from mocapd.vision.room_background import BackgroundParams, RoomBackground
 
 Ids = NDArray[np.uint8]
 _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _ALL_CERTAIN = np.ones(10, np.int64)
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
-_NEW_LOOKS = 90
+_OLD_LIGHT = np.float32(0.25)  # share of what was counted that is left in another light
 _SKIN_EVERY = 3  # looks
 _WHITE_BALANCE_EVERY = 4  # looks; between them the learned means alone follow the light
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
@@ -52,8 +51,6 @@ class Memory:
 
     appearance: ShirtAppearance
     references: tuple[Floats, ...]  # reference illuminations, paper section 5.2
-    background_mean: NDArray[np.float32]
-    background_age: Ids
     body: Ids  # where the body was last, widened: not background
     shirt_count: NDArray[np.float32]
     other_count: NDArray[np.float32]
@@ -61,6 +58,7 @@ class Memory:
     skin_affine: Singles = field(default_factory=lambda: bare_skin.NOWHERE)
     usual: float = 0.0  # share of the rendered shirt that is usually classified
     looks: int = 0
+    lights: int = 0  # see `RoomBackground`
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,6 +80,8 @@ class CameraSegmenter:
     model: ColourModel
     W: Floats  # of the strokes
     params: SegmentationParams
+    shared: RoomBackground | None = None  # whose owner learns it; None: its own
+    background: RoomBackground = field(init=False)
     memory: Memory = field(init=False)
     picture: Bytes = field(init=False)
     _ids: Ids = field(init=False)
@@ -94,23 +94,26 @@ class CameraSegmenter:
         self._ids, self._pixel_weight = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
         self._distance = np.empty((h // CELL + 1) * (w // CELL + 1) * 10, np.uint8)
         self._tables = ColourTables()
+        self.background = self.shared or RoomBackground(h, w, BackgroundParams())
         self.reset()
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the work picture."""
-        return self.camera.size_px[0] // self.image_scale, self.camera.size_px[
-            1
-        ] // self.image_scale
+        return work_size(self.camera, self.image_scale)
+
+    @property
+    def _owns_background(self) -> bool:
+        return self.shared is None
 
     def reset(self) -> None:
         """Forget everything but the strokes."""
         w, h = self.size
+        if self._owns_background:
+            self.background.reset()
         self.memory = Memory(
             appearance=looks.fresh(self.W),
             references=(self.W,),
-            background_mean=np.zeros((h, w, 3), np.float32),
-            background_age=np.zeros((h, w), np.uint8),
             body=np.zeros((h, w), np.uint8),
             shirt_count=np.zeros(1 << 15, np.float32),
             other_count=np.zeros(1 << 15, np.float32),
@@ -121,8 +124,17 @@ class CameraSegmenter:
         """Take a frame (height,width,3): the work picture is its average over blocks."""
         w, h = self.size
         crop = pixels[: h * self.image_scale, : w * self.image_scale]
-        cv2.resize(crop, (w, h), dst=self.picture, interpolation=cv2.INTER_AREA)
+        self.take(np.asarray(cv2.resize(crop, (w, h), interpolation=cv2.INTER_AREA), np.uint8))
+
+    def take(self, picture: Bytes) -> None:
+        """Take a work picture (h,w,3)."""
+        self.picture = picture
         self.memory.looks += 1
+        if self.background.lights != self.memory.lights:
+            # colours that were counted in the old light say nothing
+            self.memory.lights = self.background.lights
+            self.memory.shirt_count *= _OLD_LIGHT
+            self.memory.other_count *= _OLD_LIGHT
 
     # --- with a pose ---
 
@@ -188,7 +200,7 @@ class CameraSegmenter:
             appearance, self.model.mean, self.model.covariance, p.cloth_sd, p.noise_sd, p.shading_sd
         )
         learned = LearnedPixels(
-            memory.background_mean, memory.background_age, memory.shirt_count, memory.other_count
+            self.background.mean, self.background.age, memory.shirt_count, memory.other_count
         )
         weights = ClassifierWeights(
             float(prior), p.threshold, p.background_tolerance, p.background_penalty,
@@ -259,7 +271,7 @@ class CameraSegmenter:
         out = np.empty(ids.shape, np.bool_)
         bare_pixels(
             self.picture, roi[0], roi[1], ids, memory.skin_affine, p.bare_threshold,
-            memory.background_mean, memory.background_age, 255.0 * p.background_tolerance, out,
+            self.background.mean, self.background.age, 255.0 * p.background_tolerance, out,
         )  # fmt: skip
         return bare_skin.hand_sized(out)
 
@@ -277,19 +289,10 @@ class CameraSegmenter:
             self.memory.body[y0:y1, x0:x1] = cv2.dilate(solid, _NEAR)
 
     def learn_background(self) -> None:
-        """Follow the static background, at once when the light on it jumps."""
-        p, memory = self.params, self.memory
-        arrays = (memory.background_mean, memory.background_age)
-        share = changed(self.picture, memory.body, *arrays, p.background_tolerance)
-        if share > p.background_jump:
-            # a lamp went on or off: what is seen beside the body now is the background in its new
-            # light, and colours counted in the old light say nothing
-            relight_background(self.picture, memory.body, *arrays)
-            memory.shirt_count *= 0.25
-            memory.other_count *= 0.25
-        # every second row while it is new, then half as often for twice as much
-        rate, step = (0.02, 2) if memory.looks < _NEW_LOOKS else (0.04, 4)
-        learn_background(self.picture, memory.body, *arrays, rate, memory.looks % step, step)
+        """Follow the background beside the body, unless whoever owns it does."""
+        if self._owns_background:
+            self.background.follow_light(self.picture, self.memory.body)
+            self.background.learn(self.picture, self.memory.body)
 
     # --- without a pose ---
 
@@ -306,8 +309,8 @@ class CameraSegmenter:
             classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
             suppress_background(
                 self.picture,
-                memory.background_mean,
-                memory.background_age,
+                self.background.mean,
+                self.background.age,
                 p.background_tolerance,
                 ids,
             )

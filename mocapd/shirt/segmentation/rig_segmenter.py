@@ -1,11 +1,10 @@
 """The segmenters of all cameras: the predicted body classified in each, and what they learn from it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from mocapd.body.shirt_patches import SLEEVE_PATCHES, standard_shirt
-from mocapd.clock import seconds
 from mocapd.each import in_turn
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
@@ -15,8 +14,8 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.segmentation.bare_skin import face_disc
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
-from mocapd.types import Floats, FrameSet, Ints
-from mocapd.vision.frame_size import check_frame_size
+from mocapd.types import Bytes, Floats, Ints
+from mocapd.vision.room_background import RoomBackground
 
 
 class RigSegmenter:
@@ -29,30 +28,29 @@ class RigSegmenter:
         model: ColourModel,
         white_balance: Mapping[str, Floats],
         params: SegmentationParams,
+        backgrounds: Sequence[RoomBackground] | None = None,
     ) -> None:
-        """white_balance: W (3,3) by camera name, identity where absent."""
+        """white_balance: W (3,3) by camera name, identity where absent; backgrounds: of the cameras, which others learn;
+        None: each segmenter learns its own."""
         self._fitter, self._params, self._each = fitter, params, fitter.each
         self.each = [
             CameraSegmenter(
                 d.camera, d.image_scale, model,
                 np.asarray(white_balance.get(d.camera.name, np.eye(3))), params,
+                None if backgrounds is None else backgrounds[i],
             )
-            for d in fitter.drawings
+            for i, d in enumerate(fitter.drawings)
         ]  # fmt: skip
-        self._index = {segmenter.camera.name: i for i, segmenter in enumerate(self.each)}
 
     def reset(self) -> None:
         """Forget light and background."""
         for segmenter in self.each:
             segmenter.reset()
 
-    def look(self, frames: FrameSet) -> dict[int, float]:
-        """Take the pictures; those `present`. Raises ConfigError when one is not of its calibration's size."""
-        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
-        for i, frame in mine:
-            check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
-        in_turn(lambda one: self.each[one[0]].look(one[1].pixels), mine)
-        return {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
+    def take(self, pictures: Mapping[int, Bytes]) -> None:
+        """Take work pictures (h,w,3), by camera."""
+        for i, picture in pictures.items():
+            self.each[i].take(picture)
 
     def views(
         self, state: MotionState, present: dict[int, float], uncertain: tuple[str, ...] = ()

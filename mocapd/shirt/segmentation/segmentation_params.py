@@ -24,7 +24,6 @@ class SegmentationParams:
     bare_threshold: float = 3.0  # from which on nothing is skin [standard deviations]
     skin_memory_s: float = 1.0  # time constant of the colour of the skin
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
-    background_jump: float = 0.25  # share of the background that changes at once when a lamp does
     soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
     soft_unknown: float = 0.5  # the same where the background was never seen
 

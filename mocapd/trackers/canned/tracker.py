@@ -6,8 +6,8 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, global_from_local, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
-from mocapd.trackers.base import Probe, Track, lost_body, unprobed
 from mocapd.trackers.canned.canned_motion import CannedMotion
+from mocapd.tracking.base import Probe, Track, lost_body, unprobed
 from mocapd.types import BodyState, FrameSet, Pose, Skeleton, Tracking
 
 UNCERTAINTY_M = 0.01  # such as clients get of trackers that look

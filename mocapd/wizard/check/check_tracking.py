@@ -14,9 +14,9 @@ from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.session.tracker_setup import cached, ready_tracker
-from mocapd.trackers.base import Tracker
-from mocapd.trackers.known import known_shape
 from mocapd.trackers.registry import entry, measuring_tracker
+from mocapd.tracking.base import Tracker
+from mocapd.tracking.known import known_shape
 from mocapd.types import Rig
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures

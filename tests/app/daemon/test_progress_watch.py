@@ -22,8 +22,8 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.service.service import Service, Snapshot
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.session.session import Session
-from mocapd.trackers.base import Track
 from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
 from mocapd.types import FrameSet, Tracking
 from tests.app.daemon.manager import Manager
 from tests.app.terminal.test_status_line import CAMERA, METRICS

@@ -9,7 +9,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
-from mocapd.trackers.lost_reason import LostReason
+from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Tracking
 
 NOTHING = Percentiles(float("nan"), float("nan"))
@@ -22,7 +22,7 @@ METRICS = Metrics(
     step_ms=Percentiles(8.0, 9.0),
     spread_ms=Percentiles(3.0, 4.0),
     tracking=Tracking.LIVE,
-    tracker="colour",
+    tracker="shirt",
     cameras={},
 )
 CAMERA = CaptureStatus("left", CaptureState.LIVE, "", 300, 0, 0, 30.04, 1)
@@ -33,7 +33,7 @@ UNHEARD = SinkStatus(0, 300, 0, "no receiver on 127.0.0.1:39541")
 def test_everything_is_in_one_line() -> None:
     text = status_text(Snapshot(METRICS, {"left": CAMERA}, {"zenoh": LISTENED, "osc": UNHEARD}))
     assert text == (
-        "30.0 Hz | 18 ms (p95 25) | colour live | left 30.0 | zenoh: game | osc: nobody listens"
+        "30.0 Hz | 18 ms (p95 25) | shirt live | left 30.0 | zenoh: game | osc: nobody listens"
     )
 
 
@@ -47,7 +47,7 @@ def test_before_the_first_frame_nothing_is_made_up() -> None:
 def test_somebody_who_is_not_taken_for_a_person_is_told_of() -> None:
     lost = replace(METRICS, tracking=Tracking.LOST, lost_reason=LostReason.UNRECOGNISED)
     text = status_text(Snapshot(lost, {"left": CAMERA}, {}))
-    assert "| colour lost | somebody moves here who is not taken for a person |" in text
+    assert "| shirt lost | somebody moves here who is not taken for a person |" in text
     assert state_text(Snapshot(lost, {}, {})) == "somebody moves here who is not taken for a person"
 
 

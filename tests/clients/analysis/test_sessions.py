@@ -23,7 +23,7 @@ def track(path: Path, **changed: object) -> Path:
         "joints": joints_m,
         "global_quats": np.tile([0.0, 0.0, 0.0, 1.0], (len(T), len(NAMES), 1)),
         "confidence": np.ones(joints_m.shape[:2]),
-        "tracker": np.array(["colour"] * len(T)),
+        "tracker": np.array(["shirt"] * len(T)),
     }
     fields |= changed
     np.savez_compressed(path, **{k: v for k, v in fields.items() if v is not None})  # type: ignore[arg-type]

@@ -36,7 +36,7 @@ def session_frames(seconds: float, lost_s: tuple[float, float] = (0.0, 0.0)) -> 
         body = BodyState(
             t_ns,
             Tracking.LOST if lost else Tracking.LIVE,
-            "colour",
+            "shirt",
             None if lost else truth.pose,
             None if lost else joints_m,
             np.full(len(joints_m), 0.0 if lost else 1.0),

@@ -10,11 +10,11 @@ from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import relaxed
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
-from mocapd.trackers.base import Track
-from mocapd.trackers.known import known_shape
+from mocapd.tracking.base import Track
+from mocapd.tracking.known import known_shape
 from mocapd.types import FrameSet, Tracking
-from tests.trackers.flex.plain_film import N_EMPTY, PlainFilm, plain_film
-from tests.trackers.stepping import Stepping
+from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
+from tests.tracking.stepping import Stepping
 
 pytestmark = pytest.mark.kernels
 

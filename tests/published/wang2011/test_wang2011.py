@@ -37,9 +37,9 @@ from mocapd.published.wang2011.tracker import Wang2011Tracker
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.shirt.pose_database.key_poses import arm_rotations
-from mocapd.trackers.tracking_state import TrackingStateParams
+from mocapd.tracking.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Tracking
-from tests.trackers.stepping import Stepping
+from tests.tracking.stepping import Stepping
 
 pytestmark = pytest.mark.kernels
 

@@ -1,6 +1,6 @@
 """The error of a tracked wrist, as it was measured. Pure but for the random numbers given.
 
-Of the colour tracker's wrists on four recorded captures of two cameras at 30 Hz (pair_clutter_jacks, pair_lampoff_basket,
+Of the shirt tracker's wrists on four recorded captures of two cameras at 30 Hz (pair_clutter_jacks, pair_lampoff_basket,
 pair_office_traffic, pair_outdoor_async) against their ground truth: 4 to 15 mm an axis; correlated from frame to
 frame by 0.56 to 0.82, three frames apart by 0.2 to 0.6; the part that is new in every frame 1.6 to 2.6 mm. One wrist
 was worse, which was long behind the body: 50 mm, correlated by 0.93.

@@ -1,1 +1,0 @@
-"""Which tracker speaks, frame by frame, and one body of what several know."""

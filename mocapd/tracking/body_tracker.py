@@ -1,0 +1,322 @@
+"""The step machine: predict, observe, solve, judge the cues, learn, and publish one body."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.shape import BodyShape
+from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.clock import nanoseconds, seconds
+from mocapd.each import Each, in_turn
+from mocapd.errors import ConfigError
+from mocapd.fit.motion_state import MotionState, gone_on, known_of, learned
+from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST, CueTrust
+from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
+from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
+from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
+from mocapd.tracking.pictures import Pictures
+from mocapd.tracking.pose_filter import PoseFilter
+from mocapd.tracking.published_body import Found, published_body
+from mocapd.tracking.track_state import TrackState, Wearer, at_rest
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
+from mocapd.tracking.trunk_and_legs import joined, with_still_legs, with_upper
+from mocapd.types import BodyState, FrameSet, Rig, Tracking
+
+_TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTrackerParams:
+    """Times are of the frames, never counted in them [s]."""
+
+    work_width_px: int = 320  # of pictures averaged down, about
+    damping: float = 0.6  # of the motion that a prediction goes on with
+    arrive_s: float = 0.15  # clothes alone begin no sooner where the shirt may: first looks at who walks in are the worst
+    overrule_s: float = 2.0  # the shirt seen elsewhere for so long is right
+    legs_last_s: float = 0.5  # legs that are not seen are published for so long
+
+
+class BodyTracker:
+    """A person whom one camera or more see in the shirt, or two and more in any clothes; see `tracking.base.Tracker` for the
+    promises. A body says which cues carry it: `shirt`, `clothes`, or both."""
+
+    def __init__(
+        self,
+        name: str,
+        rig: Rig,
+        stature_m: float,
+        shirt: ShirtCue | None,
+        clothes: ClothesCue | None,
+        params: BodyTrackerParams | None = None,
+        tracking: TrackingStateParams | None = None,
+        each: Each = in_turn,
+    ) -> None:
+        """name: of the profile; one of the cues at least; each: of the cameras."""
+        self.name = name
+        self.params = p = params if params is not None else BodyTrackerParams()
+        self.probe: Probe = unprobed
+        self._stature_m, self._skeleton = stature_m, standard_skeleton(stature_m)
+        self.rig, self._shirt, self._clothes = rig, shirt, clothes
+        self._pictures = Pictures(rig.cameras, p.work_width_px, each)
+        self._model = clothes.model if clothes else build_model(stature_m, full_body())
+        self._watch = ShirtWatch(shirt, self._model, p.damping) if shirt is not None else None
+        self._tracking, self._filter = TrackingState(tracking), PoseFilter()
+        self._filter.rehearse(self._skeleton)
+        for cue in (shirt, clothes):
+            if cue is not None:
+                cue.rehearse()
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """See Tracker."""
+        for one in (self._shirt, self._clothes, self._watch, self._filter):
+            if one is not None:
+                one.reset()
+        self._near = near if near is not None and near.pose is not None else None
+        self._tracking.reset(None if self._near is None else self._near.t_ns)
+        self._known: TrackState | None = None
+        self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
+        self._turn = self._begun_ns = 0
+
+    def learn_room(self, frames: Iterable[FrameSet]) -> None:
+        """See `RoomLearner`. Raises ConfigError as `step` does, and where no cue looks at clothes."""
+        if self._clothes is None:
+            raise ConfigError(
+                f"the tracker {self.name!r} learns no room", "--room", "leave it out, or add --tracker markerless"
+            )  # fmt: skip
+        self._clothes.learn_room(frames, self._pictures)
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
+        require_stature(shape, self._stature_m)
+        self._turn += 1
+        present = self._look(frames)
+        self.probe("picture")
+        wearer = Wearer(*known_of(shape, full_body()), shape.taught_s)
+        now, found = self._recent(frames.t_ns), Found()
+        if present:
+            if now is not None:
+                now, found = self._follow(now.of(wearer), wearer, present, frames)
+            else:
+                now, found = self._begin(wearer, present, frames)
+        is_seen = now is not None and now.t_ns == frames.t_ns
+        tracking = self._tracking.step(
+            frames.t_ns, is_seen and not self._is_arriving(now, frames.t_ns)
+        )
+        if tracking is Tracking.LOST and not is_seen:
+            now = None
+        self._known = now
+        self._learn(found, present)
+        self.probe("learn")
+        if now is not None and self._shirt is not None:
+            n = self._shirt.model.n_shape
+            shape = learned(
+                shape, now.motion.factors[:n], now.motion.information[:n, :n], now.taught_s
+            )
+        if tracking is Tracking.LOST or now is None:
+            self._filter.reset()
+            reason = self._clothes.lost_reason(frames.t_ns) if self._clothes is not None else None
+            return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
+        motion = now.motion
+        if not is_seen:
+            motion = gone_on(
+                self._model, motion, self._coasts_s(now, frames.t_ns), self.params.damping
+            )
+        track = published_body(
+            now,
+            motion,
+            found,
+            self._shirt,
+            self._clothes,
+            self._filter,
+            frames.t_ns,
+            tracking,
+            shape,
+        )
+        self.probe("publish")
+        return track
+
+    # --- stages ---
+
+    def _look(self, frames: FrameSet) -> dict[int, float]:
+        """Each seeing camera's own time after the frame set's [s], by index."""
+        present = self._pictures.look(frames)
+        if self._clothes is not None:
+            self._clothes.take(self._pictures, frames.t_ns)
+        if self._shirt is not None:
+            self._shirt.take(self._pictures)
+        return present
+
+    def _recent(self, t_ns: int) -> TrackState | None:
+        """Who is known, unless that is too old to predict from."""
+        known = self._known
+        return None if known is None or t_ns - known.t_ns > nanoseconds(_TOO_OLD_S) else known
+
+    def _follow(
+        self, known: TrackState, wearer: Wearer, present: dict[int, float], frames: FrameSet
+    ) -> tuple[TrackState, Found]:
+        """One frame of tracking; one without evidence leaves `known` at its old time."""
+        t_ns, clothes, watch = frames.t_ns, self._clothes, self._watch
+        dt_s = max(seconds(t_ns - known.t_ns), 1e-3)
+        predicted = gone_on(self._model, known.motion, dt_s, self.params.damping)
+        seen = trunk = whole = other = None
+        if clothes is not None:
+            seen = clothes.observe(predicted, t_ns, known.legs_since_ns, known.by_shirt)
+            self.probe("clothes.observe")
+        if watch is not None:
+            trunk = watch.see(
+                known,
+                predicted,
+                wearer,
+                dt_s,
+                present,
+                frames,
+                self._turn,
+                self._shirt_trust.believed,
+                self.probe,
+            )
+            if watch.has_looked:
+                quality = None if trunk is None else trunk.fit.explained
+                self._shirt_trust = self._shirt_trust.judged(
+                    t_ns, quality, len(present), SHIRT_TRUST
+                )
+            other = watch.elsewhere
+        if trunk is not None and watch is not None and self._carries(known, t_ns):
+            if other is None:
+                return self._carried(known, predicted, trunk, seen, dt_s, frames)
+            watch.reset()
+            return self._carried(other, other.motion, trunk, None, dt_s, frames)
+        if clothes is not None and seen is not None:
+            whole = clothes.whole(known, seen, dt_s, frames, self.probe)
+        self._judge_clothes(whole, t_ns, len(present))
+        trunk = None if other is not None else trunk
+        if whole is None and trunk is not None:
+            return self._carried(known, predicted, trunk, seen, dt_s, frames)
+        if whole is None:
+            return known, Found()
+        since_ns = t_ns if known.legs_since_ns is None else known.legs_since_ns
+        state = TrackState(
+            t_ns, whole.motion, whole.cameras, trunk.fit if trunk else None, whole.fit, t_ns, since_ns, whole.changed,
+            known.taught_s,
+        )  # fmt: skip
+        return state, Found(trunk, whole)
+
+    def _carries(self, known: TrackState, t_ns: int) -> bool:
+        """Whether the shirt, which is seen, carries trunk and arms in this frame."""
+        shirt, clothes = self._shirt_trust, self._clothes_trust
+        if self._clothes is None or self._watch is None:
+            return True
+        if known.by_shirt:
+            return shirt.believed or shirt.well or not clothes.believed
+        if self._watch.elsewhere is not None and clothes.believed:
+            elsewhere_ns = t_ns - self._watch.elsewhere_since_ns
+            return shirt.believed and elsewhere_ns >= nanoseconds(self.params.overrule_s)
+        return shirt.believed or (shirt.well and not clothes.believed)
+
+    def _carried(
+        self,
+        known: TrackState,
+        predicted: MotionState,
+        trunk: ShirtFound,
+        seen: Observed | None,
+        dt_s: float,
+        frames: FrameSet,
+    ) -> tuple[TrackState, Found]:
+        """Trunk and arms by the shirt, legs and head by the clothes."""
+        assert self._shirt is not None
+        t_ns, clothes = frames.t_ns, self._clothes
+        start, below = with_upper(predicted, trunk.motion), None
+        if clothes is not None:
+            below = clothes.below(known, start, seen, dt_s, frames, self.probe)
+            self._judge_clothes(below, t_ns, len(clothes.cameras.present))
+        names, changed = self._shirt.names(trunk.views), tuple(f"{s}_arm" for s in trunk.jumped)
+        if below is None:
+            motion = with_still_legs(start, known.motion, len(trunk.motion.velocity))
+            lasts = t_ns - known.whole_ns <= nanoseconds(self.params.legs_last_s)
+            whole, whole_ns = known.whole if lasts else None, known.whole_ns
+            since_ns = known.legs_since_ns if whole is not None else None
+        else:
+            motion = joined(below.motion, trunk.motion)
+            whole, whole_ns = below.fit, t_ns
+            since_ns = t_ns if known.legs_since_ns is None else known.legs_since_ns
+            names, changed = (*names, *below.cameras), (*changed, *below.changed)
+        state = TrackState(
+            t_ns, motion, tuple(dict.fromkeys(names)), trunk.fit, whole, whole_ns, since_ns, changed, trunk.taught_s,
+            by_shirt=True,
+        )  # fmt: skip
+        return state, Found(trunk, below)
+
+    def _begin(
+        self, wearer: Wearer, present: dict[int, float], frames: FrameSet
+    ) -> tuple[TrackState | None, Found]:
+        """Look for somebody: where they were known, in the shirt, before the background."""
+        near, self._near = self._near, None
+        if near is not None and near.pose is not None:
+            if abs(frames.t_ns - near.t_ns) <= nanoseconds(_TOO_OLD_S):
+                local = local_from_global(self._skeleton, near.pose.quats_xyzw)
+                there = at_rest(self._model, near.pose.root_m.copy(), local, wearer)
+                trunk = (
+                    self._shirt.begin(there, wearer.taught_s, present, self._turn)
+                    if self._shirt
+                    else None
+                )
+                whole = self._clothes.begin(there, frames) if self._clothes else None
+                if trunk is not None or whole is not None:
+                    return self._begun(there, trunk, whole, frames)
+            self._tracking.reset()
+        if self._watch is not None:
+            trunk = self._watch.search(wearer, present, frames.t_ns, self._turn)
+            self.probe("shirt.detect")
+            if trunk is not None:
+                return self._begun(self._watch.standing(trunk, wearer), trunk, None, frames)
+        if self._clothes is not None:
+            whole = self._clothes.search(wearer, frames.t_ns)
+            self.probe("clothes.start")
+            if whole is not None:
+                return self._begun(whole.motion, None, whole, frames)
+        return None, Found()
+
+    def _begun(
+        self,
+        there: MotionState,
+        trunk: ShirtFound | None,
+        whole: ClothesFound | None,
+        frames: FrameSet,
+    ) -> tuple[TrackState, Found]:
+        t_ns = self._begun_ns = frames.t_ns
+        known = TrackState(t_ns, there, ())
+        if whole is not None:
+            known = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
+        if trunk is None:
+            return known, Found(None, whole)
+        return self._carried(known, known.motion, trunk, None, 1e-3, frames)
+
+    def _is_arriving(self, now: TrackState | None, t_ns: int) -> bool:
+        """Whether this is a first look at somebody whom the shirt may know better a moment later."""
+        if (
+            now is None
+            or now.by_shirt
+            or self._shirt is None
+            or self._tracking.now is not Tracking.LOST
+        ):
+            return False
+        return t_ns - self._begun_ns < nanoseconds(self.params.arrive_s)
+
+    def _judge_clothes(self, found: ClothesFound | None, t_ns: int, cameras: int) -> None:
+        quality = None if found is None else found.fit.explained
+        self._clothes_trust = self._clothes_trust.judged(t_ns, quality, cameras, CLOTHES_TRUST)
+
+    def _learn(self, found: Found, present: dict[int, float]) -> None:
+        """What each cue learns of a frame in which it saw the body."""
+        known, clothes = self._known, self._clothes
+        if self._shirt is not None:
+            self._shirt.learn(found.shirt, present, known is None)
+        if clothes is not None:
+            clothes.learn(found.clothes, known is None, known is not None and known.by_shirt)
+
+    def _coasts_s(self, known: TrackState, t_ns: int) -> float:
+        """How far a body that is not seen goes on [s]: then it stays."""
+        return min(seconds(t_ns - known.t_ns), 0.1)

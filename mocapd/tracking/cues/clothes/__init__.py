@@ -1,0 +1,1 @@
+"""Any clothes: learned colours of body regions before a learned background."""

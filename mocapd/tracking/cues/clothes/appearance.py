@@ -1,0 +1,149 @@
+"""What the wearer looks like to one camera: the colours of each region, and of what is beside them.
+
+The paper learns ten colours along each limb over the first frames and then keeps them (Hecht et al. 2009, III.E). Here they
+are histograms of regions, learned slowly on, since light changes and people turn; what else stands before the background is
+learned as a class of its own.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.body.regions import Band, Region
+from mocapd.tracking.cues.clothes.appearance_kernels import (
+    BITS,
+    DISTANCE_GRID_PX,
+    N_BINS,
+    N_CLASSES,
+    classify_regions,
+    count_colours,
+    log_table,
+)
+from mocapd.tracking.cues.clothes.region_distance_kernels import LANES, chamfer_distances
+from mocapd.types import Bytes, Floats, Singles
+from mocapd.vision.foreground_kernels import SHADOW
+
+_UNCOUNTED = 255
+_CORE = np.ones((3, 3), np.uint8)  # a drawn region's inside: its edge may be off by a pixel
+_BESIDE = np.ones(
+    (7, 7), np.uint8
+)  # what is farther from the drawn body than half of this is not the body
+
+
+@dataclass(frozen=True, slots=True)
+class AppearanceParams:
+    """How colours are learned, and what they decide."""
+
+    keep: float = 0.97  # share of what was counted that such a frame leaves
+    share: float = 0.03  # of a pixel that it adds
+    new_light: float = 0.3  # share of what was counted that is left when a lamp goes on or off
+    least_share: float = 2e-5  # of a colour that a region never had
+    per_px: float = 0.25  # logarithm of a likelihood, by work pixel from where a region is expected
+    longest_px: float = 40.0
+    reach_px: float = 26.0  # beyond, nothing belongs to the body
+    other_cost: float = 1.0  # of being none of the body
+    other_per_px: float = 0.5
+    other_px: float = 8.0
+    shadow_costs: tuple[float, float] = (1.5, 4.0)  # of a sure and a likely shadow, to be one
+    shadow_per_px: float = 0.75
+    shadow_px: float = 4.0  # from the expected body: nearer, cloth is likelier
+    least_other_px: float = 50.0  # seen beside the body before it is a class
+
+
+class Appearance:
+    """Histograms of one camera and what is computed from them; the only state is theirs."""
+
+    def __init__(self, params: AppearanceParams) -> None:
+        self._params = params
+        self._counts = np.zeros((1 + len(Region) + len(Band), N_BINS), np.float32)
+        self._table = np.zeros_like(self._counts)
+        n = 1 << BITS
+        self._scratch = np.empty((n, n, n), np.float32)
+        self.reset()
+
+    def reset(self) -> None:
+        """Nothing was seen."""
+        self._counts[:] = 0.0
+        self._refresh()
+
+    def relight(self, gain: Floats) -> None:
+        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way to what is then
+        seen."""
+        n = 1 << BITS
+        middles = np.arange(n) + 0.5
+        to = [np.clip(middles * channel, 0, n - 1).astype(np.int64) for channel in gain]
+        there = (to[0][:, None, None] << 2 * BITS) | (to[1][:, None] << BITS) | to[2]
+        old = self._counts.copy()
+        self._counts[:] = 0.0
+        for counted, before in zip(self._counts, old, strict=True):
+            np.add.at(counted, there.ravel(), self._params.new_light * before)
+        self._refresh()
+
+    def overlap(self, one: int, other: int) -> float:
+        """0..1: how much of two regions' colours is the same; 1 where one of them was not seen."""
+        shares = []
+        for k in (one, other):
+            share = np.exp(-self._table[k]) - self._params.least_share
+            if self._counts[k].sum() <= 0.0:
+                return 1.0
+            shares.append(share / share.sum())
+        return float(np.minimum(*shares).sum())
+
+    def join(self, look: Sequence[int]) -> None:
+        """Count what was seen of each region with the region of its look, which is learned as one from now on."""
+        for k, other in enumerate(look):
+            if other != k:
+                self._counts[other] += self._counts[k]
+                self._counts[k] = 0.0
+        self._refresh()
+
+    def learn(self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None) -> None:
+        """Count the colours of a picture (h,w,3) where the body is drawn (h,w), as far as it is before the background.
+
+        ids (h,w): what was classified; where it is another region than what is drawn the pose may be wrong, and is not
+        learned from. None: nothing was learned before, and this picture counts in full.
+        """
+        classes = np.full(drawn.shape, _UNCOUNTED, np.uint8)
+        seen = before > 0
+        classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
+        lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
+        core = (lowest == highest) & (drawn > 0) & seen
+        core &= before < SHADOW if ids is None else ids == drawn
+        classes[core] = drawn[core]
+        p = self._params
+        if ids is not None:
+            self._counts *= p.keep
+        count_colours(picture, classes, _UNCOUNTED, 1.0 if ids is None else p.share, self._counts)
+        self._refresh()
+
+    def classify(
+        self, picture: Bytes, before: Bytes, distance_px: Singles, on_floor: Bytes
+    ) -> Bytes:
+        """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
+        p = self._params
+        ids = np.empty(before.shape, np.uint8)
+        classify_regions(
+            picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
+            p.other_cost if self._knows_others else 1e6, p.other_per_px, p.other_px,
+            p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
+        )  # fmt: skip
+        return ids
+
+    def _refresh(self) -> None:
+        self.is_learned = bool(self._counts[1:].any())  # whether the body was seen
+        self._knows_others = bool(self._counts[0].sum() > self._params.least_other_px)
+        # bands are counted only until they are joined
+        n = len(self._counts) if self._counts[N_CLASSES:].any() else N_CLASSES
+        log_table(self._counts[:n], self._params.least_share, self._scratch, self._table[:n])
+
+
+def region_distances(drawn: Bytes) -> Singles:
+    """Distances ((h+1)//2,(w+1)//2,8) [px] from every second pixel each way to where each region 1.. is drawn (h,w); large
+    where it is not."""
+    small = np.ascontiguousarray(drawn[::DISTANCE_GRID_PX, ::DISTANCE_GRID_PX])
+    h, w = small.shape
+    out = np.empty((h + 2, w + 2, LANES), np.float32)
+    chamfer_distances(small, float(DISTANCE_GRID_PX), out)
+    return out[1:-1, 1:-1]

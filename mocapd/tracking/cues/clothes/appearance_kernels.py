@@ -1,0 +1,139 @@
+"""Colours of the body's regions as histograms, and which region a pixel belongs to."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from mocapd.vision.foreground_kernels import SHADOW
+
+Singles = NDArray[np.float32]
+N_CLASSES = 8  # the seven regions, and 0: none of them
+BITS = 4  # of each channel
+DISTANCE_GRID_PX = 2  # no colour depends on a pixel's distance
+N_BINS = 1 << 3 * BITS
+
+
+@njit(cache=True, nogil=True, inline="always")
+def colour_bin(picture: NDArray[np.uint8], y: int, x: int) -> int:
+    """The histogram's bin of a pixel."""
+    shift = 8 - BITS
+    b, g, r = picture[y, x, 0] >> shift, picture[y, x, 1] >> shift, picture[y, x, 2] >> shift
+    return (int(b) << 2 * BITS) | (int(g) << BITS) | int(r)
+
+
+@njit(cache=True, nogil=True)
+def count_colours(
+    picture: NDArray[np.uint8],
+    classes: NDArray[np.uint8],
+    nothing: int,
+    rate: float,
+    counts: Singles,
+) -> None:
+    """Add `rate` to counts (8,4096) for each pixel of the picture (h,w,3), by its class (h,w); `nothing`: a class that is not
+    counted."""
+    h, w = classes.shape
+    for y in range(h):
+        for x in range(w):
+            k = classes[y, x]
+            if k != nothing:
+                counts[k, colour_bin(picture, y, x)] += np.float32(rate)
+
+
+@njit(cache=True, nogil=True)
+def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
+    """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
+    in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
+    n = 1 << BITS
+    never = -np.log(np.float32(0.0) + np.float32(least))
+    for k in range(len(counts)):
+        if not counts[k].any():
+            out[k] = never
+            continue
+        total = np.float32(1e-3)
+        for i in range(N_BINS):
+            total += counts[k, i]
+        old, new = counts[k].reshape(n, n, n), out[k].reshape(n, n, n)
+        for b in range(n):
+            for g in range(n):
+                row = old[b, g]
+                _smooth(row[:-2], row[1:-1], row[2:], new[b, g, 1:-1])
+                _smooth(row[:1], row[:1], row[1:2], new[b, g, :1])
+                _smooth(row[-2:-1], row[-1:], row[-1:], new[b, g, -1:])
+        for b in range(n):
+            for g in range(n):
+                below, above = max(g - 1, 0), min(g + 1, n - 1)
+                _smooth(new[b, below], new[b, g], new[b, above], scratch[b, g])
+        layers = scratch.reshape(n, n * n)
+        for b in range(n):
+            below, above = max(b - 1, 0), min(b + 1, n - 1)
+            smooth = out[k, b * n * n : (b + 1) * n * n]
+            _smooth(layers[below], layers[b], layers[above], smooth)
+            for i in range(n * n):
+                # most colours are seen nowhere, and a logarithm takes a while
+                share = smooth[i] / total + np.float32(least)
+                smooth[i] = never if smooth[i] == 0.0 else -np.log(share)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _smooth(before: Singles, here: Singles, after: Singles, out: Singles) -> None:
+    """out (n,): a half of what is here and a quarter of either neighbour."""
+    quarter, half = np.float32(0.25), np.float32(0.5)
+    for i in range(out.shape[0]):
+        out[i] = quarter * (before[i] + after[i]) + half * here[i]
+
+
+@njit(cache=True, nogil=True)
+def classify_regions(
+    picture: NDArray[np.uint8],
+    before: NDArray[np.uint8],
+    distance_px: Singles,
+    table: Singles,
+    per_px: float,
+    longest_px: float,
+    reach_px: float,
+    other_cost: float,
+    other_per_px: float,
+    other_px: float,
+    shadow_costs: tuple[float, float],
+    shadow_per_px: float,
+    shadow_px: float,
+    on_floor: NDArray[np.uint8],
+    out: NDArray[np.uint8],
+) -> None:
+    """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
+
+    before (h,w): as of `stands_before`; distance_px: of `region_distances`; table (8,4096): `log_table`. A
+    region pays per_px for each pixel of distance, up to longest_px. What is no region pays other_cost, and other_per_px for
+    each pixel that it is away from the body, up to other_px: limbs move there. What may be a shadow pays at most shadow_costs
+    (a sure one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px; where
+    on_floor (h,w) is 0, only sure ones are shadows. Beyond reach_px from all regions nothing is.
+    """
+    h, w = before.shape
+    for y in range(h):
+        for x in range(w):
+            out[y, x] = 0
+            if before[y, x] == 0:
+                continue
+            i = colour_bin(picture, y, x)
+            nearest = np.float32(1e9)
+            best, found = np.float32(1e9), 0
+            for k in range(1, N_CLASSES):
+                d = distance_px[y // DISTANCE_GRID_PX, x // DISTANCE_GRID_PX, k - 1]
+                nearest = min(nearest, d)
+                cost = table[k, i] + np.float32(per_px) * min(d, np.float32(longest_px))
+                if cost < best:
+                    best, found = cost, k
+            if nearest > reach_px:
+                continue
+            other = (
+                table[0, i]
+                + np.float32(other_cost)
+                + np.float32(other_per_px) * min(nearest, np.float32(other_px))
+            )
+            if before[y, x] == SHADOW or (before[y, x] > SHADOW and on_floor[y, x] != 0):
+                within = np.float32(shadow_per_px) * max(
+                    np.float32(shadow_px) - nearest, np.float32(0.0)
+                )
+                other = min(other, np.float32(shadow_costs[before[y, x] - SHADOW]) + within)
+            if best < other:
+                out[y, x] = found

@@ -1,0 +1,310 @@
+"""What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.fit.body_drawing import Roi, work_size
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.tracking.cues.clothes.appearance import Appearance, region_distances
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.floor_view import FloorView
+from mocapd.types import Bytes, Floats
+from mocapd.vision.clip_background import clip_background
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
+from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.uncovered import brightness_edges
+
+T = TypeVar("T")
+
+_ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
+_LINE = np.ones((3, 3), np.uint8)
+
+
+class CameraView:
+    """One camera: its newest work picture, background and appearance."""
+
+    def __init__(
+        self, name: str, work_size_px: tuple[int, int], image_scale: int, params: ClothesParams
+    ) -> None:
+        """work_size_px: width and height of its work pictures; image_scale: by how much frames are averaged down."""
+        self.name, self.image_scale = name, image_scale
+        w, h = work_size_px
+        self.picture = np.zeros((h, w, 3), np.uint8)
+        self.before = np.zeros((h, w), np.uint8)
+        self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
+        self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
+        self.near: Roi | None = None  # the region about it
+        self.background = RoomBackground(h, w, params.background)
+        self.appearance = Appearance(params.appearance)
+        self.may_hold_body = False  # the background, learned from a recording with somebody in it
+        self.beside, self.close = (
+            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        )
+
+    def reset(self) -> None:
+        """Forget background and appearance."""
+        self.background.reset()
+        self.appearance.reset()
+        self.may_hold_body = False
+        self.mark_body(None)
+
+    def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
+        """Where the body is now, a region and what is drawn there (h,w), widened, so that it is not learned as background;
+        None: nobody is."""
+        self.body[:] = 0
+        self.drawn[:] = 0
+        self.near = None
+        if drawn is not None:
+            self.near, ids = drawn
+            x0, y0, x1, y1 = self.near
+            here = (ids > 0).astype(np.uint8)
+            self.drawn[y0:y1, x0:x1] = here
+            # the region has a wider margin than that
+            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
+
+    def learn_background(self, agrees: bool) -> None:
+        """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
+        seen of the background is learned nearer to them."""
+        self.background.learn(self.picture, self.body)
+        if agrees and self.near is not None:
+            x0, y0, x1, y1 = self.near
+            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
+            self.background.learn_unknown(self.picture, body, self.near)
+
+    def stand_before(self, everywhere: bool = True) -> None:
+        """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
+        gain = self.background.follow_light(self.picture, self.body)
+        if gain is not None:
+            self.appearance.relight(gain)
+        nowhere = (0, 0, 0, 0)
+        within = None if everywhere else self.near or nowhere
+        self.before = self.background.before(self.picture, within)
+
+
+class CameraViews:
+    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after
+    the frame set's [s], by its index."""
+
+    def __init__(self, fitter: Fitter, params: ClothesParams) -> None:
+        self.fitter, self._params, self._each = fitter, params, fitter.each
+        self.each = [
+            CameraView(d.camera.name, work_size(d.camera, d.image_scale), d.image_scale, params)
+            for d in fitter.drawings
+        ]
+        self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
+        # by what stands there: nothing, or anything
+        self._weights = np.full(256, int(255 * params.soft), np.uint8)
+        self._weights[BACKGROUND] = 255
+        self.present: dict[int, float] = {}
+
+    def reset(self) -> None:
+        """Forget background and appearance."""
+        for view in self.each:
+            view.reset()
+
+    def take(self, pictures: Mapping[int, Bytes], present: dict[int, float]) -> None:
+        """Take work pictures (h,w,3), by camera; present: each seeing camera's own time after the frame set's [s]."""
+        for i, picture in pictures.items():
+            self.each[i].picture = picture
+        self.present = present
+
+    def know_room(
+        self, shown: Mapping[int, Sequence[Bytes]], times_s: Mapping[int, Floats]
+    ) -> None:
+        """Learn each background from pictures (h,w,3) of these times, by camera, in which somebody may be all the time."""
+        for i, pictures in shown.items():
+            self.each[i].background.know(*clip_background(pictures, times_s[i]))
+            self.each[i].may_hold_body = True
+
+    def doubt_background(self) -> None:
+        """What the body that was found covers may have been learned with the room: what looks like it is not known there."""
+        for i in self.present:
+            camera = self.each[i]
+            if camera.may_hold_body:
+                camera.background.doubt(camera.picture, camera.drawn)
+                camera.may_hold_body = False
+
+    @property
+    def are_new(self) -> bool:
+        """Whether some background is not known yet."""
+        return any(self.each[i].background.is_new for i in self.present)
+
+    @property
+    def know_appearance(self) -> bool:
+        """Whether every present camera learned what the wearer looks like."""
+        return all(self.each[i].appearance.is_learned for i in self.present)
+
+    def mark_body(self, state: MotionState | None) -> None:
+        """Where somebody is expected, drawn into every present picture."""
+        self._each(lambda i: self._mark(i, state), self.present)
+
+    def _mark(self, i: int, state: MotionState | None) -> None:
+        drawing, dt_s = self.fitter.drawings[i], self.present[i]
+        drawn = None if state is None else drawing.render_about(state, dt_s, self._params.margin_px)
+        self.each[i].mark_body(drawn)
+
+    def stand_before(self, everywhere: bool = True) -> None:
+        """Renew what stands before each background; not everywhere: about the marked body alone."""
+        self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
+
+    def renew_before(self, turn: int) -> None:
+        """Renew what stands before each background, now and then everywhere, where something may have been uncovered."""
+        self._each(lambda i: self._renew_before(i, turn), self.present)
+
+    def _renew_before(self, i: int, turn: int) -> None:
+        looks_round = turn % self._params.uncovered_turns == 0
+        self.each[i].stand_before(everywhere=looks_round)
+        if looks_round:
+            self._take_uncovered(i)
+
+    def take_uncovered(self) -> None:
+        """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
+        self._each(self._take_uncovered, self.present)
+
+    def _take_uncovered(self, i: int) -> None:
+        camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
+        if camera.near is not None:
+            x0, y0, x1, y1 = camera.near
+            ids, triangles = self.fitter.drawings[i].last(camera.near)
+            part = self.fitter.model.part[np.maximum(triangles, 0)]
+            arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
+        camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
+
+    def prepared(
+        self, state: MotionState, turn: int, also: Callable[[int], T]
+    ) -> tuple[list[View], list[T]]:
+        """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
+        each camera all in one go, as threads that wait for each other after every step gain nothing."""
+
+        def prepare(i: int) -> tuple[View | None, T]:
+            self._mark(i, state)
+            self._renew_before(i, turn)
+            return self._classified(i, state, marked=True), also(i)
+
+        done = self._each(prepare, self.present)
+        return [view for view, _ in done if view is not None], [one for _, one in done]
+
+    def classified(self, state: MotionState) -> list[View]:
+        """Every present picture by the regions of the body as predicted, which is drawn last into each."""
+        views = self._each(lambda i: self._classified(i, state), self.present)
+        return [one for one in views if one is not None]
+
+    def _classified(self, i: int, state: MotionState, marked: bool = False) -> View | None:
+        """marked: the state was drawn last, to mark the body."""
+        p = self._params
+        drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
+        roi = camera.near if marked else drawing.region(state, dt_s, p.margin_px)
+        if roi is None:
+            return None
+        x0, y0, x1, y1 = roi
+        before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
+        drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
+        ids = camera.appearance.classify(
+            np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+            before,
+            region_distances(drawn),
+            self._floors[i].near(state.root_m, roi),
+        )
+        weights = np.asarray(cv2.LUT(before, self._weights), np.uint8)
+        return View(i, roi, ids, weights, dt_s)
+
+    def silhouettes(self, state: MotionState) -> list[View]:
+        """Every present picture by what stands before the background where somebody of unknown colours is expected."""
+        views = []
+        for i, dt_s in self.present.items():
+            drawing, camera = self.fitter.drawings[i], self.each[i]
+            roi = drawing.region(state, dt_s, self._params.margin_px)
+            if roi is None:
+                continue
+            x0, y0, x1, y1 = roi
+            ids = ((camera.before == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
+            views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dt_s))
+        return views
+
+    def learn_first_appearance(self, state: MotionState) -> None:
+        """Learn the colours of a body of which none is known yet."""
+        for i, dt_s in self.present.items():
+            roi = self.fitter.drawings[i].region(state, dt_s, self._params.margin_px)
+            if roi is not None:
+                self._learn(i, state, dt_s, roi, None)
+
+    def _learn(
+        self, index: int, state: MotionState, dt_s: float, roi: Roi, ids: Bytes | None
+    ) -> None:
+        camera = self.each[index]
+        x0, y0, x1, y1 = roi
+        camera.appearance.learn(
+            np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
+            self.fitter.drawings[index].render(state, dt_s, roi),
+            np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
+            ids,
+        )
+
+    def mark_unknown(self) -> None:
+        """What stands before a known background may be somebody."""
+        for i in self.present:
+            camera = self.each[i]
+            if not camera.background.is_new:
+                cv2.dilate(
+                    stands(camera.before).astype(np.uint8),
+                    camera.beside,
+                    dst=camera.body,
+                )
+
+    def learn(self, state: MotionState | None, views: Sequence[View]) -> None:
+        """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
+        nobody is marked; not while somebody who may be a part of it is not found yet."""
+        shows = {view.index: view for view in views}
+
+        def learn(i: int) -> None:
+            if state is not None and i in shows:
+                view = shows[i]
+                self._learn(i, state, view.dt_s, view.roi, view.ids)
+            camera = self.each[i]
+            if not camera.may_hold_body:
+                camera.learn_background(agrees=state is not None)
+
+        self._each(learn, self.present)
+
+    def outline_contrast(self) -> float:
+        """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""
+        on = beside = 0.0
+        for i in self.present:
+            camera = self.each[i]
+            if camera.drawn.any():
+                edges = brightness_edges(camera.picture)
+                wide = np.asarray(cv2.dilate(camera.drawn, _ASIDE), np.uint8)
+                narrow = np.asarray(cv2.erode(camera.drawn, _ASIDE), np.uint8)
+                on += float(edges[_outline(camera.drawn)].mean())
+                beside += float(edges[_outline(wide) | _outline(narrow)].mean())
+        return on / max(beside, 1e-3)
+
+    def seed_background(self) -> None:
+        """Take what is beside the marked body for the background."""
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.seed(camera.picture, camera.body)
+
+    def names(self, views: Sequence[View]) -> tuple[str, ...]:
+        """Of the cameras of these views."""
+        return tuple(self.each[v.index].name for v in views)
+
+    def evidence(self, views: list[View]) -> tuple[Mapping[str, Bytes], Mapping[str, Roi]]:
+        """What was classified, and where in the frames, by camera."""
+        ids = {self.each[v.index].name: v.ids for v in views}
+        where = {}
+        for v in views:
+            k = self.each[v.index].image_scale
+            x0, y0, x1, y1 = v.roi
+            where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
+        return ids, where
+
+
+def _outline(mask: Bytes) -> NDArray[np.bool_]:
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _LINE) > 0)

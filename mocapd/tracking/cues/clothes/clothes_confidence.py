@@ -1,0 +1,59 @@
+"""How far each joint may be believed: how much of the body around it the pictures confirm, and how well they place it."""
+
+import numpy as np
+
+from mocapd.body.regions import Label
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.solver import Fit
+from mocapd.tracking.tracking_state import faded
+from mocapd.types import Floats
+
+_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
+_HALF_M = 0.10  # an uncertainty that halves it: this tracker's are twice the shirt's
+
+
+def _seen_by() -> dict[str, tuple[int, ...]]:
+    """The labels that show each joint."""
+    trunk = (Label.TRUNK,)
+    out: dict[str, tuple[int, ...]] = dict.fromkeys(("hips", "spine", "chest", "upperChest"), trunk)
+    out |= dict.fromkeys(("neck", "head"), (Label.HEAD,))
+    for side, thigh, shin in (
+        ("left", Label.LEFT_THIGH, Label.LEFT_SHIN),
+        ("right", Label.RIGHT_THIGH, Label.RIGHT_SHIN),
+    ):
+        sleeve = tuple(range(N_LABELS)[SLEEVE_PATCHES[side]])
+        out[side + "Shoulder"] = (*trunk, sleeve[0])
+        out[side + "UpperArm"] = sleeve[:3]
+        out[side + "LowerArm"] = sleeve[1:5]
+        out[side + "Hand"] = sleeve[3:]
+        out[side + "UpperLeg"] = (*trunk, thigh)
+        out[side + "LowerLeg"] = (thigh, shin)
+        out[side + "Foot"] = out[side + "Toes"] = (shin,)
+    return out
+
+
+def _labels_of_joints() -> Floats:
+    out = np.zeros((N_JOINTS, N_LABELS))
+    for name, mine in _seen_by().items():
+        if name in INDEX:
+            out[INDEX[name], list(mine)] = 1.0
+    return out
+
+
+_LABELS = _labels_of_joints()
+
+
+def joint_confidence(
+    fit: Fit | None, n_cameras: int, uncertainty_m: Floats, away_s: float
+) -> Floats:
+    """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
+    there is no evidence. uncertainty_m (J,): one standard deviation of each place; away_s: since the last evidence [s]."""
+    if fit is None:
+        return np.zeros(N_JOINTS)
+    matched = _LABELS @ (fit.matched * fit.in_depth)
+    asked = _LABELS @ (fit.visible + fit.unexplained)
+    share = matched / np.maximum(asked, 1.0)
+    enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
+    out = np.minimum(1.25 * share, 1.0) * enough / (1.0 + (uncertainty_m / _HALF_M) ** 2)
+    return np.asarray(out * faded(away_s))

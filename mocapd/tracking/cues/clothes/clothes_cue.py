@@ -1,0 +1,170 @@
+"""Any clothes as a cue: the learned colours of body regions before a learned background place the whole body, or legs and
+head below a trunk that the shirt carries."""
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from mocapd.clock import nanoseconds, seconds
+from mocapd.each import Each, in_turn
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.joint_term import JointRays
+from mocapd.tracking.base import Probe, no_time_passes
+from mocapd.tracking.cues.clothes.clothes_fits import ClothesFits, ClothesFound, Observed
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.keypoints.joint_views import unwatched
+from mocapd.tracking.initialisers.person_search import PersonSearch
+from mocapd.tracking.lost_reason import LostReason
+from mocapd.tracking.pictures import Pictures
+from mocapd.tracking.track_state import TrackState, Wearer
+from mocapd.types import Bytes, FrameSet, Rig
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+
+class ClothesCue:
+    """Remembers each camera's background and the colours of each region, and who may be coming in."""
+
+    name = "clothes"
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        params: ClothesParams | None = None,
+        cascade: CascadeArrays | None = None,
+        each: Each = in_turn,
+        now_ns: Callable[[], int] = no_time_passes,
+    ) -> None:
+        """cascade, each: see `ClothesFits`; now_ns: see `registry.Resources`."""
+        self.params = p = params if params is not None else ClothesParams()
+        self._fits = fits = ClothesFits(rig, stature_m, p, cascade, each)
+        self.cameras, self.model = fits.cameras, fits.model
+        self._find = PersonSearch(
+            fits.silhouettes, fits.terms.floor, fits.terms.joints, fits.cameras, rig.cameras, p.start,
+            p.keypoint_start, p.motion_watch, now_ns,
+        )  # fmt: skip
+        self.reset()
+
+    @property
+    def fitter(self) -> Fitter:
+        """Of the wearer's present look."""
+        return self._fits.fitter
+
+    def reset(self) -> None:
+        """Forget background and look."""
+        self._fits.reset()
+        self._find.reset()
+        self._turn = 0
+
+    def rehearse(self) -> None:
+        """See `ClothesFits`."""
+        self._fits.rehearse()
+        self.reset()
+
+    def take(self, pictures: Pictures, t_ns: int) -> None:
+        """Take the work pictures of a frame set."""
+        self._turn += 1
+        self._find.times.came(t_ns)
+        self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
+
+    def learn_room(self, frames: Iterable[FrameSet], pictures: Pictures) -> None:
+        """See `RoomLearner`."""
+        shown: dict[int, list[Bytes]] = {}
+        times_s: dict[int, list[float]] = {}
+        for one in frames:
+            for i, late_s in pictures.look(one).items():
+                shown.setdefault(i, []).append(pictures.each[i].bgr.copy())
+                times_s.setdefault(i, []).append(seconds(one.t_ns) + late_s)
+        self.cameras.know_room(shown, {i: np.array(when_s) for i, when_s in times_s.items()})
+
+    # --- with a body ---
+
+    def observe(
+        self, predicted: MotionState, t_ns: int, legs_since_ns: int | None, carried: bool
+    ) -> Observed | None:
+        """The pictures by the regions of the predicted body; None where its look or the background is not known yet.
+
+        carried: whether the shirt carried trunk and arms a moment ago: fewer looks at the joints will do then, and none
+        while the legs are new, which were just found elsewhere.
+        """
+        p = self.params
+        if self.cameras.are_new or not self.cameras.know_appearance:
+            return None
+        if carried:
+            is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
+                p.guided_joint_after_s
+            )
+            looks = self._turn % p.guided_joint_turns == 1 and not is_new
+        else:
+            looks = not self._measures_depths
+        joints, fitter = self._fits.terms.joints, self.fitter
+        watch = joints.watch(fitter, predicted, self.cameras) if looks else unwatched
+        rays: list[JointRays | None]
+        views, rays = self.cameras.prepared(predicted, self._turn, watch)
+        return Observed(predicted, views, joints.term(self.model, rays))
+
+    def whole(
+        self, known: TrackState, seen: Observed, dt_s: float, frames: FrameSet, probe: Probe
+    ) -> ClothesFound | None:
+        """The whole body, dt_s after it was known; None where too little of it is seen."""
+        return self._fits.whole(known, seen, dt_s, frames, self._turn, self._measures_depths, probe)
+
+    def below(
+        self,
+        known: TrackState,
+        start: MotionState,
+        seen: Observed | None,
+        dt_s: float,
+        frames: FrameSet,
+        probe: Probe,
+    ) -> ClothesFound | None:
+        """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
+        self._find.give_up()
+        return self._fits.below(known, start, seen, dt_s, frames, self._turn, probe)
+
+    @property
+    def _measures_depths(self) -> bool:
+        """Whether this frame does, where cameras look from one side; the others look for joints, and learn."""
+        return self._turn % self.params.depth_turns == 0
+
+    # --- from nothing ---
+
+    def search(self, wearer: Wearer, t_ns: int) -> ClothesFound | None:
+        """Look for somebody who stands before the background."""
+        found = self._find.look(wearer.factors, wearer.information, t_ns)
+        if found is None:
+            return None
+        fit, names = found
+        self.cameras.mark_body(fit.state)
+        self.cameras.take_uncovered()
+        self.cameras.doubt_background()
+        self._fits.wardrobe.learn_first(fit.state, self.cameras)
+        return ClothesFound(fit, fit.state, (), names)
+
+    def begin(self, there: MotionState, frames: FrameSet) -> ClothesFound | None:
+        """Begin from a body as it was known elsewhere, if the pictures have its outline."""
+        return self._fits.begin(there, frames, self._turn)
+
+    def lost_reason(self, t_ns: int) -> LostReason | None:
+        """Why nobody is found, where that can be told."""
+        return self._find.lost_reason(t_ns)
+
+    # --- learning ---
+
+    def learn(self, found: ClothesFound | None, nobody: bool, carried: bool) -> None:
+        """The look of a body that agrees well, and the background beside it, or everywhere where nobody is known."""
+        p, cameras = self.params, self.cameras
+        if nobody and self._turn % p.absorb_turns:
+            cameras.mark_unknown()  # what stays for long is furniture that was moved
+        elif nobody:
+            cameras.mark_body(None)
+        agrees = found is not None and found.fit.explained >= p.learn_explained
+        views: Sequence[View] = ()
+        if found is not None and carried:
+            # with two cameras: the look is learned in one of them, in two of four frames
+            views = found.views[self._turn % 4 :: 4]
+        elif found is not None and not self._measures_depths:
+            # depths and arms that are searched for make their frames long enough
+            views = found.views
+        cameras.learn(found.motion if found is not None and agrees else None, views)

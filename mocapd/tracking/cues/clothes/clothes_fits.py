@@ -1,0 +1,310 @@
+"""Fits of the body to the regions of its clothes: whole, or legs and head below a trunk that the shirt carries."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel, build_model
+from mocapd.body.pose_space import SIDES, full_body, upper_body
+from mocapd.body.regions import Region, as_silhouette
+from mocapd.body.skeleton import N_JOINTS
+from mocapd.each import Each, in_turn
+from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.motion_prior import predicted_information
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.tracking.base import Probe
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.look import DressedFitters
+from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
+from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
+from mocapd.tracking.cues.keypoints.joint_views import unwatched
+from mocapd.tracking.cues.stereo.depth_views import with_depths
+from mocapd.tracking.hypotheses.other_poses import OtherPoses
+from mocapd.tracking.hypotheses.seen_pose import WHOLE
+from mocapd.tracking.hypotheses.seen_tries import Anew
+from mocapd.tracking.track_state import TrackState, Wearer, at_rest
+from mocapd.tracking.velocity import velocity_between
+from mocapd.types import Floats, Frame, FrameSet, Rig
+from mocapd.vision.face.lbp_cascade import blind_cascade
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
+_BELOW = (Region.LEG, Region.FOOT)  # regions whose distances are measured below a carried trunk
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observed:
+    """One frame set classified by the body as predicted, which is drawn into every view; joints: what the network saw."""
+
+    drawn: MotionState
+    views: list[View]
+    joints: tuple[JointTerm, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClothesFound:
+    """A whole body as the clothes place it; cameras: that show it; changed: parts that were found elsewhere."""
+
+    fit: Fit
+    motion: MotionState
+    views: tuple[View, ...]
+    cameras: tuple[str, ...]
+    changed: tuple[str, ...] = ()
+
+
+class ClothesFits:
+    """What fits a body to the regions of its clothes. Remembers the wearer's look and what says that a pose is wrong."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        params: ClothesParams,
+        cascade: CascadeArrays | None = None,
+        each: Each = in_turn,
+    ) -> None:
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing."""
+        self.params = p = params
+        self._rig = rig
+        body = build_model(stature_m, full_body())
+        smaller = image_scales(rig.cameras, p.fit.work_width_px)
+        dressed = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs, p.legs, each)
+        self.wardrobe = Wardrobe(dressed, p)
+        self.silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit, each)
+        self.model = self.fitter.model
+        self.terms = PoseTerms(self.model, len(rig.cameras), p)
+        self.cameras = CameraViews(self.fitter, p)
+        self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
+
+    @property
+    def fitter(self) -> Fitter:
+        """Of the wearer's present look."""
+        return self.wardrobe.fitter
+
+    def reset(self) -> None:
+        """Forget background and look."""
+        self.cameras.reset()
+        self.wardrobe.forget(self.cameras)
+        self._others.reset()
+
+    def rehearse(self) -> None:
+        """Compile or load the kernels that no frame of an empty room reaches: whoever comes must not wait for them."""
+        model, cameras = self.model, self.cameras
+        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+        wearer = Wearer(np.ones(model.n_shape), initial_information(model.space), 0.0)
+        somebody = at_rest(model, model.rest_m[0].copy(), local, wearer)
+        black = {
+            one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
+            for one in self._rig.cameras
+        }
+        frames = FrameSet(0, black, 0)
+        cameras.take({}, dict.fromkeys(range(len(cameras.each)), 0.0))
+        cameras.mark_body(somebody)
+        cameras.seed_background()
+        cameras.stand_before()
+        self.wardrobe.learn_first(somebody, cameras)
+        views = cameras.classified(somebody)
+        if not views:
+            return  # nobody at the origin is in any picture
+        fitter = self.fitter
+        views = with_depths(fitter, somebody, views, frames, self.params.depths)
+        if fitter.is_narrow(somebody, views):  # black pictures have no depths
+            unseen = np.full(views[0].ids.shape, np.nan, np.float32)
+            views[0] = replace(views[0], depth_m=unseen)
+        joints = self.terms.joints
+        seen = joints.term(model, map(joints.watch(fitter, somebody, cameras), cameras.present))
+        terms = (*self.terms.measured(fitter, somebody, views, frames, 0), *seen)
+        fit = fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
+        predicted_information(
+            fit.covariance, somebody.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
+        )
+        cameras.learn(somebody, views)
+        _velocity_of(model, self.params, fit, somebody, TICK_S, ())
+        self._others.rehearse(self.wardrobe.dressed, somebody, views, seen)
+        self.reset()
+
+    def whole(
+        self,
+        known: TrackState,
+        seen: Observed,
+        dt_s: float,
+        frames: FrameSet,
+        turn: int,
+        with_depth: bool,
+        probe: Probe,
+    ) -> ClothesFound | None:
+        """The whole body, dt_s after it was known; None where too little of it is seen."""
+        p, fitter, last = self.params, self.fitter, known.whole
+        views, predicted = seen.views, seen.drawn
+        if not views:
+            return None
+        if with_depth:
+            views = with_depths(fitter, predicted, views, frames, p.depths)
+            probe("clothes.depths")
+        motion = None
+        if last is not None:
+            confirmed, columns = last.confirmed_arms, self.model.space.columns
+            motion = predicted_information(
+                last.covariance, known.motion.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
+                [(columns(f"{s}_arm"), min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
+            )  # fmt: skip
+
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+            return (*self.terms.measured(fitter, drawn, shown, frames, turn), *seen.joints)
+
+        terms = terms_of(predicted, views)
+        probe("clothes.distances")
+        fit = fitter.fit(
+            predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms
+        )  # fmt: skip
+        probe("clothes.fit")
+        fit, views, changed = self._others.improve(
+            self.wardrobe.dressed, fit, views, dt_s, frames, turn, terms, seen.joints,
+            Anew(self.cameras.classified, terms_of), probe,
+        )  # fmt: skip
+        return self._found(fit, known.motion, dt_s, views, changed)
+
+    def below(
+        self,
+        known: TrackState,
+        start: MotionState,
+        seen: Observed | None,
+        dt_s: float,
+        frames: FrameSet,
+        turn: int,
+        probe: Probe,
+    ) -> ClothesFound | None:
+        """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
+        p, cameras = self.params, self.cameras
+        if cameras.are_new:
+            cameras.mark_body(start)
+            cameras.seed_background()
+        # legs that were not seen before have a way to go
+        is_new = known.whole is None
+        iterations = p.start.iterations if is_new else p.guided_iterations
+        dt_s = BEGUN_S if is_new else dt_s
+        held = self._held(dt_s)
+        if not cameras.know_appearance:
+            return self._outlined(
+                start, None if is_new else known.motion, dt_s, held, iterations, turn
+            )
+        if seen is None:
+            views, rays = cameras.prepared(start, turn, unwatched)
+            seen = Observed(start, views, self.terms.joints.term(self.model, rays))
+        if not seen.views:
+            return None
+        fitter = self.fitter
+
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+            measured = self.terms.measured(fitter, drawn, shown, frames, turn, _BELOW)
+            return (*measured, *seen.joints)
+
+        terms = terms_of(seen.drawn, seen.views)
+        probe("clothes.distances")
+        fit = fitter.fit(
+            start, seen.views, dt_s, iterations, learn_shape=False, rendered=seen.drawn is start, fine=1, motion=held,
+            terms=terms,
+        )  # fmt: skip
+        probe("clothes.fit")
+        fit, views, changed = self._others.other_legs(
+            self.wardrobe.dressed, fit, seen.views, dt_s, turn, terms, seen.joints,
+            Anew(cameras.classified, terms_of), held,
+        )  # fmt: skip
+        probe("clothes.legs")
+        return self._found(fit, None if is_new else known.motion, dt_s, views, changed)
+
+    def begin(self, there: MotionState, frames: FrameSet, turn: int) -> ClothesFound | None:
+        """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
+        background."""
+        cameras, fitter = self.cameras, self.fitter
+        cameras.mark_body(there)
+        if cameras.outline_contrast() < self.params.least_contrast:
+            return None
+        cameras.seed_background()
+        cameras.stand_before()
+        self.wardrobe.learn_first(there, cameras)
+        fitter, views = self.fitter, cameras.classified(there)
+        if not views:
+            return None
+        fit = fitter.fit(
+            there, views, BEGUN_S, self.params.fit.iterations, learn_shape=False,
+            terms=self.terms.measured(fitter, there, views, frames, turn),
+        )  # fmt: skip
+        if not _is_believed(fit, self.params):
+            return None
+        return ClothesFound(fit, fit.state, tuple(views), cameras.names(views))
+
+    def _outlined(
+        self,
+        start: MotionState,
+        last: MotionState | None,
+        dt_s: float,
+        held: Floats,
+        iterations: int,
+        turn: int,
+    ) -> ClothesFound | None:
+        """Somebody whose look is not known yet, by what stands before the background; it is learned then."""
+        p, cameras = self.params, self.cameras
+        cameras.mark_body(start)
+        cameras.renew_before(turn)
+        views = cameras.silhouettes(start)
+        if not views:
+            return None
+        fit = self.silhouettes.fit(
+            start, views, dt_s, iterations, learn_shape=False, fine=1, motion=held, terms=(self.terms.floor,)
+        )  # fmt: skip
+        if fit.explained >= p.learn_explained:
+            self.wardrobe.learn_first(fit.state, cameras)
+        return self._found(fit, last, dt_s, views, ())
+
+    def _found(
+        self,
+        fit: Fit,
+        last: MotionState | None,
+        dt_s: float,
+        views: Sequence[View],
+        changed: tuple[str, ...],
+    ) -> ClothesFound | None:
+        if not _is_believed(fit, self.params):
+            return None
+        velocity = np.zeros(self.model.n_pose)
+        if last is not None:
+            velocity = _velocity_of(self.model, self.params, fit, last, dt_s, changed)
+        names = self.cameras.names(views)
+        return ClothesFound(
+            fit, replace(fit.state, velocity=velocity), tuple(views), names, changed
+        )
+
+    def _held(self, dt_s: float) -> Floats:
+        """Information (n_pose,n_pose) of a prediction whose trunk and arms the shirt carries."""
+        held = np.zeros(self.model.n_pose)
+        held[:3] = self.params.guided_sd_m**-2
+        held[3 : upper_body().n_pose] = self.params.guided_sd_rad**-2
+        return np.diag(held + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+
+
+def _is_believed(fit: Fit, params: ClothesParams) -> bool:
+    """Whether enough of the body agrees with the pictures."""
+    # every second pixel was counted
+    enough = 2.0 * fit.matched.sum() >= params.least_body_px
+    return fit.explained >= params.live_explained and bool(enough)
+
+
+def _velocity_of(
+    model: BodyModel,
+    params: ClothesParams,
+    fit: Fit,
+    last: MotionState,
+    dt_s: float,
+    changed: Sequence[str],
+) -> Floats:
+    """Of the pose (n_pose,) per second, from the step since the last one; not of parts that changed over."""
+    columns = [slice(None) if part == WHOLE else model.space.columns(part) for part in changed]
+    return velocity_between(model, last, fit, dt_s, columns, params.velocity)

@@ -1,0 +1,36 @@
+"""What holds a pose beside the regions of the pictures: the floor, distances, and joints that were seen."""
+
+from collections.abc import Collection, Sequence
+
+from mocapd.body.model import BodyModel
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.types import FrameSet
+
+
+class PoseTerms:
+    """The terms of a body's fits; a network for each camera."""
+
+    def __init__(self, model: BodyModel, cameras: int, params: ClothesParams) -> None:
+        """cameras: how many there are."""
+        self.floor = FloorTerm(model, params.floor)
+        self.joints = JointViews(cameras, model.stature_m, params.joints)
+        self._params = params.distances
+
+    def measured(
+        self,
+        fitter: Fitter,
+        drawn: MotionState,
+        views: Sequence[View],
+        frames: FrameSet,
+        turn: int,
+        only: Collection[int] = (),
+    ) -> tuple[PoseTerm, ...]:
+        """The floor, and distances of all regions or of these only, of a body that was drawn last into every view."""
+        distances = texture_distances(fitter, drawn, views, frames, turn, self._params, only)
+        return (self.floor, *distances)

@@ -1,0 +1,1 @@
+"""Faces: they tell which way somebody looks."""

@@ -1,0 +1,122 @@
+"""What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
+
+from collections.abc import Callable, Iterable
+
+import cv2
+import numpy as np
+
+from mocapd.body.model import BodyModel
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.motion_state import MotionState, gone_on
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointRays, JointTerm
+from mocapd.geometry.camera_model import to_camera, undistort
+from mocapd.tracking.cues.clothes.camera_views import CameraView, CameraViews
+from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.types import Bytes, Floats, Singles
+from mocapd.vision.heatmaps.joint_network import (
+    CELLS,
+    INPUT_PX,
+    JOINTS,
+    SIDE_M,
+    STATURE_M,
+    JointNetwork,
+)
+from mocapd.vision.heatmaps.person_crop import PersonCrop, crop_about, middle_of
+
+_JOINTS = np.array([INDEX[name] for name in JOINTS])
+_HIPS, _NECK = INDEX["hips"], INDEX["neck"]
+_NEAREST_M = 0.5
+_ITERATIONS = 5  # of undistortion: no joint is known to a thousandth of a pixel
+_CELL_PX = INPUT_PX / CELLS
+_GREY = (127.5, 127.5, 127.5)
+
+
+def unwatched(_camera: int) -> JointRays | None:
+    """No camera is looked at."""
+    return None
+
+
+class JointViews:
+    """One network for each camera."""
+
+    def __init__(self, count: int, stature_m: float, params: JointViewParams) -> None:
+        """count: of cameras."""
+        looked_at = count if params.term.weight > 0.0 else 0
+        self._networks = [JointNetwork() for _ in range(looked_at)]
+        self._size, self._params = stature_m / STATURE_M, params
+
+    def watch(
+        self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
+    ) -> Callable[[int], JointRays | None]:
+        """What looks at a camera by its index for the joints of a body that is expected here."""
+        if not self._networks:
+            return unwatched
+        here_m, _ = fitter.joints(predicted)
+
+        def see(i: int) -> JointRays | None:
+            late_s, there_m = cameras.present[i], here_m
+            if late_s:
+                there_m, _ = fitter.joints(gone_on(fitter.model, predicted, late_s))
+            return self._rays(fitter, i, cameras.each[i], here_m, there_m)
+
+        return see
+
+    def term(self, model: BodyModel, seen: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
+        """What the cameras saw as a term of the fit; none where they do not count or nothing was looked at."""
+        there = [one for one in seen if one is not None]
+        return (JointTerm(model, there, self._params.term),) if there else ()
+
+    def _rays(
+        self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
+    ) -> JointRays | None:
+        """here_m (J,3): the joints at the frame set's instant, there_m (J,3) at the camera's own."""
+        p, size, drawing = self._params, self._size, fitter.drawings[index]
+        camera, k = drawing.camera, drawing.image_scale
+        in_camera = to_camera(camera, there_m)
+        middle = middle_of(in_camera[_HIPS], in_camera[_NECK])
+        if middle[2] < _NEAREST_M:
+            return None
+        crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
+        seen = self._networks[index].look(*_cut_out(view, crop))
+        crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
+        frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
+        distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
+        xy = undistort(camera.dist, distorted, _ITERATIONS)
+        # what moved until this camera's own exposure
+        moved_m = in_camera - to_camera(camera, here_m)
+        xy = xy - moved_m[_JOINTS, :2] / middle[2]
+        inside = (
+            (seen.at_cells > p.inside_cells) & (seen.at_cells < CELLS - 1 - p.inside_cells)
+        ).all(axis=1)
+        inside &= ((frame_px >= 0) & (frame_px < camera.size_px)).all(axis=1)
+        cell_m = SIDE_M * size / CELLS
+        information = _inverse(seen.spread_cells2, p) / cell_m**2
+        sd_m = np.maximum(p.laplace * seen.scale_m * size, p.least_depth_m)
+        return JointRays(
+            camera, _JOINTS[inside], xy[inside], information[inside],
+            size * seen.farther_m[inside], (1.0 / sd_m**2)[inside],
+        )  # fmt: skip
+
+
+def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
+    """The picture, the background, and where that is known."""
+    M, size = crop.affine, (INPUT_PX, INPUT_PX)
+    room, known = view.background.known_room()
+    picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+    background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+    there = cv2.warpAffine(known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
+    return (
+        np.asarray(picture, np.uint8),
+        np.asarray(background, np.float32),
+        np.asarray(there, np.uint8),
+    )
+
+
+def _inverse(spread_cells2: Floats, p: JointViewParams) -> Floats:
+    """Information (J,3) of spreads (J,3), both xx, xy, yy."""
+    xx = np.maximum(spread_cells2[:, 0] - p.blur_cells2, 0.0) + p.least_cells2
+    yy = np.maximum(spread_cells2[:, 2] - p.blur_cells2, 0.0) + p.least_cells2
+    xy = np.clip(spread_cells2[:, 1], -0.9 * np.sqrt(xx * yy), 0.9 * np.sqrt(xx * yy))
+    determinant = xx * yy - xy * xy
+    return np.stack([yy / determinant, -xy / determinant, xx / determinant], axis=1)

@@ -1,0 +1,67 @@
+"""How far each joint may be believed: how much of the shirt around it the pictures confirm, and how well they place it."""
+
+import numpy as np
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.solver import Fit
+from mocapd.tracking.tracking_state import FADE_S
+from mocapd.types import Floats
+
+_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
+# An uncertainty that halves it. At 0.05 errors of two cameras are told a little better, and what one camera sees falls
+# below all that clients believe; at 0.10 every third joint that is 10 cm off is believed in full.
+_HALF_M = 0.06
+_HEAD = 0.5  # what the shirt tells of it, of the neck's
+
+_UPPER_TORSO = tuple(patch for patch in TORSO_PATCHES if "UPPER" in patch.name)
+_LOWER_TORSO = tuple(patch for patch in TORSO_PATCHES if "LOWER" in patch.name)
+
+
+def _seen_by() -> dict[str, tuple[ShirtPatch, ...]]:
+    """The patches that show each joint."""
+    out = {
+        "hips": _LOWER_TORSO, "spine": TORSO_PATCHES, "chest": TORSO_PATCHES,
+        "upperChest": _UPPER_TORSO, "neck": _UPPER_TORSO,
+    }  # fmt: skip
+    for side in SIDES:
+        sleeve = tuple(ShirtPatch)[SLEEVE_PATCHES[side]]
+        torso = tuple(p for p in _UPPER_TORSO if p.name.endswith(side.upper()))
+        out[side + "Shoulder"] = (*torso, sleeve[0])
+        out[side + "UpperArm"] = sleeve[:3]  # shoulder, upper arm
+        out[side + "LowerArm"] = sleeve[1:5]  # upper arm, forearm
+        out[side + "Hand"] = sleeve[3:]  # forearm, cuff
+    return out
+
+
+def _patches_of_joints() -> Floats:
+    out = np.zeros((N_JOINTS, N_LABELS))
+    for name, patches in _seen_by().items():
+        out[INDEX[name], list(patches)] = 1.0
+    return out
+
+
+_PATCHES = _patches_of_joints()
+
+
+def joint_confidence(
+    fit: Fit | None, n_cameras: int, uncertainty_m: Floats, away_s: float
+) -> Floats:
+    """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
+    there is no evidence.
+
+    A hidden arm is near 0, whatever pose the prior gives it; what one camera sees loses by its depth. The head follows
+    the neck; of the legs the shirt tells nothing, which is 0. uncertainty_m (J,):
+    one standard deviation of each place; away_s: since the last evidence [s].
+    """
+    if fit is None:
+        return np.zeros(N_JOINTS)
+    matched = _PATCHES @ fit.matched
+    asked = _PATCHES @ (fit.visible + fit.unexplained)
+    share = matched / np.maximum(asked, 1.0)
+    enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
+    out = np.minimum(1.25 * share, 1.0) * enough
+    out /= 1.0 + (uncertainty_m / _HALF_M) ** 2
+    out[INDEX["head"]] = _HEAD * out[INDEX["neck"]]
+    return np.asarray(out * np.exp(-away_s / FADE_S))

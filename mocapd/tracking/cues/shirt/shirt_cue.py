@@ -1,0 +1,256 @@
+"""The shirt as a cue: its patches classified in each picture place trunk and arms, and find the wearer from nothing."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel, build_model
+from mocapd.body.pose_space import SIDES
+from mocapd.clock import nanoseconds
+from mocapd.each import Each, in_turn
+from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
+from mocapd.fit.motion_prior import predicted_information
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
+from mocapd.tracking.base import Probe
+from mocapd.tracking.cues.shirt import shirt_search as detection
+from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
+from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.pictures import Pictures
+from mocapd.tracking.track_state import TrackState, Wearer, at_rest, upper_of
+from mocapd.tracking.velocity import velocity_between
+from mocapd.types import Floats, FrameSet, Rig
+from mocapd.vision.room_background import RoomBackground
+
+BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShirtFound:
+    """Trunk and arms as the shirt places them, in the views that show it. taught_s: see `Wearer`; jumped: sides whose arm
+    was found elsewhere than predicted; redraw: whether the body was not drawn last as it was fitted."""
+
+    fit: Fit
+    motion: MotionState
+    views: tuple[View, ...]
+    taught_s: float
+    jumped: tuple[str, ...] = ()
+    redraw: bool = True
+
+
+class ShirtCue:
+    """Remembers what each camera learned of light, colours and background, and when it may search again."""
+
+    name = "shirt"
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        colours: ColourModel,
+        white_balance: Mapping[str, Floats],
+        database: PoseDatabase,
+        params: ShirtParams | None = None,
+        each: Each = in_turn,
+        backgrounds: Sequence[RoomBackground] | None = None,
+    ) -> None:
+        """white_balance: W (3,3) by camera name, from strokes in the present light; identity where absent.
+        backgrounds: of the cameras, where another cue learns them."""
+        self.params = p = params if params is not None else ShirtParams()
+        self._cameras, self._database = rig.cameras, database
+        self.model: BodyModel = build_model(stature_m)
+        smaller = image_scales(rig.cameras, p.fit.work_width_px)
+        self.fitter = Fitter(self.model, rig.cameras, smaller, p.fit, each)
+        self.segmenters = RigSegmenter(
+            self.fitter, colours, white_balance, p.segmentation, backgrounds
+        )
+        self._columns = {side: self.model.space.columns(f"{side}_arm") for side in SIDES}
+        self._arms = ArmSearch(self.fitter, p.limbs)
+        self.reset()
+
+    def rehearse(self) -> None:
+        """Compile or load the kernels that only rare frames reach."""
+        w, h = self.segmenters.each[0].size
+        nothing = np.zeros((h, w), np.uint8)
+        known = initial_information(self.model.space)
+        wearer = Wearer(np.ones(self.model.n_shape), known, 0.0)
+        local = np.tile([0.0, 0.0, 0.0, 1.0], (len(self.model.parents), 1))
+        somebody = at_rest(self.model, self.model.rest_m[0].copy(), local, wearer)
+        self._arms.rehearse(somebody, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
+
+    def reset(self) -> None:
+        """Forget light and background."""
+        self.segmenters.reset()
+        self._next_search_ns = 0
+
+    def take(self, pictures: Pictures) -> None:
+        """Take the work pictures of a frame set."""
+        self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present})
+
+    # --- with a body ---
+
+    def follow(
+        self,
+        known: TrackState,
+        predicted: MotionState,
+        dt_s: float,
+        present: dict[int, float],
+        frames: FrameSet,
+        turn: int,
+        probe: Probe,
+    ) -> ShirtFound | None:
+        """Trunk and arms of a body that the shirt carried a moment ago; None where the shirt is not seen there.
+
+        predicted: the whole body, dt_s after it was known.
+        """
+        p, fitter, last = self.params, self.fitter, known.trunk
+        assert last is not None
+        uncertain = tuple(side for side in SIDES if is_uncertain(side, last, p.limbs))
+        start = upper_of(predicted, self.model)
+        views = self.segmenters.views(start, present, uncertain)
+        probe("shirt.classify")
+        if not views:
+            return None
+        learning = (
+            p.shape.learn
+            and known.taught_s < p.shape.learning_s
+            and last.match > p.shape.least_match
+        )
+        confirmed = last.confirmed_arms
+        motion = predicted_information(
+            last.covariance, start.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
+            [(self._columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
+        )  # fmt: skip
+        terms = texture_distances(fitter, start, views, frames, turn, p.distances)
+        fit = fitter.fit(
+            start, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion, terms=terms
+        )  # fmt: skip
+        probe("shirt.fit")
+        before = fit
+        fit, jumped = self._arms.improve(fit, views, dt_s, turn, learning, terms)
+        probe("shirt.arms")
+        if not self._is_seen(fit):
+            return None
+        state, taught_s = fit.state, known.taught_s
+        if learning and fit.match > p.shape.least_match:
+            gained = fitter.shape_information(fit.H) * (p.shape.gain * dt_s / TICK_S)
+            state = replace(state, information=state.information + gained)
+            taught_s += dt_s
+        velocity = velocity_between(
+            self.model, upper_of(known.motion, self.model), fit, dt_s,
+            [self._columns[side] for side in jumped], p.velocity,
+        )  # fmt: skip
+        redraw = fit is not before or any(is_uncertain(s, before, p.limbs) for s in SIDES)
+        state = replace(state, velocity=velocity)
+        return ShirtFound(fit, state, tuple(views), taught_s, jumped, redraw)
+
+    def begin(
+        self, body: MotionState, taught_s: float, present: dict[int, float], turn: int
+    ) -> ShirtFound | None:
+        """Trunk and arms of a body that other cues place here, if the shirt is seen there."""
+        return self._fitted(upper_of(body, self.model), BEGUN_S, taught_s, present, turn)
+
+    def _fitted(
+        self,
+        start: MotionState,
+        loose_s: float,
+        taught_s: float,
+        present: dict[int, float],
+        turn: int,
+    ) -> ShirtFound | None:
+        views = self.segmenters.views(start, present)
+        if not views:
+            return None
+        fit = self.fitter.fit(start, views, loose_s, self.params.fit.iterations, learn_shape=False)
+        fit, _ = self._arms.improve(fit, views, loose_s, turn, learn_shape=False)
+        if not self._is_acceptable(fit):
+            return None
+        still = replace(fit.state, velocity=np.zeros(self.model.n_pose))
+        return ShirtFound(fit, still, tuple(views), taught_s)
+
+    # --- from nothing ---
+
+    def is_search_due(self, t_ns: int) -> bool:
+        """Whether it is time to look for the wearer."""
+        return t_ns >= self._next_search_ns
+
+    def search(
+        self,
+        wearer: Wearer,
+        present: dict[int, float],
+        t_ns: int,
+        pause_s: float,
+        better_than: float,
+        turn: int,
+    ) -> ShirtFound | None:
+        """Look for the wearer in all of the pictures; what the segmenters know of the light stays as it was unless somebody
+        is found whose match is better. pause_s: until the next look after one that failed [s]."""
+        before = [segmenter.memory.appearance for segmenter in self.segmenters.each]
+        found = self._found(wearer, present, turn)
+        if found is not None and found.fit.match > better_than:
+            self._next_search_ns = t_ns
+            return found
+        self._next_search_ns = t_ns + nanoseconds(pause_s)
+        for segmenter, appearance in zip(self.segmenters.each, before, strict=True):
+            segmenter.memory.appearance = appearance
+        return None
+
+    def _found(self, wearer: Wearer, present: dict[int, float], turn: int) -> ShirtFound | None:
+        p, s = self.params, self.model.n_shape
+        sightings = [
+            one
+            for i in present
+            if (one := detection.sight(i, self.segmenters.each[i], self._database, p.neighbours))
+            is not None
+        ]
+        states = detection.hypotheses(
+            sightings, self._cameras, self._database, wearer.factors[:s], wearer.information[:s, :s],
+            self.model.n_pose,
+        )  # fmt: skip
+        flat = [
+            View(
+                one.index, one.found.roi, one.found.ids,
+                np.full(one.found.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8),
+                present[one.index],
+            )
+            for one in sightings
+        ]  # fmt: skip
+        fit = detection.best_fit(self.fitter, states, flat)
+        if fit is None:
+            return None
+        for one in sightings:
+            self.segmenters.each[one.index].relight(one.found.W)
+        # read the pictures again, now with the pose as prior, and fit once more
+        return self._fitted(fit.state, BEGUN_S, wearer.taught_s, present, turn)
+
+    # --- what is believed and learned ---
+
+    def names(self, views: Sequence[View]) -> tuple[str, ...]:
+        """Of the cameras of these views."""
+        return tuple(self.fitter.drawings[view.index].camera.name for view in views)
+
+    def _is_seen(self, fit: Fit) -> bool:
+        # every second pixel was counted
+        p = self.params
+        return fit.match >= p.live_match and 2.0 * float(fit.matched.sum()) >= p.min_shirt_px
+
+    def _is_acceptable(self, fit: Fit) -> bool:
+        """Whether a pose found from nothing is the shirt: enough agrees, in enough colours."""
+        p = self.params
+        return bool(
+            fit.explained >= p.accept_match
+            and fit.confirmed_colours() >= p.accept_colours
+            and 2.0 * fit.matched.sum() >= p.min_shirt_px
+        )
+
+    def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
+        """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
+        if found is not None:
+            self.segmenters.learn_with(found.motion, found.fit, list(found.views), found.redraw)
+        self.segmenters.learn_background(present, nobody=nobody)

@@ -1,0 +1,1 @@
+"""Distances between two cameras beside each other."""

@@ -1,0 +1,57 @@
+"""What two cameras beside each other see of a person, with its depth, and without what is far behind."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
+from mocapd.fit.solver import Fitter, View
+from mocapd.geometry.camera_model import centre
+from mocapd.tracking.cues.stereo.texture_distance import greys_of
+from mocapd.types import FrameSet
+
+_SURE = np.uint8(255)
+
+
+def with_depths(
+    fitter: Fitter,
+    predicted: MotionState,
+    views: Sequence[View],
+    frames: FrameSet,
+    params: SeenDepthParams,
+) -> list[View]:
+    """The views, of which the first knows depths, where cameras look from one side; as they are where not.
+
+    predicted: a body that the fitter drew last into every view. What is classified beside it, and stands far behind it (a
+    passer-by, what was uncovered of the room), is not of it.
+    """
+    if len(views) != 2 or not fitter.is_narrow(predicted, views):
+        return list(views)
+    greys = greys_of(fitter, views, frames)
+    out = []
+    for mine, its in ((0, 1), (1, 0)):
+        view, drawing = views[mine], fitter.drawings[views[mine].index]
+        pair = StereoPair(
+            drawing.camera, fitter.drawings[views[its].index].camera, (greys[mine], greys[its]), drawing.image_scale
+        )  # fmt: skip
+        beside = (view.ids > 0) & (drawing.last(view.roi)[0] == 0)
+        far_m = seen_depth_m(
+            beside, view.roi, pair, predicted.root_m, params.room_m, params, fitter.each
+        )
+        away_m = float(np.linalg.norm(predicted.root_m - centre(drawing.camera)))
+        behind = far_m > away_m + params.behind_m
+        before = (view.ids > 0) | (view.pixel_weight < _SURE)
+        view = replace(
+            view, ids=np.where(behind, np.uint8(0), view.ids),
+            pixel_weight=np.where(behind, _SURE, view.pixel_weight),
+        )  # fmt: skip
+        if mine == 0:
+            depth_m = seen_depth_m(
+                before, view.roi, pair, predicted.root_m, params.farther_m, params, fitter.each
+            )
+            if np.isfinite(depth_m).any():
+                view = replace(view, depth_m=depth_m)
+        out.append(view)
+    return out

@@ -1,0 +1,1 @@
+"""How somebody is found of whom nothing is known."""

@@ -1,0 +1,247 @@
+"""The first pose of somebody who does not stand facing the cameras: from the joints that the network sees in all pictures.
+
+A piece of the foreground that all cameras show in one place is looked at by the network of heatmaps, as if somebody's middle
+were there; the pose that leads through its joints is fitted to joints and silhouettes. It counts as a person only under
+checks that furniture, shadows and screens fail: the silhouette agrees, most joints are where the body has them in every
+camera, the body touches the floor, and all of that twice in a row in one place.
+"""
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import project, rays
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import KeypointStartParams, StartParams
+from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
+from mocapd.tracking.initialisers.stance import Blob, Standing, blobs_of, fit_to_blobs, views_of
+from mocapd.types import Camera, Floats
+from mocapd.vision.heatmaps.person_crop import middle_of
+
+_HIPS, _NECK = INDEX["hips"], INDEX["neck"]
+_HIGHEST_MIDDLE_M = 1.6  # of a body that touches the floor
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeypointCandidate:
+    """Somebody who may be here: fitted to joints and silhouettes; who: the pieces of the foreground; shadows: with those that
+    may be one.
+
+    spread_m: median over the joints of how far each is spread over its map, in the camera where that is largest, inf where
+    one sees too few; off_sds2: likewise, how far off the body has them [standard deviations^2]; apart_m: mean distance
+    between the body's joints and the triangulated ones; lowest_m: height of the lowest joint.
+    """
+
+    fit: Fit
+    who: Standing
+    shadows: bool
+    spread_m: float
+    off_sds2: float
+    apart_m: float
+    lowest_m: float
+
+
+class KeypointInitialiser:
+    """See the module's docstring. Remembers where somebody was at the last look."""
+
+    def __init__(
+        self,
+        silhouettes: Fitter,
+        floor: FloorTerm,
+        joints: JointViews,
+        views: CameraViews,
+        cameras: Sequence[Camera],
+        start: StartParams,
+        params: KeypointStartParams,
+    ) -> None:
+        """silhouettes: a fitter whose body is of one colour; cameras: those of the views."""
+        self._silhouettes, self._floor, self._joints = silhouettes, floor, joints
+        self._views, self._cameras = views, cameras
+        self._params = params
+        self._start = replace(start, least_height_px=params.least_height_px)
+        self.reset()
+
+    def reset(self) -> None:
+        """Nobody was seen."""
+        self._last_m: list[Floats] = []
+
+    def look(
+        self, factors: Floats, information: Floats
+    ) -> Generator[None, None, KeypointCandidate | None]:
+        """Somebody of these proportions who is seen for the second time; waits after each attempt."""
+        found: list[KeypointCandidate] = []
+        for shadows in (False, True):
+            for middle_m, who in self._candidates(shadows):
+                one = self.attempt(middle_m, who, shadows, factors, information)
+                if one is not None and self.is_person(one):
+                    found.append(one)
+                yield
+        last, self._last_m = self._last_m, [one.fit.state.root_m for one in found]
+        again = [
+            one
+            for one in found
+            if any(
+                np.linalg.norm(one.fit.state.root_m - at_m) < self._params.same_place_m
+                for at_m in last
+            )
+        ]
+        return max(again, key=self._worth, default=None)
+
+    def now(self, then: KeypointCandidate, walked_m: float) -> KeypointCandidate | None:
+        """Who was found in pictures of a while ago, in the newest ones; None: nobody is within walked_m [m] any more."""
+        near = [
+            (away_m, middle_m, who)
+            for middle_m, who in self._candidates(then.shadows)
+            if (away_m := float(np.linalg.norm(who.place_m - then.who.place_m))) <= walked_m
+        ]
+        if not near:
+            return None
+        _, middle_m, who = min(near, key=lambda one: one[0])
+        state = then.fit.state
+        found = self.attempt(middle_m, who, then.shadows, state.factors, state.information)
+        return found if found is not None and self.is_person(found) else None
+
+    def _worth(self, one: KeypointCandidate) -> float:
+        return one.fit.explained - (self._params.shadows_more if one.shadows else 0.0)
+
+    def attempt(
+        self, middle_m: Floats, who: Standing, shadows: bool, factors: Floats, information: Floats
+    ) -> KeypointCandidate | None:
+        """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network is far from
+        sure of its joints, or sees no trunk."""
+        p, fitter = self._params, self._silhouettes
+        state = _upright_about(fitter, middle_m, factors, information)
+        hips_m = state.root_m
+        for _ in range(p.looks):
+            watch = self._joints.watch(fitter, state, self._views)
+            terms = self._joints.term(fitter.model, map(watch, who.blobs))
+            if not terms or len(terms[0].seen) < len(who.blobs):
+                return None
+            joints = terms[0]
+            if self._spread_m(joints) > p.hopeless_m:
+                return None
+            places_m = triangulated_joints(joints.seen, hips_m, p.middle_sd_m)
+            posed = pose_through(fitter, places_m, factors, information)
+            if posed is None:
+                return None
+            held = (self._floor, joints.trusting)
+            state = fitter.fit(
+                posed, (), self._start.loose_s, p.iterations, learn_shape=False, terms=held
+            ).state
+            hips_m = state.root_m
+        fit = fit_to_blobs(
+            fitter, views_of(who, self._views.present), state, self._start.iterations, (self._floor, joints),
+            self._start,
+        )  # fmt: skip
+        joints_m = fitter.joints(fit.state)[0]
+        seen = np.isfinite(places_m[:, 0])
+        apart_m = float(np.linalg.norm(places_m - joints_m, axis=1)[seen].mean())
+        return KeypointCandidate(
+            fit,
+            who,
+            shadows,
+            self._spread_m(joints),
+            _largest_median(joints.off_sds2(joints_m)),
+            apart_m,
+            float(joints_m[:, 1].min()),
+        )
+
+    def is_person(self, one: KeypointCandidate) -> bool:
+        """Whether joints and silhouettes agree about somebody on the floor."""
+        p = self._params
+        low_m, high_m = p.lowest_m
+        return (
+            one.fit.explained >= p.explained + (p.shadows_more if one.shadows else 0.0)
+            and one.spread_m <= p.spread_m
+            and one.off_sds2 <= p.off_sds2
+            and one.apart_m <= p.apart_m
+            and low_m <= one.lowest_m <= high_m
+        )
+
+    def _spread_m(self, joints: JointTerm) -> float:
+        """See `KeypointCandidate`."""
+        enough = min(len(one.joints) for one in joints.seen) >= self._params.least_joints
+        return _largest_median(joints.spreads_m()) if enough else np.inf
+
+    def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
+        """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
+        views = self._views
+        blobs = {i: blobs_of(views.each[i].before, shadows, self._start) for i in views.present}
+        if not blobs or any(not one for one in blobs.values()):
+            return []
+        scales = [one.image_scale for one in views.each]
+        first = next(iter(blobs))
+        found = [
+            best
+            for blob in blobs[first]
+            if (best := self._best_middle(first, blob, blobs, scales)) is not None
+        ]
+        found.sort(key=lambda one: one[1].error)
+        return found[: self._start.people]
+
+    def _best_middle(
+        self, first: int, blob: Blob, blobs: Mapping[int, Sequence[Blob]], scales: Sequence[int]
+    ) -> tuple[Floats, Standing] | None:
+        """The distance at which the pieces of all cameras agree most about one body on the floor."""
+        p, start = self._params, self._start
+        eye, ray = rays(self._cameras[first], _frame_px(_middle_px(blob), scales[first])[None])
+        best: tuple[Floats, Standing] | None = None
+        for away_m in np.arange(start.nearest_m, start.farthest_m, p.step_m):
+            middle_m = np.reshape(eye, 3) + away_m * np.reshape(ray, 3)
+            if not 0.0 < middle_m[1] < _HIGHEST_MIDDLE_M:
+                continue
+            below_m = middle_m * np.array([1.0, 0.0, 1.0])
+            error, mine = 0.0, {}
+            for i, some in blobs.items():
+                at_px = project(self._cameras[i], np.stack([middle_m, below_m]))
+                at, foot = (at_px + 0.5) / scales[i] - 0.5
+                height_px = self._cameras[i].size_px[1] / scales[i]
+                costs = [_off_px2(one, at, foot[1], height_px, p) for one in some]
+                k = 0 if i == first else int(np.argmin(costs))
+                one = blob if i == first else some[k]
+                mine[i] = one
+                error += _off_px2(one, at, foot[1], height_px, p)
+            if best is None or error < best[1].error:
+                best = middle_m, Standing(below_m, mine, error)
+        return best
+
+
+def _upright_about(
+    fitter: Fitter, middle_m: Floats, factors: Floats, information: Floats
+) -> MotionState:
+    """Somebody upright whose middle, about which the network looks, is at middle_m (3,)."""
+    rest_m = fitter.shaper(factors).rest
+    root_m = middle_m - (middle_of(rest_m[_HIPS], rest_m[_NECK]) - rest_m[_HIPS])
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    return MotionState(root_m, local, np.zeros(fitter.model.n_pose), factors, information)
+
+
+def _largest_median(by_camera: Sequence[Floats]) -> float:
+    return max(float(np.median(one)) for one in by_camera)
+
+
+def _middle_px(blob: Blob) -> Floats:
+    """Of a piece [work px]."""
+    return np.array([blob.middle_x, 0.5 * (blob.top + blob.bottom)])
+
+
+def _frame_px(work_px: Floats, image_scale: int) -> Floats:
+    out: Floats = (work_px + 0.5) * image_scale - 0.5
+    return out
+
+
+def _off_px2(
+    blob: Blob, at_px: Floats, foot_y: float, height_px: float, params: KeypointStartParams
+) -> float:
+    """Of a body whose middle is at at_px (2,), above a floor at the row foot_y, as this piece [work px^2]."""
+    off = _middle_px(blob) - at_px
+    below = blob.bottom - min(foot_y, height_px)
+    return float(off @ off + params.bottom_weight * below**2)

@@ -1,0 +1,225 @@
+"""Who stands before the background and is to be tracked: a person, and of several the nearest."""
+
+from collections.abc import Callable, Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.clock import nanoseconds
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.geometry.camera_model import centre
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import (
+    KeypointStartParams,
+    MotionWatchParams,
+    StartParams,
+)
+from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
+from mocapd.tracking.initialisers.motion_watch import MotionWatch
+from mocapd.tracking.initialisers.stance import (
+    Standing,
+    blobs_of,
+    first_fit,
+    fit_to_blobs,
+    is_standing,
+    standing,
+    views_of,
+)
+from mocapd.tracking.lost_reason import LostReason
+from mocapd.types import Camera, Floats
+
+Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Seen:
+    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one; low: as
+    the network's joints found them, who does not stand."""
+
+    who: Standing
+    shadows: bool
+    views: tuple[View, ...]
+    low: KeypointCandidate | None = None
+
+
+_Likely = tuple[Fit, _Seen]
+
+
+class LookTimes:
+    """When to look. Where a piece of a look takes long, others get as many pictures before the next as it cost them."""
+
+    def __init__(self, params: StartParams) -> None:
+        self._pause_ns = nanoseconds(params.pause_s)
+        self._most_ns = nanoseconds(params.most_rest_s)
+        self._next_ns = 0
+        self._looked_ns: int | None = None  # until the frame set after it has come
+
+    def came(self, t_ns: int) -> None:
+        """A frame set: the first after a piece tells how long that took."""
+        if self._looked_ns is None:
+            return
+        took_ns, self._looked_ns = t_ns - self._looked_ns, None
+        if took_ns > self._pause_ns:
+            self._next_ns = t_ns + min(took_ns, self._most_ns)
+
+    def is_due(self, t_ns: int) -> bool:
+        """Of a frame set that came, in which nobody is known: whether it is time for a look, or for more of one."""
+        return t_ns >= self._next_ns
+
+    def looked(self, t_ns: int, to_the_end: bool) -> None:
+        """A piece was done at this frame set; after the last piece of a look there is a pause."""
+        self._looked_ns = t_ns
+        if to_the_end:
+            self._next_ns = t_ns + self._pause_ns
+
+
+class PersonSearch:
+    """Looks for somebody; on a slow machine a look goes on over some frame sets, as the webcams and the output cannot wait.
+    Remembers when it may look again, and where somebody was likely at the last look."""
+
+    def __init__(
+        self,
+        silhouettes: Fitter,
+        floor: FloorTerm,
+        joints: JointViews,
+        views: CameraViews,
+        cameras: Sequence[Camera],
+        params: StartParams,
+        low: KeypointStartParams,
+        motion: MotionWatchParams,
+        now_ns: Callable[[], int],
+    ) -> None:
+        """silhouettes: a fitter whose body is of one colour; cameras: those of the views; low: of who does not stand;
+        motion: of who is not found; now_ns: see `Resources`."""
+        self._silhouettes, self._floor, self._views = silhouettes, floor, views
+        self._cameras, self._params, self._clock_ns = cameras, params, now_ns
+        self._motion = MotionWatch(motion)
+        self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
+        self.reset()
+
+    def reset(self) -> None:
+        """Look at once, and remember nobody."""
+        self.times = LookTimes(self._params)
+        self._likely_m: list[Floats] = []
+        self._low.reset()
+        self._motion.reset()
+        self.give_up()
+
+    def give_up(self) -> None:
+        """The look under way is of no use any more."""
+        self._under_way: Generator[None, None, _Likely | None] | None = None
+
+    def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
+        """Somebody of these proportions as the newest pictures show them, and the cameras that do; None: nobody, or not
+        known yet, or it is not time to look."""
+        if self._views.are_new:
+            self.give_up()
+            return None
+        if not self.times.is_due(t_ns):
+            return None
+        begins = self._under_way is None
+        if self._under_way is None:
+            self._see()
+            self._motion.look(t_ns, {i: self._views.each[i].before for i in self._views.present})
+            self._under_way = self._look(factors, information)
+        until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
+        try:
+            next(self._under_way)
+            while self._clock_ns() < until_ns:
+                next(self._under_way)
+        except StopIteration as end:
+            self.give_up()
+            self.times.looked(t_ns, to_the_end=True)
+            likeliest: _Likely | None = end.value
+            if likeliest is not None and not begins:
+                likeliest = self._as_now(*likeliest)
+            if likeliest is None:
+                return None
+            self._motion.reset()
+            return likeliest[0], self._names(likeliest[1])
+        self.times.looked(t_ns, to_the_end=False)
+        return None
+
+    def lost_reason(self, t_ns: int) -> LostReason | None:
+        """Why nobody is found, where that can be told."""
+        return self._motion.reason(t_ns)
+
+    def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
+        """A whole look at the newest pictures, which `_see` saw; it may be left after each fit, and gone on with later."""
+        p = self._params
+        fits = []
+        for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
+            fit = yield from first_fit(
+                self._silhouettes, seen.who, seen.views, factors, information, (self._floor,), p
+            )
+            fits.append((fit, seen))
+        likely = [one for one in fits if self._is_likely(one[0])]
+        last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
+        if not likely:
+            low = yield from self._low.look(factors, information)
+            return None if low is None else _found_low(low, self._views.present)
+        self._low.reset()
+        # who is nearer wants to be tracked: a passer-by is seldom in front
+        fit, seen = max(
+            likely, key=lambda one: one[0].explained - p.farther_per_m * self._away_m(one[0])
+        )
+        again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
+        if fit.explained < p.accept_explained and not again:
+            return None
+        return fit, seen
+
+    def _as_now(self, fit: Fit, then: _Seen) -> _Likely | None:
+        """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
+        p = self._params
+        self._see()
+        if then.low is not None:
+            low = self._low.now(then.low, p.walked_m)
+            return None if low is None else _found_low(low, self._views.present)
+        away_m, now = min(
+            (
+                (float(np.linalg.norm(one.who.place_m - then.who.place_m)), one)
+                for one in self._standing(then.shadows)
+            ),
+            key=lambda one: one[0],
+            default=(np.inf, then),
+        )
+        if away_m > p.walked_m:
+            return None
+        went = replace(fit.state, root_m=fit.state.root_m + now.who.place_m - then.who.place_m)
+        fit = fit_to_blobs(self._silhouettes, now.views, went, p.iterations, (self._floor,), p)
+        return (fit, now) if self._is_likely(fit) else None
+
+    def _see(self) -> None:
+        """Everything that stands before the background."""
+        self._views.mark_body(None)
+        self._views.stand_before()
+        self._views.take_uncovered()
+
+    def _standing(self, shadows: bool) -> list[_Seen]:
+        """The likeliest people before the background; shadows: with what may be one."""
+        p, views = self._params, self._views
+        blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in views.present}
+        smaller = [one.image_scale for one in views.each]
+        stature_m = self._silhouettes.model.stature_m
+        people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
+        return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
+
+    def _is_likely(self, fit: Fit) -> bool:
+        return fit.explained >= self._params.likely_explained and is_standing(
+            self._silhouettes, fit
+        )
+
+    def _names(self, seen: _Seen) -> tuple[str, ...]:
+        return tuple(self._views.each[i].name for i in seen.who.blobs)
+
+    def _away_m(self, fit: Fit) -> float:
+        """From the cameras, on average."""
+        eyes = [centre(camera) for camera in self._cameras]
+        return float(np.linalg.norm(np.array(eyes) - fit.state.root_m, axis=1).mean())
+
+
+def _found_low(one: KeypointCandidate, present: Mapping[int, float]) -> _Likely:
+    """Somebody whom the joints found; present: see `CameraViews`."""
+    return one.fit, _Seen(one.who, one.shadows, views_of(one.who, present), one)

@@ -1,0 +1,222 @@
+"""The first pose: a silhouette before the known background, as somebody who stands on the floor, whichever way."""
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.body_drawing import Roi
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.geometry import rotations
+from mocapd.geometry.camera_model import centre, project, rays
+from mocapd.tracking.cues.clothes.clothes_params import StartParams
+from mocapd.types import Bytes, Camera, Floats
+from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands
+
+_ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
+_BESIDE = 0.99  # the same of cameras beside each other: less than 16 degrees between two
+_PAST_RAD = 1.2  # to either side: one fit does not turn by a quarter
+_UPRIGHT = 0.85  # of the hips' height: two shadows, or pieces of one body, are explained by one that squats
+_ON_FLOOR_M = 0.25  # of both ankles on average: one foot may be raised, or both be on a step
+_ANKLES = [INDEX[side + "Foot"] for side in SIDES]
+_ABOUT_PX = 20  # of a blob, within which its body is drawn
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blob:
+    """A connected piece before the background of one camera: mask (h,w) uint8 of the region roi about it and where the
+    background is known there, its box's upper and lower edge and its middle column [work px]."""
+
+    mask: Bytes
+    known: NDArray[np.bool_]
+    roi: Roi
+    top: float
+    bottom: float
+    middle_x: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standing:
+    """Somebody of the known height at a place (3,) on the floor, as blobs of cameras, by index, show; error [work px^2]."""
+
+    place_m: Floats
+    blobs: Mapping[int, Blob]
+    error: float
+
+
+def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
+    """The largest pieces (h,w) that may be people, largest first, joined across what is not known; shadows: with what may be
+    one, or dark cloth."""
+    mask, known = stands(before) if shadows else before == BEFORE, before != UNKNOWN
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats((mask | ~known).astype(np.uint8))
+    order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
+    out = []
+    for k in order:
+        top, height = int(stats[k, cv2.CC_STAT_TOP]), int(stats[k, cv2.CC_STAT_HEIGHT])
+        if stats[k, cv2.CC_STAT_AREA] >= params.least_px and height >= params.least_height_px:
+            left, width = int(stats[k, cv2.CC_STAT_LEFT]), int(stats[k, cv2.CC_STAT_WIDTH])
+            x0, y0 = max(left - _ABOUT_PX, 0) & ~1, max(top - _ABOUT_PX, 0) & ~1
+            x1 = min(left + width + _ABOUT_PX, before.shape[1]) & ~1
+            y1 = min(top + height + _ABOUT_PX, before.shape[0]) & ~1
+            here = np.s_[y0:y1, x0:x1]
+            piece = (numbered[here] == k).astype(np.uint8)
+            if np.count_nonzero(piece) < params.least_px:
+                continue
+            edges = top, top + height, float(middles[k, 0])
+            out.append(Blob(piece, known[here], (x0, y0, x1, y1), *edges))
+    return out
+
+
+def standing(
+    blobs: Mapping[int, Sequence[Blob]],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    stature_m: float,
+    params: StartParams,
+) -> list[Standing]:
+    """Where people of this height may stand, best first: for each blob of the first camera one, joined with the blobs of the
+    others that agree most."""
+    if not blobs or any(not one for one in blobs.values()):
+        return []
+    first = next(iter(blobs))
+    found = [
+        best
+        for blob in blobs[first]
+        if (best := _best_place(first, blob, blobs, cameras, image_scales, stature_m, params))
+        is not None
+    ]
+    return sorted(found, key=lambda one: one.error)
+
+
+def _best_place(
+    first: int,
+    blob: Blob,
+    blobs: Mapping[int, Sequence[Blob]],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    stature_m: float,
+    params: StartParams,
+) -> Standing | None:
+    camera, scale = cameras[first], image_scales[first]
+    pixel = np.array([(blob.middle_x + 0.5) * scale - 0.5, camera.size_px[1] / 2.0])
+    ray = rays(camera, pixel)[1].reshape(3)
+    ahead = np.array([ray[0], 0.0, ray[2]])
+    ahead /= np.linalg.norm(ahead)
+    eye = centre(camera) * np.array([1.0, 0.0, 1.0])
+    best: Standing | None = None
+    for away_m in np.arange(params.nearest_m, params.farthest_m, params.step_m):
+        place = eye + away_m * ahead
+        error, mine = 0.0, {}
+        for i, some in blobs.items():
+            height_px = cameras[i].size_px[1] / image_scales[i]
+            ends = project(cameras[i], place + np.array([[0.0, stature_m, 0.0], [0.0, 0.0, 0.0]]))
+            top, foot = (ends + 0.5) / image_scales[i] - 0.5
+            one = blob if i == first else min(some, key=lambda b: _misfit(b, top, foot, height_px))
+            mine[i] = one
+            error += _misfit(one, top, foot, height_px)
+        if best is None or error < best.error:
+            best = Standing(place, mine, error)
+    return best
+
+
+def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
+    """Of a person between top (2,) and foot (2,) [work px] as this blob; feet below the picture are not missed. The head is
+    sharper than the shoes with their shadow."""
+    across = blob.middle_x - 0.5 * (top[0] + foot[0])
+    below = blob.bottom - min(float(foot[1]), height_px)
+    return float((blob.top - top[1]) ** 2 + across**2 + 0.5 * below**2)
+
+
+def is_standing(fitter: Fitter, fit: Fit) -> bool:
+    """Whether a first pose has its hips about as high as somebody who stands, and its feet on the floor: a smaller person on
+    a television has not."""
+    joints_m = fitter.joints(fit.state)[0]
+    return bool(
+        joints_m[0, 1] > _UPRIGHT * fitter.model.rest_m[0, 1]
+        and joints_m[_ANKLES, 1].mean() < _ON_FLOOR_M
+    )
+
+
+def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
+    """Somebody's blobs as what a fit of silhouettes looks at; offsets_s: each camera's own time after the frame set's, by
+    index."""
+    return tuple(
+        View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
+        for i, blob in who.blobs.items()
+    )
+
+
+def first_fit(
+    fitter: Fitter,
+    who: Standing,
+    views: Sequence[View],
+    factors: Floats,
+    information: Floats,
+    terms: Sequence[PoseTerm],
+    params: StartParams,
+) -> Generator[None, None, Fit]:
+    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
+    rest = fitter.shaper(factors).rest
+
+    def fitted(yaw: float, arm: float) -> Fit:
+        state = MotionState(
+            rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
+        )  # fmt: skip
+        return fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
+
+    ways, aside = _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
+    roughly: dict[tuple[float, float], Fit] = {}
+    for stance in product(ways, params.arms_rad):
+        roughly[stance] = fitted(*stance)
+        yield
+    _, arm = min(roughly, key=lambda stance: roughly[stance].cost)
+    for way in aside:
+        roughly[way, arm] = fitted(way, arm)
+        yield
+    best = sorted(roughly.values(), key=lambda fit: fit.cost)
+    refined: list[Fit] = []
+    for one in best[: params.refined]:
+        refined.append(fit_to_blobs(fitter, views, one.state, params.iterations, terms, params))
+        yield
+    return min(refined, key=lambda fit: fit.cost)
+
+
+def fit_to_blobs(
+    fitter: Fitter,
+    views: Sequence[View],
+    state: MotionState,
+    iterations: int,
+    terms: Sequence[PoseTerm],
+    params: StartParams,
+) -> Fit:
+    """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
+    return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
+
+
+def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
+    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side where these stand beside each
+    other, as they see one side alone; or any way where these stand all around."""
+    away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    middle = away.mean(axis=0)
+    yaw = float(np.arctan2(middle[0], middle[1]))
+    together = np.linalg.norm(middle)
+    if together > _ONE_SIDE:
+        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD] if together > _BESIDE else []
+    return [yaw + quarter * 0.5 * np.pi for quarter in range(4)], []
+
+
+def _stance(yaw: float, arm: float) -> Floats:
+    """Local rotations (J,4) of somebody upright whose arms are turned by `arm` [rad] from the T-pose."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    local[0] = rotations.exp(np.array([0.0, yaw, 0.0]))
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        local[INDEX[side + "UpperArm"]] = rotations.exp(np.array([0.0, 0.0, mirror * arm]))
+    return local

@@ -1,0 +1,53 @@
+"""One owner of a frame set's pictures: each is averaged down once, whichever cues look at it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from mocapd.clock import seconds
+from mocapd.each import Each, in_turn
+from mocapd.fit.body_drawing import image_scales, work_size
+from mocapd.types import Bytes, Camera, FrameSet
+from mocapd.vision.frame_size import check_frame_size
+
+
+@dataclass(slots=True, eq=False)
+class WorkPicture:
+    """The newest picture of one camera, bgr (h,w,3), averaged down by image_scale; both sides are even."""
+
+    camera: Camera
+    image_scale: int
+    bgr: Bytes = field(init=False)
+
+    def __post_init__(self) -> None:
+        w, h = work_size(self.camera, self.image_scale)
+        self.bgr = np.zeros((h, w, 3), np.uint8)
+
+    def take(self, pixels: Bytes) -> None:
+        """The average over blocks of a frame's pixels."""
+        h, w = self.bgr.shape[:2]
+        k = self.image_scale
+        cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.bgr, interpolation=cv2.INTER_AREA)
+
+
+class Pictures:
+    """One work picture for each camera of a rig; present: each seeing camera's own time after the frame set's [s], by its
+    index."""
+
+    def __init__(self, cameras: Sequence[Camera], work_width_px: int, each: Each = in_turn) -> None:
+        scales = image_scales(cameras, work_width_px)
+        self.each = [WorkPicture(c, k) for c, k in zip(cameras, scales, strict=True)]
+        self.present: dict[int, float] = {}
+        self._index = {camera.name: i for i, camera in enumerate(cameras)}
+        self._each = each
+
+    def look(self, frames: FrameSet) -> dict[int, float]:
+        """Take a frame set: `present`. Raises ConfigError when a frame is not of its calibration's size."""
+        mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
+        for i, frame in mine:
+            check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
+        self._each(lambda one: self.each[one[0]].take(one[1].pixels), mine)
+        self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
+        return self.present

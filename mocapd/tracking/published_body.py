@@ -1,0 +1,129 @@
+"""What is published of a tracked body: its pose, filtered, how far each joint may be believed, and by which cues."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.bones import NAMES
+from mocapd.body.pose_space import full_body
+from mocapd.body.shape import BodyShape, skeleton_of
+from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
+from mocapd.clock import seconds
+from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fit, Fitter
+from mocapd.geometry import rotations
+from mocapd.tracking.base import Track
+from mocapd.tracking.cues.clothes.clothes_confidence import (
+    joint_confidence as confidence_by_clothes,
+)
+from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
+from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound
+from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence as confidence_by_shirt
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
+from mocapd.tracking.hypotheses.seen_pose import WHOLE
+from mocapd.tracking.pose_filter import PoseFilter
+from mocapd.tracking.track_state import TrackState, upper_of
+from mocapd.tracking.tracking_state import faded, grown
+from mocapd.tracking.trunk_and_legs import LOWER_BONES
+from mocapd.types import BodyState, Floats, Pose, Tracking
+
+_LOWER_JOINTS = np.setdiff1d(LOWER_BONES, [INDEX["neck"]])  # the shirt ends at the neck
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What each cue found of a body in one frame set."""
+
+    shirt: ShirtFound | None = None
+    clothes: ClothesFound | None = None
+
+
+def published_body(
+    state: TrackState,
+    motion: MotionState,
+    found_now: Found,
+    shirt: ShirtCue | None,
+    clothes: ClothesCue | None,
+    pose_filter: PoseFilter,
+    t_ns: int,
+    tracking: Tracking,
+    shape: BodyShape,
+) -> Track:
+    """The track of a body as known, of which `motion` is at t_ns, that is now."""
+    away_s = seconds(t_ns - state.t_ns)
+    confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
+    found = None
+    if state.whole is not None and clothes is not None:
+        found, uncertainty_m = _placed(clothes.fitter, motion, state.whole)
+        away_of_whole_s = seconds(t_ns - state.whole_ns)
+        n = len(state.cameras)
+        confidence = confidence_by_clothes(state.whole, n, uncertainty_m, away_of_whole_s)
+    if state.by_shirt and state.trunk is not None and shirt is not None:
+        upper = upper_of(motion, shirt.model)
+        by_trunk, of_trunk_m = _placed(shirt.fitter, upper, state.trunk)
+        found = by_trunk if found is None else found
+        by_it = confidence_by_shirt(state.trunk, len(state.cameras), of_trunk_m, away_s)
+        lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
+        by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
+        confidence, uncertainty_m = by_it, of_trunk_m
+    assert found is not None
+    carrier = _carrier(state)
+    jumped = _bones(state.changed) if away_s == 0.0 else ()
+    skeleton = skeleton_of(shape)
+    pose = pose_filter.step(
+        found, confidence, t_ns, carrier, state.by_shirt, skeleton, jumped, state.legs_since_ns
+    )
+    joints_m = joint_positions(skeleton, pose)
+    unfiltered_m = joint_positions(skeleton, found)
+    behind_m = np.linalg.norm(joints_m - unfiltered_m, axis=1) / np.sqrt(3.0)
+    body = BodyState(
+        t_ns=t_ns,
+        tracking=tracking,
+        tracker=carrier,
+        pose=pose,
+        joints_m=joints_m,
+        confidence=confidence,
+        cameras=state.cameras if away_s == 0.0 else (),
+        uncertainty_m=np.hypot(grown(uncertainty_m, away_s), behind_m),
+    )
+    carried_by = state.trunk if state.by_shirt else state.whole
+    assert carried_by is not None
+    quality = carried_by.explained * faded(away_s)
+    if state.by_shirt and found_now.shirt is not None and shirt is not None:
+        names = [shirt.fitter.drawings[v.index].camera.name for v in found_now.shirt.views]
+        ids = {name: v.ids.copy() for name, v in zip(names, found_now.shirt.views, strict=True)}
+        roi = {
+            name: shirt.segmenters.roi_px(v)
+            for name, v in zip(names, found_now.shirt.views, strict=True)
+        }
+        return Track(body, shape, quality, ids, roi)
+    if found_now.clothes is not None and clothes is not None:
+        return Track(body, shape, quality, *clothes.cameras.evidence(list(found_now.clothes.views)))
+    return Track(body, shape, quality)
+
+
+def _placed(fitter: Fitter, motion: MotionState, fit: Fit) -> tuple[Pose, Floats]:
+    """The pose, and one standard deviation of each joint's place (J,) [m]."""
+    joints_m, globals_xyzw = fitter.joints(motion)
+    uncertainty_m = joint_uncertainty_m(
+        fitter.model, joints_m, globals_xyzw, pose_covariance(fitter.model, fit.H)
+    )
+    return Pose(joints_m[0], rotations.canonical(globals_xyzw)), uncertainty_m
+
+
+def _carrier(state: TrackState) -> str:
+    """The cues that carry the body."""
+    cues = [
+        name
+        for name, carries in (("shirt", state.by_shirt), ("clothes", state.whole is not None))
+        if carries
+    ]
+    return "+".join(cues)
+
+
+def _bones(parts: Sequence[str]) -> tuple[int, ...]:
+    if WHOLE in parts:
+        return tuple(range(len(NAMES)))
+    return tuple(INDEX[bone] for part in parts for bone in full_body().parts[part].joints)

@@ -1,0 +1,78 @@
+"""What cameras see of a person's joints: near the true ones, and told as rays."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.skeleton import INDEX, local_from_global
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.geometry.camera_model import to_camera
+from mocapd.sim.renderer import camera_renderers
+from mocapd.sim.world import World, rig_of
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from tests.sim import small
+
+pytestmark = pytest.mark.kernels
+
+
+def test_joints_of_somebody_are_seen_where_they_are() -> None:
+    table = small.table()
+    for camera in table["cameras"]:
+        camera |= {"size_px": [320, 240], "dropped": 0.0, "clock_offset_s": 0.0}
+    for light in table["lights"]:
+        light["events"] = []
+    table["motion"] = {
+        "keyframes": [{"t_s": 0.0, "pose": "goalpost", "at_m": [0.1, 0.1], "yaw_deg": 10.0}]
+    }
+    table["clothes"] = {"shirt": "plain", "top_srgb": [150, 60, 60]}
+    table["body"] = {"whole": True}
+    scenario = small.scenario(**table)
+    world, rig = World(scenario), rig_of(scenario)
+    renderers = camera_renderers(world)
+    body = build_model(world.shape.stature_m, full_body())
+    fitter = Fitter(body, rig.cameras, [1] * len(rig.cameras), FitParams())
+    cameras = CameraViews(fitter, ClothesParams())
+    cameras.reset()
+    levels = np.ones(len(table["lights"]))
+    for k in range(22):
+        pictures = [r.picture(None, levels, k) for r in renderers]
+        cameras.take(dict(enumerate(pictures)), dict.fromkeys(range(len(pictures)), 0.0))
+        cameras.mark_body(None)
+        cameras.learn(None, [])
+    pictures = [r.frame(0) for r in renderers]
+    cameras.take(dict(enumerate(pictures)), dict.fromkeys(range(len(pictures)), 0.0))
+    truth = world.at(renderers[0].exposure_s(0))
+    state = MotionState(
+        truth.pose.root_m + [0.06, 0.0, -0.05], local_from_global(world.skeleton, truth.pose.quats_xyzw),
+        np.zeros(body.n_pose), np.ones(body.n_shape), initial_information(body.space),
+    )  # fmt: skip
+    (term,) = _looked(ClothesParams().joints, fitter, state, cameras)
+    assert len(term.seen) == len(rig.cameras)
+    off_cm = []
+    for one in term.seen:
+        there = to_camera(one.camera, truth.joints_m)
+        z = there[one.joints, 2]
+        off_cm.append(100.0 * np.linalg.norm(one.xy * z[:, None] - there[one.joints, :2], axis=1))
+        assert {INDEX["head"], INDEX["hips"], INDEX["leftHand"]} <= set(one.joints.tolist())
+    assert np.median(np.concatenate(off_cm)) < 5.0
+    assert np.percentile(np.concatenate(off_cm), 90) < 15.0
+    unheeded = replace(
+        ClothesParams().joints, term=replace(ClothesParams().joints.term, weight=0.0)
+    )
+    assert _looked(unheeded, fitter, state, cameras) == ()
+
+
+def _looked(
+    params: JointViewParams, fitter: Fitter, state: MotionState, cameras: CameraViews
+) -> tuple[JointTerm, ...]:
+    joints = JointViews(len(cameras.each), fitter.model.stature_m, params)
+    return joints.term(fitter.model, map(joints.watch(fitter, state, cameras), cameras.present))

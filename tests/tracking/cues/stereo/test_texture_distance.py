@@ -1,0 +1,75 @@
+"""The shirt's distance by its texture: for cameras side by side, and only for those."""
+
+import numpy as np
+import pytest
+
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter, View
+from mocapd.fit.terms.distance_measuring import MeasuringParams
+from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.types import Camera, Floats, Frame, FrameSet
+from tests.fit.synthetic import CAMERAS, MODEL, standing, stepped, textured_greys
+from tests.geometry.rigs import looking_at
+
+pytestmark = pytest.mark.kernels
+
+SIDE_BY_SIDE = tuple(
+    looking_at(name, np.array([x, 1.2, 2.6]), np.array([x, 1.1, 0.0]))
+    for name, x in (("left", -0.06), ("right", 0.06))
+)
+
+
+def textured(cameras: tuple[Camera, ...], state: MotionState) -> FrameSet:
+    """Pictures of a body whose brightness follows its surface."""
+    greys = textured_greys(MODEL, cameras, state)
+    return FrameSet(
+        0,
+        {
+            camera.name: Frame(camera.name, 0, 0, np.repeat(grey[..., None], 3, axis=2))
+            for camera, grey in zip(cameras, greys, strict=True)
+        },
+    )
+
+
+def shifted(by: Fitter, state: MotionState, m: Floats) -> MotionState:
+    step = np.zeros(MODEL.n_pose)
+    step[:3] = m
+    return stepped(by, state, step)
+
+
+def drawn(by: Fitter, state: MotionState) -> list[View]:
+    """As a tracker leaves it: the predicted body drawn last into every view."""
+    views = []
+    for i, drawing in enumerate(by.drawings):
+        roi = drawing.region(state, 0.0, 20)
+        assert roi is not None
+        ids = drawing.render(state, 0.0, roi)
+        views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0))
+    return views
+
+
+def test_a_pair_side_by_side_pulls_the_body_to_where_its_texture_is() -> None:
+    truth = standing()
+    by = Fitter(MODEL, SIDE_BY_SIDE, [2, 2], FitParams())
+    nearer = shifted(by, truth, np.array([0.0, 0.0, 0.12]))
+    (term,) = texture_distances(
+        by, nearer, drawn(by, nearer), textured(SIDE_BY_SIDE, truth), 0, MeasuringParams()
+    )
+    H, b = np.zeros((MODEL.n_pose, MODEL.n_pose)), np.zeros(MODEL.n_pose)
+    by.drawings[0].pose(nearer.root_m, nearer.local_xyzw, by.shaper(nearer.factors).rest)
+    term.add(by.drawings[0].posed, by.shaper(nearer.factors), H, b)
+    back_m = b[2] / H[2, 2]  # along the view, all else held
+    assert -0.15 < back_m < -0.09
+
+
+def test_cameras_that_see_other_sides_and_one_alone_do_not_ask() -> None:
+    truth = standing()
+    crossing = Fitter(MODEL, CAMERAS[:2], [2, 2], FitParams())
+    frames = textured(CAMERAS[:2], truth)
+    views = drawn(crossing, truth)
+    assert texture_distances(crossing, truth, views, frames, 0, MeasuringParams()) == ()
+    alone = Fitter(MODEL, SIDE_BY_SIDE, [2, 2], FitParams())
+    views = drawn(alone, truth)[:1]
+    frames = textured(SIDE_BY_SIDE, truth)
+    assert texture_distances(alone, truth, views, frames, 0, MeasuringParams()) == ()

@@ -1,0 +1,63 @@
+"""A body that agrees better turned round, time after time, is turned round; one that does so once is not."""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.fit.solver import Fit
+from mocapd.tracking.hypotheses.turn_watch import TurnWatch, TurnWatchParams
+from tests.fit.synthetic import standing
+
+PARAMS = TurnWatchParams()
+
+
+def fit(explained: float, cost: float) -> Fit:
+    counts = np.zeros(21)
+    visible, matched = counts.copy(), counts.copy()
+    visible[1], matched[1] = 1000.0, 1000.0 * explained
+    nothing = np.zeros((1, 1))
+    return Fit(standing(), visible, matched, counts, nothing, cost, nothing)
+
+
+def looks(long_turns: Collection[int]) -> list[int]:
+    """At which turns it looks, of 60."""
+    watch, out = TurnWatch(PARAMS), []
+    for turn in range(60):
+        if watch.is_due(turn, turn in long_turns):
+            watch.looked(turn)
+            out.append(turn)
+    return out
+
+
+def test_it_is_looked_for_now_and_then() -> None:
+    assert looks(()) == [11, 21, 31, 41, 51]
+
+
+def test_a_frame_that_takes_long_anyhow_is_left_alone_for_a_while() -> None:
+    assert looks(range(20, 24)) == [11, 25, 35, 45, 55]
+    every = looks(range(60))
+    assert 3 <= len(every) < 5
+    assert max(np.diff(every)) <= PARAMS.latest + 1
+
+
+def test_once_is_chance_and_again_and_again_is_not() -> None:
+    watch = TurnWatch(PARAMS)
+    now, other = fit(0.60, 700.0), fit(0.63, 680.0)
+    assert [watch.is_turned(now, other) for _ in range(3)] == [False, True, True]
+    watch.reset()
+    assert not watch.is_turned(now, other)
+
+
+def test_what_speaks_for_the_present_way_takes_back_what_spoke_against_it() -> None:
+    watch = TurnWatch(PARAMS)
+    better, worse = fit(0.63, 680.0), fit(0.57, 800.0)
+    now = fit(0.60, 700.0)
+    for _ in range(20):
+        assert not watch.is_turned(now, better)
+        assert not watch.is_turned(now, worse)
+
+
+def test_no_way_that_explains_far_less_is_taken_for_its_cost() -> None:
+    watch = TurnWatch(replace(PARAMS, explained=10.0))
+    assert not any(watch.is_turned(fit(0.60, 900.0), fit(0.50, 200.0)) for _ in range(5))

@@ -1,0 +1,32 @@
+"""`pose_filter_kernels.follow_bones` as a formula over all bones at once."""
+
+import numpy as np
+
+from mocapd.geometry import rotations
+from mocapd.types import Floats
+
+
+def followed(
+    found_xyzw: Floats,
+    last_xyzw: Floats,
+    trust: Floats,
+    following: Floats,
+    gap_s: float,
+    ticks: float,
+    learns: float,
+    turning_rad_s: Floats,
+) -> tuple[Floats, Floats]:
+    """The filtered bones (J,4), and how they turn (J,3)."""
+    all_sure, doubtful, least, doubtful_rad_s, sure_rad_s, power, goes_on = following
+    sure = np.clip((trust - doubtful) / (all_sure - doubtful), 0.0, 1.0) ** power
+    follows = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
+    learned = 1.0 - (1.0 - learns * np.sqrt(sure)) ** ticks
+    turning = goes_on[:, None] ** ticks * turning_rad_s
+    expected = rotations.multiply(rotations.exp(gap_s * turning), last_xyzw)
+    way = rotations.log(rotations.multiply(found_xyzw, rotations.inverse(expected)))
+    filtered = rotations.multiply(rotations.exp(follows[:, None] * way), expected)
+    turn = rotations.log(rotations.multiply(filtered, rotations.inverse(last_xyzw)))
+    most_rad = gap_s * (doubtful_rad_s + (sure_rad_s - doubtful_rad_s) * sure)
+    turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
+    filtered = rotations.canonical(rotations.multiply(rotations.exp(turn), last_xyzw))
+    return filtered, turning + learned[:, None] * (turn / gap_s - turning)

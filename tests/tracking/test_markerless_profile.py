@@ -1,0 +1,101 @@
+"""The profile `markerless` as its users notice it: it starts by itself, follows, and goes when they go."""
+
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX
+from mocapd.tracking.base import Track
+from mocapd.tracking.known import known_shape
+from mocapd.types import FrameSet, Tracking
+from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
+from tests.tracking.profiles import markerless_tracker
+from tests.tracking.stepping import Stepping
+
+pytestmark = pytest.mark.kernels
+LEGS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerLeg", "Foot")]
+ARMS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerArm", "Hand")]
+
+
+@pytest.fixture(scope="module")
+def film() -> PlainFilm:
+    return plain_film()
+
+
+@pytest.fixture
+def tracker(film: PlainFilm) -> Stepping:
+    return Stepping(markerless_tracker(film.known), known_shape(film.known))
+
+
+def run(tracker: Stepping, frames: list[FrameSet]) -> list[Track]:
+    return [tracker.step(one) for one in frames]
+
+
+def off_m(track: Track, truth: np.ndarray | None) -> np.ndarray:
+    assert track.body.joints_m is not None
+    assert truth is not None
+    return np.asarray(np.linalg.norm(track.body.joints_m - truth, axis=1))
+
+
+def test_somebody_who_walks_in_is_followed_from_head_to_foot(
+    film: PlainFilm, tracker: Stepping
+) -> None:
+    tracks = run(tracker, film.frames)
+    assert all(t.body.tracking is Tracking.LOST for t in tracks[:N_EMPTY])
+    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    assert live[0] - N_EMPTY < 15  # half a second
+    assert live == list(range(live[0], len(tracks)))
+    away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
+    assert np.sqrt((away**2).mean()) < 0.10
+    assert np.median(away[:, LEGS]) < 0.08
+    assert np.median(away[:, ARMS]) < 0.10
+    assert tracks[-1].quality > 0.6
+    assert np.median(tracks[-1].body.confidence[LEGS]) > 0.3
+
+
+def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> None:
+    slow = Stepping(
+        markerless_tracker(film.known, now_ns=count(step=1_000_000_000).__next__),
+        known_shape(film.known),
+    )
+    tracks = run(slow, film.frames)
+    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    assert live[0] - N_EMPTY < 40  # one fit at each
+    assert live == list(range(live[0], len(tracks)))
+    away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
+    assert np.median(away) < 0.08
+
+
+def test_who_leaves_is_lost_and_nothing_stays_behind(film: PlainFilm, tracker: Stepping) -> None:
+    assert run(tracker, film.frames)[-1].body.tracking is Tracking.LIVE
+    gone = run(tracker, film.empty)
+    assert all(t.body.tracking is Tracking.LOST for t in gone[20:])
+    assert not any(t.body.tracking is Tracking.LIVE for t in gone[2:])
+
+
+def test_a_camera_that_is_unplugged_leaves_the_other(film: PlainFilm, tracker: Stepping) -> None:
+    tracks = run(tracker, film.frames[:-15])
+    alone = [replace(f, frames={"left": f.frames["left"]}) for f in film.frames[-15:]]
+    tracks = run(tracker, alone)
+    assert all(t.body.tracking is Tracking.LIVE for t in tracks)
+    assert tracks[-1].body.cameras == ("left",)
+
+
+def test_a_recording_that_never_shows_the_room_empty_tells_it_all_the_same() -> None:
+    film = plain_film(to_m=(0.6, 0.2))
+    never_empty = film.frames[N_EMPTY:]
+    shape = known_shape(film.known)
+    tracker = markerless_tracker(film.known)
+    tracker.learn_room(never_empty)
+    tracks = [tracker.step(one, shape) for one in never_empty]
+    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    assert live[0] < 15
+    assert live == list(range(live[0], len(tracks)))
+    away = np.array([off_m(tracks[i], film.joints_m[i]) for i in live])
+    assert np.median(away) < 0.10
+    # without it the person is a part of the room, or their trace is
+    tracker.reset()
+    alone = [tracker.step(one, shape) for one in never_empty]
+    assert sum(t.body.tracking is Tracking.LIVE for t in alone) < len(live) // 2
