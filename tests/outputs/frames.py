@@ -35,7 +35,7 @@ def small_frame(**changes: object) -> SkeletonFrame:
         "capture_monotonic_ns": CAPTURE_NS,
         "capture_unix_ns": CAPTURE_NS + UNIX_OFFSET_NS,
         "publish_monotonic_ns": PUBLISH_NS,
-        "tracker": "shirt",
+        "tracker": "colour",
         "tracking": "live",
         "cameras": ("left", "right"),
         "joints": {
