@@ -161,7 +161,8 @@ class PoseFilter:
             found, confidence, t_ns, carrier, by_shirt, last, jumped, legs_since_ns
         )
         leaps = self._changed_ns is not None and self._leaps(now, last, skeleton)
-        if last.carrier != carrier or (by_shirt and jumped) or leaps:
+        arms_jumped = by_shirt and not set(jumped) <= _LOWER
+        if last.carrier != carrier or arms_jumped or leaps:
             self._offset = _offset_of(expected, now.smooth, skeleton, p)
         if self._offset is not None:
             step_m = min(
@@ -210,7 +211,6 @@ class PoseFilter:
         following, trust_s = _following(by_shirt)
         if by_shirt:
             trust[_SHIRT_TRUNK_BONES] = 1.0
-            jumped = [j for j in jumped if j in LOWER_BONES]  # an offset does for arms
         elif t_ns - last.since_ns < nanoseconds(p.settles_s):
             return _Filtered(t_ns, carrier, found, found, trust, last.since_ns)
         if last.carrier != carrier:  # the offset begins at what the new cues found
@@ -290,6 +290,7 @@ def _of_bones() -> tuple[Ints, list[str]]:
 _END_OF_BONE, _KIND_OF_BONE = _of_bones()
 _ARMS = ("upper_arm", "forearm")
 _HEAD = (INDEX["neck"], INDEX["head"])
+_LOWER = frozenset(LOWER_BONES.tolist())
 _SHIRT_TRUNK_BONES = np.array(
     [j for j, kind in enumerate(_KIND_OF_BONE) if kind == "trunk" and j not in _HEAD]
 )

@@ -61,7 +61,7 @@ def left_hand_up() -> tuple[BodyState, Skeleton]:
     body = BodyState(
         CAPTURE_NS,
         Tracking.LIVE,
-        "shirt",
+        "colour",
         pose,
         joint_positions(skeleton, pose),
         confidence,

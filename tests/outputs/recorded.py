@@ -51,7 +51,7 @@ def moving_body(t_s: float) -> BodyState:
     return BodyState(
         CAPTURE_NS + round(t_s * NS_PER_S),
         Tracking.LIVE,
-        "shirt",
+        "colour",
         pose,
         joint_positions(SKELETON, pose),
         np.linspace(0.0, 1.0, len(SKELETON.names)),

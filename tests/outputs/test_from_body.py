@@ -56,7 +56,7 @@ def test_times_and_names_are_carried_on() -> None:
     assert frame.capture_monotonic_ns == CAPTURE_NS
     assert frame.capture_unix_ns == CAPTURE_NS + UNIX_OFFSET_NS
     assert frame.publish_monotonic_ns == PUBLISH_NS
-    assert (frame.tracker, frame.tracking, frame.cameras) == ("shirt", "live", ("left", "right"))
+    assert (frame.tracker, frame.tracking, frame.cameras) == ("colour", "live", ("left", "right"))
     assert [joint.c for joint in frame.joints.values()] == pytest.approx(np.linspace(0, 1, 22))
 
 
@@ -69,9 +69,9 @@ def test_an_uncertainty_is_in_tenths_of_a_millimetre_and_absent_where_nothing_is
 
 def test_lost_has_no_joints() -> None:
     body, skeleton = left_hand_up()
-    lost = BodyState(CAPTURE_NS, Tracking.LOST, "shirt", None, None, np.zeros(22))
+    lost = BodyState(CAPTURE_NS, Tracking.LOST, "colour", None, None, np.zeros(22))
     stale = BodyState(  # a pose that lingers in a lost body is not sent either
-        CAPTURE_NS, Tracking.LOST, "shirt", body.pose, body.joints_m, np.zeros(22)
+        CAPTURE_NS, Tracking.LOST, "colour", body.pose, body.joints_m, np.zeros(22)
     )
     for state in (lost, stale):
         frame = skeleton_frame(

@@ -36,7 +36,7 @@ GOLDEN_FRAME = b"".join(
         b"\0\0\0\x02",  # joints
         b"\x65\x53\xf1\x05" + b"\0\0\0\x7b",  # 1_700_000_005 s and 123 ns
         b"\x3c\x80\0\0",  # 1/64 s
-        b"live\0\0\0\0shirt\0\0\0left,right\0\0pc\0\0",
+        b"live\0\0\0\0colour\0\0left,right\0\0pc\0\0",
     ]
 )
 GOLDEN_HIPS = b"".join(
@@ -93,7 +93,7 @@ def test_an_independent_decoder_reads_the_whole_body() -> None:
         assert (person, seq, which, parts, count) == (0, 5, part, len(datagrams), 22)
         assert second * 1_000_000_000 + nanosecond == frame.capture_unix_ns
         assert latency_s == 1 / 64
-        assert strings == ["live", "shirt", "left,right", "pc"]
+        assert strings == ["live", "colour", "left,right", "pc"]
         seen |= {m.address.removeprefix("/mocapd/v1/joint/"): m.params for m in joints}
     assert list(seen) == list(frame.joints)
     for name, joint in frame.joints.items():
@@ -133,9 +133,9 @@ def test_many_long_camera_names_still_fit() -> None:
 
 
 @given(ANY_TEXT, ANY_TEXT, ANY_TEXT, st.lists(ANY_TEXT), st.lists(ANY_TEXT, unique=True))
-@example("live", "shirt", "x" * 1300, ["left"], ["hips"])
-@example("live", "shirt", "\U0001f600" * 2000, ["\udcff\0"], ["hips"])
-@example("live" * 999, "shirt" * 999, "", ["c" * 9999], ["j" * 9999])
+@example("live", "colour", "x" * 1300, ["left"], ["hips"])
+@example("live", "colour", "\U0001f600" * 2000, ["\udcff\0"], ["hips"])
+@example("live" * 999, "colour" * 999, "", ["c" * 9999], ["j" * 9999])
 def test_whatever_a_frame_says_it_fits_its_datagrams(
     tracking: str, tracker: str, instance: str, cameras: list[str], joints: list[str]
 ) -> None:
@@ -176,7 +176,7 @@ def test_overwritten_numbers_are_byte_for_byte_what_python_osc_builds(
     px, py, pz, rx, ry, rz, rw, lx, ly, lz, lw, c, u = numbers
     joint = Joint((px, py, pz), (rx, ry, rz, rw), (lx, ly, lz, lw), c, u)
     frame = small_frame(instance=instance, joints=dict.fromkeys(("hips", "leftUpperArm"), joint))
-    head = (0, 7, 0, 1, 2, 1_700_000_005, 123, 1 / 64, "live", "shirt", "left,right")
+    head = (0, 7, 0, 1, 2, 1_700_000_005, 123, 1 / 64, "live", "colour", "left,right")
     expected = bundle(
         [
             message(FRAME, FRAME_TYPES, *head, osc.shortened(instance, MAX_INSTANCE_BYTES)),

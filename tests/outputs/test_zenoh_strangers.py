@@ -146,4 +146,4 @@ def test_nobody_tells_others_of_the_daemons_state() -> None:
 
         assert eventually(is_told)
         assert all(one.kind == zenoh.SampleKind.PUT for one in heard)
-        assert all(b'"tracker":"shirt"' in one.payload.to_bytes() for one in heard)
+        assert all(b'"tracker":"colour"' in one.payload.to_bytes() for one in heard)
