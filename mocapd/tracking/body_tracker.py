@@ -19,8 +19,8 @@ from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
-from mocapd.tracking.published_body import Found, published_body
-from mocapd.tracking.track_state import TrackState, Wearer, at_rest
+from mocapd.tracking.published_body import CueFindings, published_body
+from mocapd.tracking.track_state import Proportions, TrackState, at_rest
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
 from mocapd.tracking.trunk_and_legs import joined, with_still_legs, with_upper
 from mocapd.types import BodyState, FrameSet, Rig, Tracking
@@ -95,8 +95,8 @@ class BodyTracker:
         self._turn += 1
         present = self._look(frames)
         self.probe("picture")
-        wearer = Wearer(*known_of(shape, full_body()), shape.taught_s)
-        now, found = self._recent(frames.t_ns), Found()
+        wearer = Proportions(*known_of(shape, full_body()), shape.taught_s)
+        now, found = self._recent(frames.t_ns), CueFindings()
         if present:
             if now is not None:
                 now, found = self._follow(now.of(wearer), wearer, present, frames)
@@ -156,8 +156,8 @@ class BodyTracker:
         return None if known is None or t_ns - known.t_ns > nanoseconds(_TOO_OLD_S) else known
 
     def _follow(
-        self, known: TrackState, wearer: Wearer, present: dict[int, float], frames: FrameSet
-    ) -> tuple[TrackState, Found]:
+        self, known: TrackState, wearer: Proportions, present: dict[int, float], frames: FrameSet
+    ) -> tuple[TrackState, CueFindings]:
         """One frame of tracking; one without evidence leaves `known` at its old time."""
         t_ns, clothes, watch = frames.t_ns, self._clothes, self._watch
         dt_s = max(seconds(t_ns - known.t_ns), 1e-3)
@@ -196,13 +196,13 @@ class BodyTracker:
         if whole is None and trunk is not None:
             return self._carried(known, predicted, trunk, seen, dt_s, frames)
         if whole is None:
-            return known, Found()
+            return known, CueFindings()
         since_ns = t_ns if known.legs_since_ns is None else known.legs_since_ns
         state = TrackState(
             t_ns, whole.motion, whole.cameras, trunk.fit if trunk else None, whole.fit, t_ns, since_ns, whole.changed,
             known.taught_s,
         )  # fmt: skip
-        return state, Found(trunk, whole)
+        return state, CueFindings(trunk, whole)
 
     def _carries(self, known: TrackState, t_ns: int) -> bool:
         """Whether the shirt, which is seen, carries trunk and arms in this frame."""
@@ -224,7 +224,7 @@ class BodyTracker:
         seen: Observed | None,
         dt_s: float,
         frames: FrameSet,
-    ) -> tuple[TrackState, Found]:
+    ) -> tuple[TrackState, CueFindings]:
         """Trunk and arms by the shirt, legs and head by the clothes."""
         assert self._shirt is not None
         t_ns, clothes = frames.t_ns, self._clothes
@@ -247,11 +247,11 @@ class BodyTracker:
             t_ns, motion, tuple(dict.fromkeys(names)), trunk.fit, whole, whole_ns, since_ns, changed, trunk.taught_s,
             by_shirt=True,
         )  # fmt: skip
-        return state, Found(trunk, below)
+        return state, CueFindings(trunk, below)
 
     def _begin(
-        self, wearer: Wearer, present: dict[int, float], frames: FrameSet
-    ) -> tuple[TrackState | None, Found]:
+        self, wearer: Proportions, present: dict[int, float], frames: FrameSet
+    ) -> tuple[TrackState | None, CueFindings]:
         """Look for somebody: where they were known, in the shirt, before the background."""
         near, self._near = self._near, None
         if near is not None and near.pose is not None:
@@ -277,7 +277,7 @@ class BodyTracker:
             self.probe("clothes.start")
             if whole is not None:
                 return self._begun(whole.motion, None, whole, frames)
-        return None, Found()
+        return None, CueFindings()
 
     def _begun(
         self,
@@ -285,13 +285,13 @@ class BodyTracker:
         trunk: ShirtFound | None,
         whole: ClothesFound | None,
         frames: FrameSet,
-    ) -> tuple[TrackState, Found]:
+    ) -> tuple[TrackState, CueFindings]:
         t_ns = self._begun_ns = frames.t_ns
         known = TrackState(t_ns, there, ())
         if whole is not None:
             known = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
         if trunk is None:
-            return known, Found(None, whole)
+            return known, CueFindings(None, whole)
         return self._carried(known, known.motion, trunk, None, 1e-3, frames)
 
     def _is_arriving(self, now: TrackState | None, t_ns: int) -> bool:
@@ -309,7 +309,7 @@ class BodyTracker:
         quality = None if found is None else found.fit.explained
         self._clothes_trust = self._clothes_trust.judged(t_ns, quality, cameras, CLOTHES_TRUST)
 
-    def _learn(self, found: Found, present: dict[int, float]) -> None:
+    def _learn(self, found: CueFindings, present: dict[int, float]) -> None:
         """What each cue learns of a frame in which it saw the body."""
         known, clothes = self._known, self._clothes
         if self._shirt is not None:

@@ -14,7 +14,7 @@ from mocapd.vision.frame_size import check_frame_size
 
 
 @dataclass(slots=True, eq=False)
-class WorkPicture:
+class CameraPicture:
     """The newest picture of one camera, bgr (h,w,3), averaged down by image_scale; both sides are even."""
 
     camera: Camera
@@ -38,7 +38,7 @@ class Pictures:
 
     def __init__(self, cameras: Sequence[Camera], work_width_px: int, each: Each = in_turn) -> None:
         scales = image_scales(cameras, work_width_px)
-        self.each = [WorkPicture(c, k) for c, k in zip(cameras, scales, strict=True)]
+        self.each = [CameraPicture(c, k) for c, k in zip(cameras, scales, strict=True)]
         self.present: dict[int, float] = {}
         self._index = {camera.name: i for i, camera in enumerate(cameras)}
         self._each = each

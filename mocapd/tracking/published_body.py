@@ -33,7 +33,7 @@ _LOWER_JOINTS = np.setdiff1d(LOWER_BONES, [INDEX["neck"]])  # the shirt ends at 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class CueFindings:
     """What each cue found of a body in one frame set."""
 
     shirt: ShirtFound | None = None
@@ -43,7 +43,7 @@ class Found:
 def published_body(
     state: TrackState,
     motion: MotionState,
-    found_now: Found,
+    found_now: CueFindings,
     shirt: ShirtCue | None,
     clothes: ClothesCue | None,
     pose_filter: PoseFilter,
@@ -92,13 +92,7 @@ def published_body(
     assert carried_by is not None
     quality = carried_by.explained * faded(away_s)
     if state.by_shirt and found_now.shirt is not None and shirt is not None:
-        names = [shirt.fitter.drawings[v.index].camera.name for v in found_now.shirt.views]
-        ids = {name: v.ids.copy() for name, v in zip(names, found_now.shirt.views, strict=True)}
-        roi = {
-            name: shirt.segmenters.roi_px(v)
-            for name, v in zip(names, found_now.shirt.views, strict=True)
-        }
-        return Track(body, shape, quality, ids, roi)
+        return Track(body, shape, quality, *shirt.evidence(found_now.shirt.views))
     if found_now.clothes is not None and clothes is not None:
         return Track(body, shape, quality, *clothes.cameras.evidence(list(found_now.clothes.views)))
     return Track(body, shape, quality)

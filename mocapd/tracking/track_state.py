@@ -5,13 +5,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import BodyModel
+from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fit
+from mocapd.geometry import rotations
 from mocapd.types import Floats
+
+BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wearer:
+class Proportions:
     """The proportions as handed in: factors (n_shape,) of the whole body with their information (n_shape,n_shape), and
     for how many seconds of good tracking they were learned."""
 
@@ -27,7 +31,7 @@ class TrackState:
     trunk: the newest fit of trunk and arms to the shirt, None where it is not seen; by_shirt: whether that carries them;
     whole: the newest fit to the clothes, of the whole body or of legs and head below a carried trunk, at whole_ns;
     legs_since_ns: when legs and head were first found; cameras: those that showed the body; changed: parts of the body that
-    were found elsewhere than predicted; taught_s: see `Wearer`.
+    were found elsewhere than predicted; taught_s: see `Proportions`.
     """
 
     t_ns: int
@@ -41,7 +45,7 @@ class TrackState:
     taught_s: float = 0.0
     by_shirt: bool = False
 
-    def of(self, wearer: Wearer) -> "TrackState":
+    def of(self, wearer: Proportions) -> "TrackState":
         """The same of a wearer as known to whoever steps the tracker."""
         motion = replace(self.motion, factors=wearer.factors, information=wearer.information)
         return replace(self, motion=motion, taught_s=wearer.taught_s)
@@ -58,7 +62,14 @@ def upper_of(whole: MotionState, upper: BodyModel) -> MotionState:
     )
 
 
-def at_rest(model: BodyModel, root_m: Floats, local_xyzw: Floats, wearer: Wearer) -> MotionState:
+def in_t_pose(model: BodyModel, root_m: Floats, wearer: Proportions) -> MotionState:
+    """Somebody in the T-pose who does not move."""
+    return at_rest(model, root_m, np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)), wearer)
+
+
+def at_rest(
+    model: BodyModel, root_m: Floats, local_xyzw: Floats, wearer: Proportions
+) -> MotionState:
     """Somebody who does not move."""
     still = np.zeros(model.n_pose)
     return MotionState(root_m, local_xyzw, still, wearer.factors, wearer.information)

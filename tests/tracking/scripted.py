@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.lost_reason import LostReason
-from mocapd.tracking.track_state import TrackState, Wearer, upper_of
+from mocapd.tracking.track_state import Proportions, TrackState, upper_of
 from mocapd.tracking.trunk_and_legs import joined
 from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig
 
@@ -161,7 +161,7 @@ class ScriptedShirt(_Scripted):
 
     def search(
         self,
-        _w: Wearer,
+        _w: Proportions,
         _p: dict[int, float],
         _t: int,
         _pause: float,
@@ -170,6 +170,9 @@ class ScriptedShirt(_Scripted):
     ) -> ShirtFound | None:
         found = self._as_shirt(self.found_near(None))
         return found if found is not None and found.fit.match > better_than else None
+
+    def evidence(self, _: object) -> tuple[dict[str, Any], dict[str, Any]]:
+        return {}, {}
 
     def names(self, _: object) -> tuple[str, ...]:
         return tuple(self.frames.frames)
@@ -209,7 +212,7 @@ class ScriptedClothes(_Scripted):
         seen = self.found_near(start)
         return self._as_clothes(None if seen is None else joined(seen, upper_of(start, UPPER)))
 
-    def search(self, _: Wearer, _t_ns: int) -> ClothesFound | None:
+    def search(self, _: Proportions, _t_ns: int) -> ClothesFound | None:
         return self._as_clothes(self.found_near(None))
 
     def begin(self, there: MotionState, _: FrameSet) -> ClothesFound | None:

@@ -8,7 +8,7 @@ moving is right. It begins below those, and ends well below, as every begin and 
 
 from collections.abc import Mapping
 
-from mocapd.outputs.vrchat.tracker_table import BodyTracker
+from mocapd.outputs.vrchat.tracker_table import VrchatTracker
 from mocapd.outputs.wire import Joint, SkeletonFrame
 
 BEGINS_ABOVE = 0.15  # confidence
@@ -18,11 +18,11 @@ ENDS_BELOW = 0.07  # a predicted pose falls below within a fifth of a second
 class ConfidentTrackers:
     """Keeps which of these are sent. For one thread."""
 
-    def __init__(self, trackers: tuple[BodyTracker, ...]) -> None:
+    def __init__(self, trackers: tuple[VrchatTracker, ...]) -> None:
         self._trackers = trackers
-        self.sent: tuple[BodyTracker, ...] = ()
+        self.sent: tuple[VrchatTracker, ...] = ()
 
-    def update(self, frame: SkeletonFrame) -> tuple[BodyTracker, ...]:
+    def update(self, frame: SkeletonFrame) -> tuple[VrchatTracker, ...]:
         """Those that are sent with this frame, by number; none when it is lost."""
         joints, before = frame.joints, self.sent
         self.sent = tuple(
@@ -33,12 +33,12 @@ class ConfidentTrackers:
         return self.sent
 
     @property
-    def missing(self) -> tuple[BodyTracker, ...]:
+    def missing(self) -> tuple[VrchatTracker, ...]:
         """Those that are wanted and were not sent last."""
         return tuple(one for one in self._trackers if one not in self.sent)
 
 
-def _confidence(tracker: BodyTracker, joints: Mapping[str, Joint]) -> float:
+def _confidence(tracker: VrchatTracker, joints: Mapping[str, Joint]) -> float:
     """Of the less known of its bones; 0 where there is none."""
     place, turn = joints.get(tracker.place), joints.get(tracker.turn)
     return 0.0 if place is None or turn is None else min(place.c, turn.c)

@@ -13,7 +13,7 @@ BodyPart = Literal["hip", "feet", "chest", "knees", "elbows"]
 
 
 @dataclass(frozen=True, slots=True)
-class BodyTracker:
+class VrchatTracker:
     """number: in the addresses; label: for people; place, turn: VRM names of the joint where it is, and of the
     bone whose rotation it has. It is as well known as the less known of the two."""
 
@@ -23,27 +23,27 @@ class BodyTracker:
     turn: str
 
 
-TRACKERS_OF: MappingProxyType[BodyPart, tuple[BodyTracker, ...]] = MappingProxyType(
+TRACKERS_OF: MappingProxyType[BodyPart, tuple[VrchatTracker, ...]] = MappingProxyType(
     {
-        "hip": (BodyTracker(1, "hip", "hips", "hips"),),
+        "hip": (VrchatTracker(1, "hip", "hips", "hips"),),
         "feet": (
-            BodyTracker(2, "left foot", "leftFoot", "leftFoot"),
-            BodyTracker(3, "right foot", "rightFoot", "rightFoot"),
+            VrchatTracker(2, "left foot", "leftFoot", "leftFoot"),
+            VrchatTracker(3, "right foot", "rightFoot", "rightFoot"),
         ),
         "knees": (
-            BodyTracker(4, "left knee", "leftLowerLeg", "leftUpperLeg"),
-            BodyTracker(5, "right knee", "rightLowerLeg", "rightUpperLeg"),
+            VrchatTracker(4, "left knee", "leftLowerLeg", "leftUpperLeg"),
+            VrchatTracker(5, "right knee", "rightLowerLeg", "rightUpperLeg"),
         ),
-        "chest": (BodyTracker(6, "chest", "upperChest", "upperChest"),),
+        "chest": (VrchatTracker(6, "chest", "upperChest", "upperChest"),),
         "elbows": (
-            BodyTracker(7, "left elbow", "leftLowerArm", "leftUpperArm"),
-            BodyTracker(8, "right elbow", "rightLowerArm", "rightUpperArm"),
+            VrchatTracker(7, "left elbow", "leftLowerArm", "leftUpperArm"),
+            VrchatTracker(8, "right elbow", "rightLowerArm", "rightUpperArm"),
         ),
     }
 )
 
 
-def trackers_of(parts: tuple[BodyPart, ...]) -> tuple[BodyTracker, ...]:
+def trackers_of(parts: tuple[BodyPart, ...]) -> tuple[VrchatTracker, ...]:
     """The trackers of these parts of the body, each once, by number."""
     found = {one.number: one for part in parts for one in TRACKERS_OF[part]}
     return tuple(found[number] for number in sorted(found))

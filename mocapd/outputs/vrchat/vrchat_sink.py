@@ -19,7 +19,7 @@ from mocapd.outputs.vrchat import tracker_bundle
 from mocapd.outputs.vrchat.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
 from mocapd.outputs.vrchat.head_alignment import HeadAlignment
 from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
-from mocapd.outputs.vrchat.tracker_table import BodyPart, BodyTracker, trackers_of
+from mocapd.outputs.vrchat.tracker_table import BodyPart, VrchatTracker, trackers_of
 from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
 from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
 from mocapd.outputs.vrchat.vrchat_link import KEY, VRChatLink
@@ -114,7 +114,7 @@ class VRChatSink:
             _log.warning("VRChat cannot be sent to: %s", error)
 
     def _vectors(
-        self, joints: Mapping[str, Joint], trackers: tuple[BodyTracker, ...], is_aligned: bool
+        self, joints: Mapping[str, Joint], trackers: tuple[VrchatTracker, ...], is_aligned: bool
     ) -> dict[str, Vector]:
         """What is sent, by address: the head first, as the others are read by it."""
         turn_rad = self._alignment.turn_rad

@@ -17,7 +17,7 @@ from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
-from mocapd.tracking.track_state import TrackState, Wearer
+from mocapd.tracking.track_state import Proportions, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -130,7 +130,7 @@ class ClothesCue:
 
     # --- from nothing ---
 
-    def search(self, wearer: Wearer, t_ns: int) -> ClothesFound | None:
+    def search(self, wearer: Proportions, t_ns: int) -> ClothesFound | None:
         """Look for somebody who stands before the background."""
         found = self._find.look(wearer.factors, wearer.information, t_ns)
         if found is None:

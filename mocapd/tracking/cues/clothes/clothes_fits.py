@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import BodyModel, build_model
-from mocapd.body.pose_space import SIDES, full_body, upper_body
+from mocapd.body.pose_space import full_body, upper_body
 from mocapd.body.regions import Region, as_silhouette
-from mocapd.body.skeleton import N_JOINTS
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
@@ -17,7 +16,6 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.pose_term import PoseTerm
-from mocapd.geometry import rotations
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
@@ -29,13 +27,13 @@ from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
 from mocapd.tracking.hypotheses.seen_pose import WHOLE
 from mocapd.tracking.hypotheses.seen_tries import Anew
-from mocapd.tracking.track_state import TrackState, Wearer, at_rest
+from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Floats, Frame, FrameSet, Rig
 from mocapd.vision.face.lbp_cascade import blind_cascade
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
 _BELOW = (Region.LEG, Region.FOOT)  # regions whose distances are measured below a carried trunk
 
 
@@ -95,11 +93,11 @@ class ClothesFits:
         self._others.reset()
 
     def rehearse(self) -> None:
-        """Compile or load the kernels that no frame of an empty room reaches: whoever comes must not wait for them."""
+        """Compile or load the kernels that no frame of an empty room reaches: whoever comes must not wait for them.
+        What it has learned by that is to be forgotten."""
         model, cameras = self.model, self.cameras
-        local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
-        wearer = Wearer(np.ones(model.n_shape), initial_information(model.space), 0.0)
-        somebody = at_rest(model, model.rest_m[0].copy(), local, wearer)
+        wearer = Proportions(np.ones(model.n_shape), initial_information(model.space), 0.0)
+        somebody = in_t_pose(model, model.rest_m[0].copy(), wearer)
         black = {
             one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
             for one in self._rig.cameras
@@ -128,7 +126,6 @@ class ClothesFits:
         cameras.learn(somebody, views)
         _velocity_of(model, self.params, fit, somebody, TICK_S, ())
         self._others.rehearse(self.wardrobe.dressed, somebody, views, seen)
-        self.reset()
 
     def whole(
         self,
@@ -150,11 +147,9 @@ class ClothesFits:
             probe("clothes.depths")
         motion = None
         if last is not None:
-            confirmed, columns = last.confirmed_arms, self.model.space.columns
-            motion = predicted_information(
-                last.covariance, known.motion.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
-                [(columns(f"{s}_arm"), min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
-            )  # fmt: skip
+            motion = prediction_prior(
+                fitter, last, known.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+            )
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
             return (*self.terms.measured(fitter, drawn, shown, frames, turn), *seen.joints)
@@ -223,7 +218,7 @@ class ClothesFits:
     def begin(self, there: MotionState, frames: FrameSet, turn: int) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
         background."""
-        cameras, fitter = self.cameras, self.fitter
+        cameras = self.cameras
         cameras.mark_body(there)
         if cameras.outline_contrast() < self.params.least_contrast:
             return None
@@ -237,9 +232,7 @@ class ClothesFits:
             there, views, BEGUN_S, self.params.fit.iterations, learn_shape=False,
             terms=self.terms.measured(fitter, there, views, frames, turn),
         )  # fmt: skip
-        if not _is_believed(fit, self.params):
-            return None
-        return ClothesFound(fit, fit.state, tuple(views), cameras.names(views))
+        return self._found(fit, None, BEGUN_S, views, ())
 
     def _outlined(
         self,

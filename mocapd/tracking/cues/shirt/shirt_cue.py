@@ -9,10 +9,9 @@ from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import SIDES
 from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.body_drawing import Roi, image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
-from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.shirt.colour.colour_model import ColourModel
@@ -23,18 +22,17 @@ from mocapd.tracking.cues.shirt import shirt_search as detection
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
 from mocapd.tracking.pictures import Pictures
-from mocapd.tracking.track_state import TrackState, Wearer, at_rest, upper_of
+from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose, upper_of
 from mocapd.tracking.velocity import velocity_between
-from mocapd.types import Floats, FrameSet, Rig
+from mocapd.types import Bytes, Floats, FrameSet, Rig
 from mocapd.vision.room_background import RoomBackground
-
-BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShirtFound:
-    """Trunk and arms as the shirt places them, in the views that show it. taught_s: see `Wearer`; jumped: sides whose arm
-    was found elsewhere than predicted; redraw: whether the body was not drawn last as it was fitted."""
+    """Trunk and arms as the shirt places them, in the views that show it. taught_s: see `Proportions`; jumped: sides whose
+    arm was found elsewhere than predicted; redraw: whether the body was not drawn last as it was fitted."""
 
     fit: Fit
     motion: MotionState
@@ -79,9 +77,8 @@ class ShirtCue:
         w, h = self.segmenters.each[0].size
         nothing = np.zeros((h, w), np.uint8)
         known = initial_information(self.model.space)
-        wearer = Wearer(np.ones(self.model.n_shape), known, 0.0)
-        local = np.tile([0.0, 0.0, 0.0, 1.0], (len(self.model.parents), 1))
-        somebody = at_rest(self.model, self.model.rest_m[0].copy(), local, wearer)
+        wearer = Proportions(np.ones(self.model.n_shape), known, 0.0)
+        somebody = in_t_pose(self.model, self.model.rest_m[0].copy(), wearer)
         self._arms.rehearse(somebody, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
 
     def reset(self) -> None:
@@ -122,11 +119,9 @@ class ShirtCue:
             and known.taught_s < p.shape.learning_s
             and last.match > p.shape.least_match
         )
-        confirmed = last.confirmed_arms
-        motion = predicted_information(
-            last.covariance, start.velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd,
-            [(self._columns[s], min(confirmed[s] / p.limbs.uncertain_arm, 1.0)) for s in SIDES], p.motion,
-        )  # fmt: skip
+        motion = prediction_prior(
+            fitter, last, start.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+        )
         terms = texture_distances(fitter, start, views, frames, turn, p.distances)
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion, terms=terms
@@ -154,12 +149,11 @@ class ShirtCue:
         self, body: MotionState, taught_s: float, present: dict[int, float], turn: int
     ) -> ShirtFound | None:
         """Trunk and arms of a body that other cues place here, if the shirt is seen there."""
-        return self._fitted(upper_of(body, self.model), BEGUN_S, taught_s, present, turn)
+        return self._fitted(upper_of(body, self.model), taught_s, present, turn)
 
     def _fitted(
         self,
         start: MotionState,
-        loose_s: float,
         taught_s: float,
         present: dict[int, float],
         turn: int,
@@ -167,8 +161,8 @@ class ShirtCue:
         views = self.segmenters.views(start, present)
         if not views:
             return None
-        fit = self.fitter.fit(start, views, loose_s, self.params.fit.iterations, learn_shape=False)
-        fit, _ = self._arms.improve(fit, views, loose_s, turn, learn_shape=False)
+        fit = self.fitter.fit(start, views, BEGUN_S, self.params.fit.iterations, learn_shape=False)
+        fit, _ = self._arms.improve(fit, views, BEGUN_S, turn, learn_shape=False)
         if not self._is_acceptable(fit):
             return None
         still = replace(fit.state, velocity=np.zeros(self.model.n_pose))
@@ -182,7 +176,7 @@ class ShirtCue:
 
     def search(
         self,
-        wearer: Wearer,
+        wearer: Proportions,
         present: dict[int, float],
         t_ns: int,
         pause_s: float,
@@ -201,7 +195,9 @@ class ShirtCue:
             segmenter.memory.appearance = appearance
         return None
 
-    def _found(self, wearer: Wearer, present: dict[int, float], turn: int) -> ShirtFound | None:
+    def _found(
+        self, wearer: Proportions, present: dict[int, float], turn: int
+    ) -> ShirtFound | None:
         p, s = self.params, self.model.n_shape
         sightings = [
             one
@@ -227,13 +223,19 @@ class ShirtCue:
         for one in sightings:
             self.segmenters.each[one.index].relight(one.found.W)
         # read the pictures again, now with the pose as prior, and fit once more
-        return self._fitted(fit.state, BEGUN_S, wearer.taught_s, present, turn)
+        return self._fitted(fit.state, wearer.taught_s, present, turn)
 
     # --- what is believed and learned ---
 
     def names(self, views: Sequence[View]) -> tuple[str, ...]:
         """Of the cameras of these views."""
         return tuple(self.fitter.drawings[view.index].camera.name for view in views)
+
+    def evidence(self, views: Sequence[View]) -> tuple[Mapping[str, Bytes], Mapping[str, Roi]]:
+        """The patches that were classified, and where in the frames, by camera."""
+        names = self.names(views)
+        ids = {name: view.ids.copy() for name, view in zip(names, views, strict=True)}
+        return ids, {n: self.segmenters.roi_px(v) for n, v in zip(names, views, strict=True)}
 
     def _is_seen(self, fit: Fit) -> bool:
         # every second pixel was counted

@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.body.skeleton import N_JOINTS
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.motion_state import MotionState, gone_on
-from mocapd.geometry import rotations
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
-from mocapd.tracking.track_state import TrackState, Wearer, at_rest
+from mocapd.tracking.track_state import Proportions, TrackState, in_t_pose
 from mocapd.tracking.trunk_and_legs import straight_below
 from mocapd.types import FrameSet
 
@@ -36,7 +34,7 @@ class ShirtWatch:
         self,
         known: TrackState,
         predicted: MotionState,
-        wearer: Wearer,
+        wearer: Proportions,
         dt_s: float,
         present: dict[int, float],
         frames: FrameSet,
@@ -71,7 +69,7 @@ class ShirtWatch:
         return found
 
     def search(
-        self, wearer: Wearer, present: dict[int, float], t_ns: int, turn: int
+        self, wearer: Proportions, present: dict[int, float], t_ns: int, turn: int
     ) -> ShirtFound | None:
         """Somebody in the shirt, while nobody is known."""
         if not self._cue.is_search_due(t_ns):
@@ -81,7 +79,7 @@ class ShirtWatch:
     def _surer(
         self,
         found: ShirtFound | None,
-        wearer: Wearer,
+        wearer: Proportions,
         present: dict[int, float],
         t_ns: int,
         turn: int,
@@ -105,7 +103,7 @@ class ShirtWatch:
         return found if anew is None else replace(anew, jumped=("left", "right"))
 
     def _keep_elsewhere(
-        self, found: ShirtFound | None, predicted: MotionState, wearer: Wearer, t_ns: int
+        self, found: ShirtFound | None, predicted: MotionState, wearer: Proportions, t_ns: int
     ) -> None:
         """Keep the shirt that is not where the body is apart from that body."""
         was, self.elsewhere = self.elsewhere, None
@@ -121,7 +119,7 @@ class ShirtWatch:
             t_ns, motion, (), found.fit, taught_s=found.taught_s, by_shirt=True
         )
 
-    def standing(self, found: ShirtFound, wearer: Wearer) -> MotionState:
+    def standing(self, found: ShirtFound, wearer: Proportions) -> MotionState:
         """A whole body of which the shirt alone is known: its legs hang straight down."""
-        rest = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
-        return straight_below(found.motion, at_rest(self._whole, found.motion.root_m, rest, wearer))
+        body = in_t_pose(self._whole, found.motion.root_m, wearer)
+        return straight_below(found.motion, body)

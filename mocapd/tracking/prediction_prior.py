@@ -1,0 +1,24 @@
+"""How firmly a fit holds to a predicted body: what the last fit left open, arms less where they were hardly confirmed."""
+
+from mocapd.body.pose_space import SIDES
+from mocapd.fit.fit_params import TICK_S, MotionPriorParams
+from mocapd.fit.motion_prior import predicted_information
+from mocapd.fit.solver import Fit, Fitter
+from mocapd.types import Floats
+
+
+def prediction_prior(
+    fitter: Fitter,
+    last: Fit,
+    velocity: Floats,
+    dt_s: float,
+    uncertain_arm: float,
+    params: MotionPriorParams,
+) -> Floats:
+    """Information (n_pose,n_pose) of a body dt_s after its last fit, which moved at velocity (n_pose,) per second;
+    uncertain_arm: share of an arm's pixels that is confirmed of one that counts in full."""
+    confirmed, columns = last.confirmed_arms, fitter.model.space.columns
+    arms = [(columns(f"{side}_arm"), min(confirmed[side] / uncertain_arm, 1.0)) for side in SIDES]
+    return predicted_information(
+        last.covariance, velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd, arms, params
+    )
