@@ -6,7 +6,7 @@ checks that furniture, shadows and screens fail: the silhouette agrees, most joi
 camera, the body touches the floor, and all of that twice in a row in one place.
 """
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -108,6 +108,18 @@ class KeypointInitialiser:
         state = then.fit.state
         found = self.attempt(middle_m, who, then.shadows, state.factors, state.information)
         return found if found is not None and self.is_person(found) else None
+
+    def clearest_spread_m(self, state: MotionState, cameras: Iterable[int]) -> float:
+        """Median over the joints of how far the network spreads each over its map, about a body that stands here, in the
+        camera where that is smallest; 0 where no camera has enough joints inside its picture to tell."""
+        watch = self._joints.watch(self._silhouettes, state, self._views)
+        enough = [
+            spreads_m
+            for term in self._joints.term(self._silhouettes.model, map(watch, cameras))
+            for spreads_m in term.spreads_m()
+            if len(spreads_m) >= self._params.least_joints
+        ]
+        return min((float(np.median(one)) for one in enough), default=0.0)
 
     def _worth(self, one: KeypointCandidate) -> float:
         return one.fit.explained - (self._params.shadows_more if one.shadows else 0.0)

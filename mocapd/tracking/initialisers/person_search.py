@@ -155,7 +155,7 @@ class PersonSearch:
                 self._silhouettes, seen.who, seen.views, factors, information, (self._floor,), p
             )
             fits.append((fit, seen))
-        likely = [one for one in fits if self._is_likely(one[0])]
+        likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             low = yield from self._low.look(factors, information)
@@ -210,6 +210,10 @@ class PersonSearch:
         return fit.explained >= self._params.likely_explained and is_standing(
             self._silhouettes, fit
         )
+
+    def _is_person(self, fit: Fit, seen: _Seen) -> bool:
+        """Whether the network knows the joints of a body where furniture may stand."""
+        return self._low.clearest_spread_m(fit.state, seen.who.blobs) <= self._params.spread_m
 
     def _names(self, seen: _Seen) -> tuple[str, ...]:
         return tuple(self._views.each[i].name for i in seen.who.blobs)
