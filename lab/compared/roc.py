@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior
 from mocapd.shirt.colour.whitening import Whitening
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Singles
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1

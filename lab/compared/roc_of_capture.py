@@ -37,6 +37,7 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
 from mocapd.shirt.colour.whitening import fold
+from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet
 
@@ -91,9 +92,8 @@ def roc_of_capture(result: CaptureResult, stature_m: float) -> Roc:
         segmenters[camera.name] = _CaptureSegmenter(
             i, camera, recorded.video, factors[i], labelled, colours, W
         )
-    fitter = Fitter(
-        build_model(folder.stature_m or stature_m), folder.rig.cameras, factors, params.fit
-    )
+    body = build_model(folder.stature_m or stature_m)
+    fitter = Fitter(body, shirt_labels(body), folder.rig.cameras, factors, params.fit)
 
     total = no_roc()
     for frames, state in _tracked(result, fitter):

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.shirt_patches import N_LABELS, standard_shirt
+from mocapd.body.areas import N_AREAS
 from mocapd.shirt.colour.white_balance import frobenius_distance
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats
 
 _LEAST_PX = 40  # a patch of fewer pixels is hardly visible
@@ -27,7 +28,7 @@ def score_by_labels(strokes: Bytes, patch: Bytes, W: Floats, W_user: Floats) -> 
     """Score strokes (H,W) 0..10 against exact patch indices (H,W) 0..20."""
     truth = standard_shirt().colour_of_patch[patch]
     area = right_area = 0
-    for index in range(1, N_LABELS):
+    for index in range(1, N_AREAS):
         here = patch == index
         n = int(here.sum())
         if n < _LEAST_PX:

@@ -17,10 +17,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.model import BodyModel, build_model, shaped
 from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.geometry import rotations
 from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.published.wang2011.drawing import (
@@ -35,6 +35,7 @@ from mocapd.published.wang2011.params import Params
 from mocapd.published.wang2011.patch_kernels import classified_patches
 from mocapd.published.wang2011.placement import blended_local, constraints, guess, place
 from mocapd.published.wang2011.segmenter import Sight
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
@@ -153,7 +154,7 @@ def observe(
     sights = {}
     for camera in pair:
         grid = _region(worn, body, camera, params)
-        ids = damaged(draw(worn, body, camera, grid), model.colour, rng)
+        ids = damaged(draw(worn, body, camera, grid), shirt_labels(model).label, rng)
         if (ids > 0).sum() >= params.min_samples:
             sights[camera.name] = _sight(ids, grid)
     guesses = {
@@ -168,16 +169,16 @@ def observe(
     root_m, local[0] = place(list(guesses.values()), marks)
     blended = posture(model, root_m, local)
     errors.blend.append(_gap(model, assumed, blended))
-    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
+    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
     for name, g in guesses.items():
         grid = sights[name].grid
         maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
         rendered = np.empty((grid.height, grid.width), np.uint8)
         drawing = draw(model, blended, g.camera, grid)
-        label_triangles(drawing.triangle_at, model.colour, rendered)
+        label_triangles(drawing.triangle_at, shirt_labels(model).label, rendered)
         maps.fill(rendered, _REACH)
         classified_patches(
-            sights[name].ids, maps.nearest_yx, drawing.triangle_at, model.patch, count, centroid
+            sights[name].ids, maps.nearest_yx, drawing.triangle_at, model.area, count, centroid
         )
         truth = draw(model, assumed, g.camera, grid)
         both = (count >= params.min_patch_samples) & (truth.count >= params.min_patch_samples)

@@ -1,1 +1,1 @@
-"""The body: skeleton, shapes, surface with the shirt's patches, joint limits, inverse kinematics."""
+"""The body: skeleton, shapes, surface with its areas, joint limits, inverse kinematics."""

@@ -1,15 +1,15 @@
-"""Arms as tubes that carry the sleeves. Girths are means of adults (ANSUR II: biceps, forearm, wrist), 0.004
+"""Arms as tubes. Girths are means of adults (ANSUR II: biceps, forearm, wrist), 0.004
 statures added under cloth."""
 
 import numpy as np
 
+from mocapd.body.areas import ARM_AREAS, FOREARM_END, SHOULDER_END, Area
 from mocapd.body.shape import BodyShape
-from mocapd.body.shirt_patches import SLEEVE_PATCHES, ShirtPatch, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.body.surface import LEFT_ARM, LIMB_COLUMNS, RIGHT_ARM, SHIRT, SKIN, Tube
+from mocapd.body.surface import LEFT_ARM, LIMB_COLUMNS, RIGHT_ARM, SKIN, TOP, Tube
 from mocapd.types import Floats, Skeleton
 
-# Along the bone: fraction of its length, radius in statures (cloth included on the sleeve).
+# Along the bone: fraction of its length, radius in statures (cloth included, but for the hand).
 _UPPER_ARM = np.array([[-0.18, 0.022], [-0.10, 0.034], [0.0, 0.0400], [0.16, 0.0405], [0.30, 0.0375],
                        [0.45, 0.0345], [0.62, 0.0325], [0.80, 0.0305], [0.92, 0.0295]])  # fmt: skip
 _FOREARM = np.array([[0.0, 0.0290], [0.10, 0.0290], [0.25, 0.0287], [0.40, 0.0267], [0.55, 0.0240],
@@ -18,7 +18,7 @@ _HAND = np.array([[1.0, 0.0150], [1.15, 0.0190], [1.35, 0.0220], [1.55, 0.0190],
 
 
 def arm_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
-    """Sleeve, forearm and hand of one side."""
+    """Upper arm, forearm and hand of one side."""
     girth = shape.factors[6]
     arm, elbow, wrist = (
         skeleton.rest_m[INDEX[side + bone]] for bone in ("UpperArm", "LowerArm", "Hand")
@@ -46,32 +46,32 @@ def arm_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
         [np.ones_like(flat), flat, np.ones_like(flat)], -1
     )[:, None]  # fmt: skip
     n_upper, n_fore = len(_UPPER_ARM), len(_FOREARM)
-    patch = np.zeros((len(radius) - 1, LIMB_COLUMNS), dtype=np.uint8)
+    area = np.zeros((len(radius) - 1, LIMB_COLUMNS), dtype=np.uint8)
     material = np.full(len(radius) - 1, SKIN, dtype=np.uint8)
-    shoulder, upper_front, upper_back, fore_front, fore_back, cuff = list(ShirtPatch)[
-        SLEEVE_PATCHES[side]
+    shoulder, upper_front, upper_back, fore_front, fore_back, wrist_area = list(Area)[
+        ARM_AREAS[side]
     ]
     middle = angle + 0.5 * (angle[1] - angle[0])
     front = np.sin(middle) * outward > 0
     for r in range(n_upper + n_fore - 1):
-        material[r] = SHIRT
+        material[r] = TOP
         if r < n_upper:
             top = _UPPER_ARM[r + 1, 0] if r + 1 < n_upper else 1.0
-            if 0.5 * (_UPPER_ARM[r, 0] + top) < standard_shirt().arm_fractions["shoulder"][1]:
-                patch[r] = shoulder
+            if 0.5 * (_UPPER_ARM[r, 0] + top) < SHOULDER_END:
+                area[r] = shoulder
             else:
-                patch[r] = np.where(front, upper_front, upper_back)
+                area[r] = np.where(front, upper_front, upper_back)
         else:
             mid = 0.5 * (_FOREARM[r - n_upper, 0] + _FOREARM[r - n_upper + 1, 0])
-            if mid < standard_shirt().arm_fractions["forearm"][1]:
-                patch[r] = np.where(front, fore_front, fore_back)
+            if mid < FOREARM_END:
+                area[r] = np.where(front, fore_front, fore_back)
             else:
-                patch[r] = cuff
+                area[r] = wrist_area
     weights = _arm_weights(centre, skeleton, side)
     return Tube(
         rings,
         np.repeat(weights[:, None], LIMB_COLUMNS, axis=1),
-        patch,
+        area,
         material,
         LEFT_ARM if side == "left" else RIGHT_ARM,
     )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.types import Camera, Floats, Ints
 
 Int32s = NDArray[np.int32]
 _Arrays = TypeVar("_Arrays", bound=tuple[Any, ...])
@@ -47,13 +47,9 @@ class TriangleArrays(NamedTuple):
     """The triangles of the surface; bones and weights are those of the triangle's centre."""
 
     corners: Int32s  # (T,3)
-    colour: Bytes  # (T,) 0..10
-    patch: Bytes  # (T,) 0..20
     bones: Int32s  # (T,B)
     weights: Floats  # (T,B)
     d_centres: Floats  # (N,T,3)
-    sleeves: Ints  # (S,) the triangles of both sleeves, by colour
-    sleeve_start: Ints  # (12,) first place in `sleeves` of each colour 0..10, and the end
 
 
 class PosedJoints(NamedTuple):

@@ -147,5 +147,5 @@ def plain_leg_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
     bands = len(spans) - 1
     material = np.full(bands, TROUSERS, np.uint8)
     material[0] = SKIN
-    patch = np.zeros((bands, LIMB_COLUMNS), np.uint8)
-    return Tube(np.array(rings), np.array(weights), patch, material, LEGS)
+    area = np.zeros((bands, LIMB_COLUMNS), np.uint8)
+    return Tube(np.array(rings), np.array(weights), area, material, LEGS)

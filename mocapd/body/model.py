@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
 from mocapd.body.pose_space import PoseSpace, upper_body
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import PARENTS
-from mocapd.body.surface import LEFT_ARM, LEGS, RIGHT_ARM
+from mocapd.body.surface import LEGS
 from mocapd.body.surface_building import build_surface, build_whole_surface, shape_derivatives
 from mocapd.types import Floats, Ints
 
@@ -22,8 +21,7 @@ _BONES = 4  # skin weights kept per point
 class BodyModel:
     """Mean body of one stature. V vertices, T triangles, B bones per point, N shape factors.
 
-    In a space that is not whole the triangles of the legs are left out: the shirt's tracker never sees
-    their labels.
+    In a space that is not whole the triangles of the legs are left out.
     """
 
     space: PoseSpace
@@ -32,8 +30,7 @@ class BodyModel:
     bones: NDArray[np.int32]  # (V,B)
     weights: Floats  # (V,B)
     triangles: NDArray[np.int32]  # (T,3)
-    colour: NDArray[np.uint8]  # (T,) 0..10
-    patch: NDArray[np.uint8]  # (T,) 0..20
+    area: NDArray[np.uint8]  # (T,) an `Area`
     part: NDArray[np.uint8]  # (T,) a part of body.surface
     triangle_bones: NDArray[np.int32]  # (T,B), of the triangle's centre
     triangle_weights: Floats  # (T,B)
@@ -42,8 +39,6 @@ class BodyModel:
     d_rest: Floats  # (N,J,3)
     centres_m: Floats  # (T,3) of the triangles
     d_centres: Floats  # (N,T,3)
-    sleeves: Ints  # (S,) the triangles of both sleeves, by colour
-    sleeve_start: Ints  # (12,) first place in `sleeves` of each colour 0..10, and the end
     parents: Ints  # (J,)
     group_of_joint: Ints  # (J,), -1: does not move
     share_of_joint: Floats  # (J,)
@@ -60,8 +55,7 @@ class BodyModel:
             ),
             "skin": SkinArrays(self.bones, self.weights),
             "surface": TriangleArrays(
-                self.triangles, self.colour, self.patch, self.triangle_bones, self.triangle_weights,
-                self.d_centres, self.sleeves, self.sleeve_start,
+                self.triangles, self.triangle_bones, self.triangle_weights, self.d_centres
             ),
         }  # fmt: skip
         for name, arrays in made.items():
@@ -97,9 +91,6 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
     triangles = renumber[triangles].astype(np.int32)
     bones, weights = _strongest(surface.weights[used])
     triangle_bones, triangle_weights = _strongest(surface.weights[used][triangles].mean(axis=1))
-    colour = standard_shirt().colour_of_patch[surface.patch[keep]]
-    part = surface.part[keep]
-    sleeves, sleeve_start = sleeves_by_colour(part, colour)
     return BodyModel(
         space=space,
         stature_m=stature_m,
@@ -107,16 +98,13 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
         bones=bones,
         weights=weights,
         triangles=triangles,
-        colour=colour,
-        patch=surface.patch[keep],
-        part=part,
+        area=surface.area[keep],
+        part=surface.part[keep],
         triangle_bones=triangle_bones,
         triangle_weights=triangle_weights,
         rest_m=skeleton_of(mean).rest_m,
         d_vertices=np.ascontiguousarray(d_vertices[:, used]),
         d_rest=d_rest,
-        sleeves=sleeves,
-        sleeve_start=sleeve_start,
         centres_m=surface.vertices_m[used][triangles].mean(axis=1),
         d_centres=np.ascontiguousarray(d_vertices[:, used][:, triangles].mean(axis=2)),
         parents=PARENTS,
@@ -124,13 +112,6 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
         share_of_joint=space.share_of_joint,
         joint_of_group=space.joint_of_group,
     )
-
-
-def sleeves_by_colour(part: NDArray[np.uint8], colour: NDArray[np.uint8]) -> tuple[Ints, Ints]:
-    """Coloured triangles (S,) of both arms by colour, and the first place (12,) of each colour 0..10, and the end."""
-    of_arms = np.flatnonzero(((part == LEFT_ARM) | (part == RIGHT_ARM)) & (colour > 0))
-    sleeves = of_arms[np.argsort(colour[of_arms], kind="stable")]
-    return sleeves, np.searchsorted(colour[sleeves], np.arange(12))
 
 
 def shaped(model: BodyModel, factors: Floats) -> tuple[Floats, Floats]:

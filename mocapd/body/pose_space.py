@@ -1,7 +1,7 @@
 """What of a body moves and varies: rotation groups with their limits, shape factors, parts, as data.
 
 A pose is three numbers of translation, then a rotation vector for each group in the order of `groups`.
-The shirt's trackers work in `upper_body`; `full_body` begins with the same groups and factors.
+`full_body` begins with the groups and factors of `upper_body`.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,6 @@ import numpy as np
 from mocapd.body.joint_limit_kernels import JointLimits
 from mocapd.body.joint_limits import limits_of
 from mocapd.body.shape import FACTOR_SD, FACTORS, LOWER_FACTOR_SD, WHOLE_FACTORS
-from mocapd.body.shirt_patches import SLEEVE_PATCHES
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Ints
@@ -37,12 +36,11 @@ _LOWER_GROUPS: tuple[Group, ...] = (
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """A limb: the first joint of each of its groups, which follow each other, its joints from the trunk
-    outwards, and the shirt's patches on it."""
+    """A limb: the first joint of each of its groups, which follow each other, and its joints from the trunk
+    outwards."""
 
     groups: tuple[str, ...]
     joints: tuple[str, ...]
-    patches: slice
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,17 +102,17 @@ class PoseSpace:
 
 def _arm(side: str) -> BodyPart:
     bones = tuple(side + bone for bone in _ARM)
-    return BodyPart(bones, (*bones, side + "Hand"), SLEEVE_PATCHES[side])
+    return BodyPart(bones, (*bones, side + "Hand"))
 
 
 def _leg(side: str) -> BodyPart:
     bones = tuple(side + bone for bone in _LEG)
-    return BodyPart(bones, (*bones, side + "Toes"), slice(0, 0))
+    return BodyPart(bones, (*bones, side + "Toes"))
 
 
 @cache
 def upper_body() -> PoseSpace:
-    """Hips, spine and arms: what the shirt tells of. 27 pose parameters, 7 factors."""
+    """Hips, spine and arms. 27 pose parameters, 7 factors."""
     return PoseSpace(
         _UPPER_GROUPS,
         FACTORS,
@@ -133,7 +131,7 @@ def full_body() -> PoseSpace:
         np.concatenate([FACTOR_SD, LOWER_FACTOR_SD]),
         {
             **{f"{side}_arm": _arm(side) for side in SIDES},
-            "head": BodyPart(("neck",), ("neck", "head"), slice(0, 0)),
+            "head": BodyPart(("neck",), ("neck", "head")),
             **{f"{side}_leg": _leg(side) for side in SIDES},
         },
         whole=True,

@@ -1,4 +1,4 @@
-"""A closed surface of the body that carries the shirt's patches: overlapping closed tubes, and its skinning."""
+"""A closed surface of the body in areas: overlapping closed tubes, and its skinning."""
 
 from dataclasses import dataclass
 
@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Pose, Skeleton
 
-SKIN, SHIRT, TROUSERS = 0, 1, 2
-# parts; the dressed body of the shirt's trackers has LEGS, the whole body one part for each leg
+# materials: bare, and what clothes cover above and below the hips
+SKIN, TOP, TROUSERS = 0, 1, 2
+# parts; a body with rough legs has LEGS, the whole body one part for each leg
 TORSO, LEFT_ARM, RIGHT_ARM, HEAD, LEGS, LEFT_LEG, RIGHT_LEG = 0, 1, 2, 3, 4, 5, 6
 
 LIMB_COLUMNS = 12  # points around head and limbs
@@ -18,11 +19,11 @@ LIMB_COLUMNS = 12  # points around head and limbs
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """T-pose vertices_m (V,3); triangles (T,3), counter-clockwise from outside; per triangle
-    patch (T,) 0..20, material (T,) and part (T,); skin weights (V,J), rows summing to 1."""
+    `Area` (T,), material (T,) and part (T,); skin weights (V,J), rows summing to 1."""
 
     vertices_m: Floats
     triangles: NDArray[np.int32]
-    patch: NDArray[np.uint8]
+    area: NDArray[np.uint8]
     material: NDArray[np.uint8]
     part: NDArray[np.uint8]
     weights: Floats
@@ -34,7 +35,7 @@ class Tube:
 
     rings_m: Floats  # (R, C, 3)
     weights: Floats  # (R, C, J)
-    patch: NDArray[np.uint8]  # (R-1, C) of the band above ring r, column c..c+1
+    area: NDArray[np.uint8]  # (R-1, C) of the band above ring r, column c..c+1
     material: NDArray[np.uint8]  # (R-1,)
     part: int
 
@@ -50,7 +51,7 @@ def posed_vertices(surface: Surface, skeleton: Skeleton, pose: Pose, joints_m: F
 
 def joined(tubes: list[Tube]) -> Surface:
     """The tubes with flat ends as one surface."""
-    vertices, triangles, patches, materials, parts, weights = [], [], [], [], [], []
+    vertices, triangles, areas, materials, parts, weights = [], [], [], [], [], []
     offset = 0
     for tube in tubes:
         R, C, _ = tube.rings_m.shape
@@ -71,8 +72,8 @@ def joined(tubes: list[Tube]) -> Surface:
             np.stack([last, (R - 1) * C + after, (R - 1) * C + columns], -1),
         ])  # fmt: skip
         triangles.append(_outward(points, triangle) + offset)
-        around = np.repeat(tube.patch, 2, axis=0)  # of a band's both triangles
-        patches.append(np.concatenate([around.ravel(), tube.patch[0], tube.patch[-1]]))
+        around = np.repeat(tube.area, 2, axis=0)  # of a band's both triangles
+        areas.append(np.concatenate([around.ravel(), tube.area[0], tube.area[-1]]))
         ends_material = np.repeat(tube.material[[0, -1]], C)
         materials.append(np.concatenate([np.repeat(tube.material, 2 * C), ends_material]))
         parts.append(np.full(len(triangle), tube.part))
@@ -81,7 +82,7 @@ def joined(tubes: list[Tube]) -> Surface:
     return Surface(
         vertices_m=np.concatenate(vertices),
         triangles=np.concatenate(triangles).astype(np.int32),
-        patch=np.concatenate(patches).astype(np.uint8),
+        area=np.concatenate(areas).astype(np.uint8),
         material=np.concatenate(materials).astype(np.uint8),
         part=np.concatenate(parts).astype(np.uint8),
         weights=w / w.sum(axis=1, keepdims=True),

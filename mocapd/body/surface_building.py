@@ -1,4 +1,4 @@
-"""The body's surface of a shape: dressed for the shirt's trackers and the simulation, or whole.
+"""The body's surface of a shape: with rough legs, or whole.
 
 Torso, arms with hands, neck with head, and legs are closed tubes that overlap. The surface depends
 linearly on the shape factors, so its derivatives are differences taken once.
@@ -19,7 +19,7 @@ Build = Callable[[BodyShape], Surface]
 
 
 def build_surface(shape: BodyShape) -> Surface:
-    """The dressed body of this shape in its T-pose; its legs are rough."""
+    """The body of this shape in its T-pose; its legs are rough."""
     skeleton = skeleton_of(shape)
     return joined([
         *_above_the_hips(shape, skeleton),
@@ -69,5 +69,5 @@ def shape_derivatives(
 
 
 def mean_surface(stature_m: float) -> Surface:
-    """The dressed surface of the mean body of this stature."""
+    """The surface, with rough legs, of the mean body of this stature."""
     return build_surface(mean_shape(stature_m))

@@ -2,25 +2,25 @@
 
 import numpy as np
 
+from mocapd.body.areas import Area
 from mocapd.body.shape import N_FACTORS, BodyShape
-from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.body.surface import HEAD, LIMB_COLUMNS, SHIRT, SKIN, TORSO, TROUSERS, Tube
+from mocapd.body.surface import HEAD, LIMB_COLUMNS, SKIN, TOP, TORSO, TROUSERS, Tube
 from mocapd.types import Floats, Skeleton
 
-_TORSO_COLUMNS = 24  # a multiple of 4, so that the patch borders run along edges
-# patches of the four quarters, front left first
-_UPPER_PATCHES = (
-    ShirtPatch.TORSO_FRONT_UPPER_LEFT,
-    ShirtPatch.TORSO_FRONT_UPPER_RIGHT,
-    ShirtPatch.TORSO_BACK_UPPER_RIGHT,
-    ShirtPatch.TORSO_BACK_UPPER_LEFT,
+_TORSO_COLUMNS = 24  # a multiple of 4, so that the borders of areas run along edges
+# areas around the trunk, front left first
+_UPPER_QUARTERS = (
+    Area.TORSO_FRONT_UPPER_LEFT,
+    Area.TORSO_FRONT_UPPER_RIGHT,
+    Area.TORSO_BACK_UPPER_RIGHT,
+    Area.TORSO_BACK_UPPER_LEFT,
 )
-_LOWER_PATCHES = (
-    ShirtPatch.TORSO_FRONT_LOWER_LEFT,
-    ShirtPatch.TORSO_FRONT_LOWER_RIGHT,
-    ShirtPatch.TORSO_BACK_LOWER_RIGHT,
-    ShirtPatch.TORSO_BACK_LOWER_LEFT,
+_LOWER_QUARTERS = (
+    Area.TORSO_FRONT_LOWER_LEFT,
+    Area.TORSO_FRONT_LOWER_RIGHT,
+    Area.TORSO_BACK_LOWER_RIGHT,
+    Area.TORSO_BACK_LOWER_LEFT,
 )
 # Per height: fraction of the way from hips (0) to neck joint (1), half width, extent in front of
 # and behind the line hips-neck, exponent of the superellipse. Widths and depths in statures.
@@ -43,7 +43,7 @@ _TORSO_PROFILE = np.array([
 
 
 def torso_tube(shape: BodyShape, skeleton: Skeleton) -> Tube:
-    """From the upper thighs to the neck, its patches in quarters."""
+    """From the upper thighs to the neck, its areas in quarters."""
     _, shoulders, _, _, width, depth, _ = shape.factors[:N_FACTORS]
     hips, neck = skeleton.rest_m[INDEX["hips"]], skeleton.rest_m[INDEX["neck"]]
     profile = _TORSO_PROFILE
@@ -61,15 +61,15 @@ def torso_tube(shape: BodyShape, skeleton: Skeleton) -> Tube:
     z = np.where(np.abs(s) < 1e-9, 0.0, extent * np.sign(s) * np.abs(s) ** power)
     x = np.where(np.abs(c) < 1e-9, 0.0, x)
     rings = np.stack([x, np.broadcast_to(centre[:, 1:2], x.shape), z + centre[:, 2:3]], axis=-1)
-    patch = np.zeros((len(f) - 1, _TORSO_COLUMNS), dtype=np.uint8)
+    area = np.zeros((len(f) - 1, _TORSO_COLUMNS), dtype=np.uint8)
     mid = 0.5 * (f[:-1] + f[1:])
     column = np.arange(_TORSO_COLUMNS) * 4 // _TORSO_COLUMNS
     for r, height in enumerate(mid):
         if height > 0:
-            quarters = _UPPER_PATCHES if height > 0.5 else _LOWER_PATCHES
-            patch[r] = np.array(quarters)[column]
-    material = np.where(mid > 0, SHIRT, TROUSERS).astype(np.uint8)
-    return Tube(rings, _torso_weights(rings, skeleton), patch, material, TORSO)
+            quarters = _UPPER_QUARTERS if height > 0.5 else _LOWER_QUARTERS
+            area[r] = np.array(quarters)[column]
+    material = np.where(mid > 0, TOP, TROUSERS).astype(np.uint8)
+    return Tube(rings, _torso_weights(rings, skeleton), area, material, TORSO)
 
 
 def _torso_weights(points_m: Floats, skeleton: Skeleton) -> Floats:
@@ -121,5 +121,5 @@ def head_tube(shape: BodyShape, skeleton: Skeleton) -> Tube:
     weights[..., INDEX["neck"]] = ((1 - up) * (1 - low))[:, None]
     weights[..., INDEX["upperChest"]] = ((1 - up) * low)[:, None]
     bands = len(table) - 1
-    patch, material = np.zeros((bands, LIMB_COLUMNS), np.uint8), np.full(bands, SKIN, np.uint8)
-    return Tube(rings, weights, patch, material, HEAD)
+    area, material = np.zeros((bands, LIMB_COLUMNS), np.uint8), np.full(bands, SKIN, np.uint8)
+    return Tube(rings, weights, area, material, HEAD)

@@ -12,7 +12,8 @@ from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, moved
-from mocapd.types import Camera, Floats, Ints
+from mocapd.fit.surface_labels import SurfaceLabels
+from mocapd.types import Camera, Floats
 from mocapd.vision.raster_kernels import bounds, label_triangles, rasterise
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1 [work px], x1 and y1 excluded
@@ -47,23 +48,15 @@ class PartialRender:
     posed: PosedJoints
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Outline:
-    """Where the vertices of the body were drawn: xy (V,2) px of the region; triangles (T,3), their
-    colour (T,), and those of the sleeves (S,)."""
-
-    xy: Floats
-    triangles: NDArray[np.int32]
-    colour: NDArray[np.uint8]
-    sleeves: Ints
-
-
 class IdMapRenderer:
     """Draws one body into one camera. Results are in its own buffers, until the next drawing."""
 
-    def __init__(self, shaper: Shaper, camera: Camera, image_scale: int) -> None:
-        """image_scale: by how much the camera's frames are averaged down to work pictures."""
+    def __init__(
+        self, shaper: Shaper, labels: SurfaceLabels, camera: Camera, image_scale: int
+    ) -> None:
+        """labels: the ids that are drawn; image_scale: by how much the camera's frames are averaged down to work pictures."""
         self.model: BodyModel = shaper.model
+        self.labels = labels
         self.camera, self.image_scale, self._shaper = camera, image_scale, shaper
         self.projection = camera_arrays(camera)
         self._skin, self._projection = plain(self.model.skin), plain(self.projection)
@@ -108,7 +101,7 @@ class IdMapRenderer:
             return None
         self.xy -= roi[:2]  # as of the whole picture so far
         ids, triangle_at = self.last(roi)
-        self._raster(self.xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        self._raster(self.xy, self.model.triangles, self.labels.label, ids, triangle_at)
         return roi, ids
 
     def last(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
@@ -121,10 +114,6 @@ class IdMapRenderer:
         h, w = roi[3] - roi[1], roi[2] - roi[0]
         return self._zbuffer[: h * w].reshape(h, w)
 
-    def outline(self) -> Outline:
-        """Of what `draw` drew last."""
-        return Outline(self.xy, self.model.triangles, self.model.colour, self.model.sleeves)
-
     def render_parts(
         self, state: MotionState, dt_s: float, roi: Roi, triangles: NDArray[np.int64]
     ) -> PartialRender:
@@ -133,7 +122,7 @@ class IdMapRenderer:
         self._project(*moved(m, state, dt_s), self._shaper(state.factors), roi)
         ids, triangle_at = self.last(roi)
         zbuffer = self._raster(
-            self.xy, m.triangles[triangles], m.colour[triangles], ids, triangle_at
+            self.xy, m.triangles[triangles], self.labels.label[triangles], ids, triangle_at
         )
         return PartialRender(ids, triangle_at, zbuffer, self.posed)
 
@@ -143,7 +132,7 @@ class IdMapRenderer:
         """Id map and triangles (h,w) of a pose of this body."""
         self._project(root_m, local_xyzw, body, roi)
         ids, triangle_at = self.last(roi)
-        self._raster(self.xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        self._raster(self.xy, self.model.triangles, self.labels.label, ids, triangle_at)
         return ids, triangle_at
 
     def draw_coarse(
@@ -155,7 +144,7 @@ class IdMapRenderer:
         h, w = (roi[3] - roi[1] + 1) // 2, (roi[2] - roi[0] + 1) // 2
         ids = self._coarse_ids[: h * w].reshape(h, w)
         triangle_at = self._coarse_at[: h * w].reshape(h, w)
-        self._raster(self.coarse_xy, self.model.triangles, self.model.colour, ids, triangle_at)
+        self._raster(self.coarse_xy, self.model.triangles, self.labels.label, ids, triangle_at)
         return ids, triangle_at
 
     def last_coarse(self, roi: Roi) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
@@ -175,14 +164,14 @@ class IdMapRenderer:
         self,
         xy: Floats,
         triangles: NDArray[np.int32],
-        colour: NDArray[np.uint8],
+        label: NDArray[np.uint8],
         ids: NDArray[np.uint8],
         triangle_at: NDArray[np.int32],
     ) -> NDArray[np.float32]:
         """Fill ids and triangle_at (h,w) with the projected vertices; returns their depths (h,w) [m]."""
         zbuffer = self._zbuffer[: ids.size].reshape(ids.shape)
         rasterise(xy, self._depth, triangles, zbuffer, triangle_at)
-        label_triangles(triangle_at, colour, ids)
+        label_triangles(triangle_at, label, ids)
         return zbuffer
 
     def _project(self, root_m: Floats, local_xyzw: Floats, body: Shaped, roi: Roi) -> None:

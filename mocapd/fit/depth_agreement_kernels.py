@@ -13,7 +13,7 @@ _WELL_BEFORE = 2.0
 def compare_depths(
     drawn_m: NDArray[np.float32],
     triangle_at: NDArray[np.int32],
-    patch: NDArray[np.uint8],
+    area: NDArray[np.uint8],
     seen_m: NDArray[np.float32],
     grid_px: int,
     around_px: int,
@@ -24,10 +24,10 @@ def compare_depths(
     """Squared differences of all pixels, in those of off_m, at most 1 each, summed; and the pixels in which something is
     seen nearer by _WELL_BEFORE times off_m.
 
-    drawn_m, seen_m (h,w): depths, NaN where none is seen; triangle_at (h,w): what is drawn; patch (T,): of its triangles.
+    drawn_m, seen_m (h,w): depths, NaN where none is seen; triangle_at (h,w): what is drawn; area (T,): of its triangles.
     seen_m is the same over squares of grid_px, in whose middle it was measured from what is within around_px: anything
     that is drawn there, or between, explains it, and so does the room where it shows and something farther is seen.
-    Adds to asked (L,), by patch, the pixels compared, and to off (L,) those that differ by more than off_m.
+    Adds to asked (A,), by area, the pixels compared, and to off (A,) those that differ by more than off_m.
     """
     cost = nearer_px = 0.0
     h, w = seen_m.shape
@@ -44,9 +44,9 @@ def compare_depths(
                     nearest = min(nearest, drawn_m[v, u])
                     farthest = max(farthest, drawn_m[v, u])
             away = max(nearest - seen, seen - farthest, 0.0) / off_m
-            asked[patch[t]] += px
+            asked[area[t]] += px
             if away > 1.0:
-                off[patch[t]] += px
+                off[area[t]] += px
             cost += px * min(away * away, 1.0)
             if nearest - seen > _WELL_BEFORE * off_m:
                 nearer_px += px

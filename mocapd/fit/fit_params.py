@@ -43,9 +43,9 @@ class FitParams:
         2  # within which that is which has the depth seen in a pixel: a patch's half [work px]
     )
     depth_cost: float = 1.0  # of a pixel that is, beside one that disagrees
-    # what may be off of a patch that is where it is seen: the outlines of a limb have the depth of what is behind it
+    # what may be off of an area that is where it is seen: the outlines of a limb have the depth of what is behind it
     depth_usual: float = 1.6  # so many times its share that is not off confirms it
-    depth_least_px: int = 16  # compared, for a patch to be judged by it
+    depth_least_px: int = 16  # compared, for an area to be judged by it
 
     @property
     def collision_information(self) -> float:
@@ -83,7 +83,9 @@ class LimbSearchParams:
     # in the cost of its fit
     unusual_px: float = 1.4
     unusual_cost: float = 1.0
-    hand_px: float = 1.0  # what a hand's pixel that is skin, or is not, counts beside a sleeve's
+    hand_px: float = (
+        1.0  # what a hand's pixel that is skin, or is not, counts beside one of the rest of the arm
+    )
     hand_cost: float = 1.0  # the same beside the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
     # from one try of each where the other is to the next, in turns that know depths, which tell look-alikes apart; 0: never

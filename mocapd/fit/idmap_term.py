@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.idmap_term_kernels import (
@@ -16,6 +16,7 @@ from mocapd.fit.idmap_term_kernels import (
     Search,
     accumulate,
 )
+from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.types import Floats
 
 _ROBUST = 0.6  # of the search radius: where a residual has lost half of its weight
@@ -38,6 +39,7 @@ def sum_rows(
     search: Search,
     xy: Floats,
     surface: TriangleArrays,
+    labels: SurfaceLabels,
     centres: Floats,
     articulation: Articulation,
     posed: PosedJoints,
@@ -54,7 +56,7 @@ def sum_rows(
     """
     for array in sums:
         array[:] = 0.0
-    triangles, _, patch, bones, weights, d_centres, sleeves, sleeve_start = surface
+    triangles, bones, weights, d_centres = surface
     parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
     rest, R, joints, _ = posed
     n_shape = len(sums.b) - 3 - 3 * len(joint_of_group)
@@ -63,7 +65,7 @@ def sum_rows(
     cost: float = accumulate(
         *pictures, search.offsets, len(search.offsets), search.grid_px, search.radius_px,
         search.robust_px, search.phase, search.every, search.edge_weight, xy,
-        triangles, sleeves, sleeve_start, patch, centres, d_centres, bones, weights,
+        triangles, labels.arms, labels.arms_start, labels.area, centres, d_centres, bones, weights,
         rest, d_rest, parents, group_of_joint, share_of_joint,
         R, joints, d_joints, n_shape, *camera, weight, *sums,
     )  # fmt: skip
@@ -71,12 +73,12 @@ def sum_rows(
 
 
 class CameraRows:
-    """One camera's share of the normal equations: H (P,P), b (P,), counts (21,) per patch, cost."""
+    """One camera's share of the normal equations: H (P,P), b (P,), counts (A,) by area, cost."""
 
     def __init__(self, model: BodyModel) -> None:
         P = model.n_pose + model.n_shape
         H, b = np.zeros(P * P), np.zeros(P)
-        self.visible, self.matched, self.unexplained = (np.zeros(N_LABELS) for _ in range(3))
+        self.visible, self.matched, self.unexplained = (np.zeros(N_AREAS) for _ in range(3))
         self._systems = {n: (H[: n * n].reshape(n, n), b[:n]) for n in (model.n_pose, P)}
         self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))
         self.cost = 0.0
@@ -101,8 +103,8 @@ class CameraRows:
         )
         xy = drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy
         self.cost = sum_rows(
-            pictures, search, xy, m.surface, body.centres, m.articulation, drawing.posed,
-            self._d_joints, drawing.pinhole, weight, sums,
+            pictures, search, xy, m.surface, drawing.labels, body.centres, m.articulation,
+            drawing.posed, self._d_joints, drawing.pinhole, weight, sums,
         )  # fmt: skip
 
     def system(self, P: int) -> tuple[Floats, Floats]:

@@ -1,7 +1,7 @@
 """Align the rendered body with the classified picture: the id-map distance of [WP09], minimised.
 
-Each rendered pixel wants the nearest picture pixel of its colour, each classified pixel the nearest
-rendered pixel of its colour: the two directions of the distance by which [WP09] compares id maps.
+Each rendered pixel wants the nearest picture pixel of its label, each classified pixel the nearest
+rendered pixel of its label: the two directions of the distance by which [WP09] compares id maps.
 Each pixel that disagrees gives one row: the way to go (a direction in the picture, and how far) and
 its derivative by pose and body shape, through the surface point seen there.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.fit.nearest_pixel_kernels import CELL, colours_in_reach, nearest, nearest_hidden
+from mocapd.fit.nearest_pixel_kernels import CELL, labels_in_reach, nearest, nearest_hidden
 from mocapd.fit.row_products_kernels import add_products
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
@@ -22,9 +22,9 @@ Ints = NDArray[np.int64]
 
 
 class Search(NamedTuple):
-    """Where colours are looked for: offsets (N,2) within radius_px [work px] on a grid of grid_px;
+    """Where labels are looked for: offsets (N,2) within radius_px [work px] on a grid of grid_px;
     robust_px: where a residual has lost half of its weight. `every` 1: at all pixels of the grid; 2:
-    at one colour of its checkerboard, given by `phase`. edge_weight: weight of edges in place."""
+    at every other one, as on a checkerboard, given by `phase`. edge_weight: weight of edges in place."""
 
     offsets: NDArray[np.int32]
     radius_px: float
@@ -38,7 +38,7 @@ class Search(NamedTuple):
 class ComparedPictures(NamedTuple):
     """The body as drawn (ids, and the triangle at each pixel) and the picture as classified: ids, and
     pixel_weight 0..255, the weight of a rendered pixel over an unclassified one (255 for sure background,
-    less where something may hide the shirt). All (h,w), on the grid of the search."""
+    less where something may hide the body). All (h,w), on the grid of the search."""
 
     model_ids: Bytes
     triangle_at: NDArray[np.int32]
@@ -47,8 +47,8 @@ class ComparedPictures(NamedTuple):
 
 
 class AlignmentSums(NamedTuple):
-    """H (P,P), b (P,); visible, matched (21,): rendered pixels and those whose colour the picture has
-    there, per patch; unexplained (21,): per patch, picture pixels drawn to it; in units of two work px."""
+    """H (P,P), b (P,); visible, matched (A,): rendered pixels and those whose label the picture has
+    there, by area; unexplained (A,): by area, picture pixels drawn to it; in units of two work px."""
 
     H: Array
     b: Array
@@ -76,9 +76,9 @@ def accumulate(
     edge_weight: float,
     xy: Array,
     triangles: NDArray[np.int32],
-    sleeves: Ints,
-    sleeve_start: Ints,
-    patch: NDArray[np.uint8],
+    arms: Ints,
+    arms_start: Ints,
+    area: NDArray[np.uint8],
     centres: Array,
     d_centres: Array,
     triangle_bones: NDArray[np.int32],
@@ -109,10 +109,10 @@ def accumulate(
     what differs in the last digit is centimetres a second later, where an arm is hidden.
     The four pictures (h,w) are grids of `grid_px` work px; lengths, fx and fy are in work px.
     pixel_weight: weight of a rendered pixel over an unclassified picture pixel, 0..255 (255 for sure
-    background, less where something may hide the shirt). visible, matched (21,): rendered pixels
-    and those whose colour the picture has there, per patch; unexplained (21,): per patch, picture
+    background, less where something may hide the body). visible, matched (A,): rendered pixels
+    and those whose label the picture has there, by area; unexplained (A,): by area, picture
     pixels drawn to it; all in units of two work px. `every` 1: all pixels of the grid are looked
-    at; 2: one colour of its checkerboard, given by `phase`. offsets[:n_offsets] are those within
+    at; 2: every other one, as on a checkerboard, given by `phase`. offsets[:n_offsets] are those within
     radius_px.
     """
     h, w = model_ids.shape
@@ -134,17 +134,17 @@ def accumulate(
     counted = 0.5 * every * grid_px * grid_px
     weight *= counted
     reach = radius_px / grid_px
-    near_image = colours_in_reach(image_ids, reach)
-    near_model = colours_in_reach(model_ids, reach)
+    near_image = labels_in_reach(image_ids, reach)
+    near_model = labels_in_reach(model_ids, reach)
     for y in range(h):
         for x in range((y + phase) % every, w, every):
             k_model = model_ids[y, x]
             k_image = image_ids[y, x]
             if k_model > 0:
-                visible[patch[triangle_at[y, x]]] += counted
+                visible[area[triangle_at[y, x]]] += counted
             if k_model == k_image:
                 if k_model > 0:
-                    matched[patch[triangle_at[y, x]]] += counted
+                    matched[area[triangle_at[y, x]]] += counted
                 # an edge that is in place holds the body there: without it the few pixels that
                 # disagree by less than their width would move it by all of that width
                 if edge_weight == 0.0 or k_model == 0 or (x + y) // 2 & 1:  # half of them will do
@@ -185,17 +185,15 @@ def accumulate(
                         dx, dy = -float(offsets[i, 0]), -float(offsets[i, 1])
                         t = triangle_at[y + offsets[i, 1], x + offsets[i, 0]]
                     else:
-                        s = nearest_hidden(
-                            x, y, reach, xy, triangles, sleeves, sleeve_start, k_image
-                        )
+                        s = nearest_hidden(x, y, reach, xy, triangles, arms, arms_start, k_image)
                         if s < 0:
                             cost += weight * r2_robust
                             continue
-                        t = sleeves[s]
+                        t = arms[s]
                         middle_x, middle_y = triangle_middle(xy, triangles, t)
                         dx, dy = x - middle_x, y - middle_y
                     row_weight = weight
-                    unexplained[patch[t]] += counted
+                    unexplained[area[t]] += counted
                 length = max(np.sqrt(dx * dx + dy * dy), 1e-3)
                 r = grid_px * length
                 r2 = r * r

@@ -15,7 +15,7 @@ from mocapd.fit.joint_uncertainty_kernels import (
 from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.types import Floats
 
-_NECK_SD_RAD = 0.3  # people nod and look about, and a shirt does not tell
+_NECK_SD_RAD = 0.3  # people nod and look about
 # Of the evidence's information: as measured on recordings with known truth, errors of a pixel last and are shared
 _WITNESSED = 0.5
 _LEAST_M = 0.005  # nobody's joints are known better: proportions, and where in the flesh a joint is

@@ -1,4 +1,4 @@
-"""Where the nearest pixel of a colour is, and whether there can be one."""
+"""Where the nearest pixel of a label is, and whether there can be one."""
 
 import numpy as np
 from numba import njit
@@ -8,7 +8,7 @@ from mocapd.vision.raster_kernels import triangle_middle
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-CELL = 8  # px of the grid that tells which colours are within reach
+CELL = 8  # px of the grid that tells which labels are within reach
 
 
 def offsets_by_distance(radius_px: int) -> NDArray[np.int32]:
@@ -49,14 +49,14 @@ def nearest_hidden(
     reach: float,
     xy: Array,
     triangles: NDArray[np.int32],
-    sleeves: Ints,
-    sleeve_start: Ints,
+    arms: Ints,
+    arms_start: Ints,
     k: int,
 ) -> int:
-    """Place in `sleeves` of the triangle of colour k whose middle is nearest, seen or not; or -1."""
+    """Place in `arms` of the triangle of label k whose middle is nearest, seen or not; or -1."""
     best, found = reach * reach, -1
-    for s in range(sleeve_start[k], sleeve_start[k + 1]):
-        t = sleeves[s]
+    for s in range(arms_start[k], arms_start[k + 1]):
+        t = arms[s]
         middle_x, middle_y = triangle_middle(xy, triangles, t)
         r2 = (x - middle_x) ** 2 + (y - middle_y) ** 2
         if r2 < best:
@@ -65,8 +65,8 @@ def nearest_hidden(
 
 
 @njit(cache=True, nogil=True)
-def colours_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
-    """Bit k of a cell of CELL px is set where colour k may be within `radius` [px] of the cell: spares
+def labels_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
+    """Bit k of a cell of CELL px is set where label k may be within `radius` [px] of the cell: spares
     the search where it must fail. Bit 0 tells nothing."""
     h, w = ids.shape
     gh, gw = h // CELL + 1, w // CELL + 1

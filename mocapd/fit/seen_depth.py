@@ -1,6 +1,6 @@
 """How far away everything is that one camera sees of a person, where another one beside it sees the same texture.
 
-Cameras side by side tell little by outlines and colours of what is before what; hands before a shirt of the arm's own colour
+Cameras side by side tell little by outlines and colours of what is before what; hands before a trunk that looks like the arm
 are found by this alone.
 """
 

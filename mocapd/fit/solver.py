@@ -12,11 +12,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.areas import ARM_AREAS, N_AREAS
 from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
-from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import IdMapRenderer, Roi
@@ -32,12 +32,13 @@ from mocapd.fit.pose_prior import narrow_prior, wide_prior
 from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.fit.seen_depth import GRID_PX
 from mocapd.fit.step_kernels import gauss_newton_step
+from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.types import Camera, Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
-_IN_SIGHT = 0.10  # an arm in sight takes at least this share of the visible shirt
-_NO_PIXELS = np.zeros(N_LABELS)
+_IN_SIGHT = 0.10  # an arm in sight takes at least this share of all that is visible
+_NO_PIXELS = np.zeros(N_AREAS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,9 +58,9 @@ class View:
 
 @dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__
 class Fit:
-    """The fitted state; per patch (21,) the rendered, matched and wrongly placed pixels; H (P,P): the
+    """The fitted state; by area (A,) the rendered, matched and wrongly placed pixels; H (P,P): the
     information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before;
-    in_depth (21,): share of a patch's pixels that are where depths are seen, 1 where none are; nearer_px: where something is
+    in_depth (A,): share of an area's pixels that are where depths are seen, 1 where none are; nearer_px: where something is
     seen well before all that is drawn; measured_cost: what the cost has of terms that were measured for another pose."""
 
     state: MotionState
@@ -69,7 +70,7 @@ class Fit:
     H: Floats
     cost: float
     information: Floats
-    in_depth: Floats = field(default_factory=partial(np.ones, N_LABELS))
+    in_depth: Floats = field(default_factory=partial(np.ones, N_AREAS))
     nearer_px: float = 0.0
     measured_cost: float = 0.0
 
@@ -85,12 +86,12 @@ class Fit:
 
     @cached_property
     def match(self) -> float:
-        """Share of the rendered shirt whose colour the pictures have."""
+        """Share of the rendered pixels whose label the pictures have."""
         return float(self.matched.sum() / max(self.visible_px, 1.0))
 
     @cached_property
     def explained(self) -> float:
-        """Share of rendered shirt and of wrongly placed picture pixels that agree: harder than `match`."""
+        """Share of rendered and of wrongly placed picture pixels that agree: harder than `match`."""
         return float(self.matched.sum() / max(self.visible_px + self.unexplained.sum(), 1.0))
 
     @property
@@ -100,24 +101,19 @@ class Fit:
 
     @cached_property
     def confirmed_arms(self) -> dict[str, float]:
-        """0..1 by side: share of an arm's patches that the pictures confirm; one out of sight is not."""
+        """0..1 by side: share of an arm that the pictures confirm; one out of sight is not."""
         in_sight = _IN_SIGHT * self.visible_px
         confirmed = {}
-        for side, p in SLEEVE_PATCHES.items():
+        for side, p in ARM_AREAS.items():
             asked = self.visible[p].sum() + self.unexplained[p].sum()
             confirmed[side] = float(
                 (self.matched * self.in_depth)[p].sum() / (max(asked, in_sight) + 1.0)
             )
         return confirmed
 
-    def confirmed_colours(self) -> int:
-        """How many colours of the shirt are confirmed in one of their patches."""
-        patches = confirmed_parts(self.matched, self.visible)
-        return int(np.count_nonzero(np.unique(standard_shirt().colour_of_patch[patches])))
-
 
 def confirmed_parts(matched: Floats | Ints, visible: Floats | Ints) -> NDArray[np.bool_]:
-    """Of which patches, or colours, so much of what is rendered is seen that it cannot be chance."""
+    """Of which areas, or labels, so much of what is rendered is seen that it cannot be chance."""
     return (matched >= _CONFIRMED_PX) & (matched >= _CONFIRMED * visible)
 
 
@@ -144,16 +140,18 @@ class Fitter:
     def __init__(
         self,
         model: BodyModel,
+        labels: SurfaceLabels,
         cameras: Sequence[Camera],
         image_scales: Sequence[int],
         params: FitParams,
         each: Each = in_turn,
     ) -> None:
-        """`image_scales`: by how much each camera's frames are averaged down to work pictures."""
-        self.model, self.params, self.each = model, params, each
+        """labels: of the pictures' pixels; image_scales: by how much each camera's frames are averaged down."""
+        self.model, self.labels, self.params, self.each = model, labels, params, each
         self.shaper = Shaper(model)
         self.drawings = [
-            IdMapRenderer(self.shaper, c, f) for c, f in zip(cameras, image_scales, strict=True)
+            IdMapRenderer(self.shaper, labels, c, f)
+            for c, f in zip(cameras, image_scales, strict=True)
         ]
         self._from_eyes_m = [c.R.T @ c.t_m for c in cameras]
         self._rows = [CameraRows(model) for _ in cameras]
@@ -285,17 +283,17 @@ class Fitter:
         )
 
     def _compare_depths(self, views: Sequence[View]) -> tuple[float, Floats, float]:
-        """The cost of what was drawn last nearer or farther than it is seen; by patch whether it is there (21,); and the
+        """The cost of what was drawn last nearer or farther than it is seen; by area whether it is there (A,); and the
         pixels in which something is seen well before what was drawn."""
         if all(view.depth_m is None for view in views):
-            return 0.0, np.ones(N_LABELS), 0.0
+            return 0.0, np.ones(N_AREAS), 0.0
         p, cost, nearer_px = self.params, 0.0, 0.0
-        asked, off = np.zeros(N_LABELS), np.zeros(N_LABELS)
+        asked, off = np.zeros(N_AREAS), np.zeros(N_AREAS)
         for view in views:
             if view.depth_m is not None:
                 drawing = self.drawings[view.index]
                 away, nearer = compare_depths(
-                    drawing.last_depth_m(view.roi), drawing.last(view.roi)[1], self.model.patch, view.depth_m,
+                    drawing.last_depth_m(view.roi), drawing.last(view.roi)[1], self.labels.area, view.depth_m,
                     GRID_PX, p.depth_around_px, p.depth_off_m, asked, off,
                 )  # fmt: skip
                 cost += p.depth_cost * away

@@ -4,10 +4,10 @@ import numpy as np
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.pdfgen.pathobject import PDFPathObject
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.printing.paper_sizes import Size
 from mocapd.printing.pdf_document import BLACK, BOLD, DARK, Colour, write_text
 from mocapd.printing.shirt_pattern import Piece
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats
 
 _WHITE: Colour = (1.0, 1.0, 1.0)

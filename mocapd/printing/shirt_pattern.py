@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.shape import mean_shape, skeleton_of
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats
 
 SEAM_MM = 10.0

@@ -2,7 +2,6 @@
 
 from reportlab.pdfgen.canvas import Canvas
 
-from mocapd.body.shirt_patches import N_COLOURS, Shirt, standard_shirt
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
 from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
@@ -25,6 +24,7 @@ from mocapd.printing.shirt_pattern import (
     pieces_of,
 )
 from mocapd.printing.shirt_tiles import Tiling, draw_tile, tiling_of
+from mocapd.shirt.standard_shirt import N_COLOURS, Shirt, standard_shirt
 
 LAYOUTS = ("sewing", "printing")
 _EDGE_MM = 14.0

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from mocapd.body.shirt_patches import N_PATCHES, standard_shirt
+from mocapd.shirt.standard_shirt import N_PATCHES, standard_shirt
 from mocapd.types import Bytes
 
 _MARGIN_PX = 2  # users stay off the borders, more or less

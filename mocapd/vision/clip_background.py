@@ -2,7 +2,7 @@
 
 A pixel is believed while nothing moves near it: people who stand still sway, and the room does not (stable intervals:
 Gutchess et al., A Background Model Initialization Algorithm for Video Surveillance, ICCV 2001). Where that is seldom so,
-somebody was there too often, and nothing is known; nor in what it encloses, the smooth middle of a shirt or of trousers.
+somebody was there too often, and nothing is known; nor in what it encloses, the smooth middle of cloth.
 """
 
 from collections.abc import Sequence

@@ -4,7 +4,6 @@ import numpy as np
 
 from mocapd.body.model import build_model, shape_of, shaped
 from mocapd.body.shape import skeleton_of
-from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEGS
 from mocapd.body.surface_building import build_surface, mean_surface
@@ -20,9 +19,7 @@ def test_it_holds_the_surface_without_the_legs() -> None:
     np.testing.assert_array_equal(
         MODEL.vertices_m[MODEL.triangles], surface.vertices_m[surface.triangles[keep]]
     )
-    np.testing.assert_array_equal(MODEL.patch, surface.patch[keep])
-    np.testing.assert_array_equal(MODEL.colour, standard_shirt().colour_of_patch[MODEL.patch])
-    assert set(MODEL.colour) == set(range(N_COLOURS + 1))
+    np.testing.assert_array_equal(MODEL.area, surface.area[keep])
     assert len(np.unique(MODEL.triangles)) == len(MODEL.vertices_m)
 
 

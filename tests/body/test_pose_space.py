@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.joint_limits import soft_limit
-from mocapd.body.pose_space import SIDES, full_body, upper_body
+from mocapd.body.pose_space import full_body, upper_body
 from mocapd.body.shape import FACTORS, WHOLE_FACTORS
-from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
@@ -69,14 +68,10 @@ def test_the_full_space_begins_with_the_upper_one() -> None:
     np.testing.assert_array_equal(full.limits.share[moving], upper.limits.share[moving])
 
 
-def test_parts_are_columns_and_patches() -> None:
+def test_parts_are_columns() -> None:
     for space in (upper_body(), full_body()):
         assert space.columns("left_arm") == slice(9, 18)
         assert space.columns("right_arm") == slice(18, 27)
-        for side in SIDES:
-            sleeve = tuple(ShirtPatch)[space.parts[f"{side}_arm"].patches]
-            assert len(sleeve) == 6
-            assert all(patch.name.startswith(side.upper()) for patch in sleeve)
     assert full_body().columns("left_leg") == slice(30, 39)
     assert full_body().columns("head") == slice(27, 30)
 

@@ -9,16 +9,16 @@ from scipy.sparse.csgraph import connected_components
 
 from mocapd.assets import asset_path
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
-from mocapd.body.shirt_patches import N_PATCHES, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.body.surface import (
     LEFT_ARM,
     RIGHT_ARM,
-    SHIRT,
     SKIN,
+    TOP,
     TORSO,
 )
 from mocapd.body.surface_building import build_surface, mean_surface, shape_derivatives
+from mocapd.shirt.standard_shirt import N_PATCHES, standard_shirt
 from mocapd.types import Floats, Ints
 
 STATURE_M = 1.72
@@ -81,7 +81,7 @@ def test_torso_patches_are_where_the_standard_says(shape: BodyShape) -> None:
     up = (y - hips[1]) / (neck[1] - hips[1])
     back = z < hips[2] + up * (neck[2] - hips[2])
     wanted = 1 + (x < 0) + 2 * (up < 0.5) + 4 * back
-    np.testing.assert_array_equal(surface.patch[torso], np.where(up > 0, wanted, 0))
+    np.testing.assert_array_equal(surface.area[torso], np.where(up > 0, wanted, 0))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -91,7 +91,7 @@ def test_arm_patches_are_where_the_standard_says(shape: BodyShape, side: str) ->
     arm, elbow, wrist = (rest[INDEX[side + bone]] for bone in ("UpperArm", "LowerArm", "Hand"))
     mine = surface.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
     middle = surface.vertices_m[surface.triangles[mine]].mean(axis=1)
-    patch, material = surface.patch[mine], surface.material[mine]
+    patch, material = surface.area[mine], surface.material[mine]
 
     def along(start: Floats, end: Floats) -> tuple[Floats, Floats]:
         """Fraction of the bone, and how far in front of it."""
@@ -113,7 +113,7 @@ def test_arm_patches_are_where_the_standard_says(shape: BodyShape, side: str) ->
         inside = (t > low) & (t < high)
         assert inside.sum() >= 12
         np.testing.assert_array_equal(patch[inside], wanted[inside])
-        assert (material[inside] == SHIRT).all()
+        assert (material[inside] == TOP).all()
     hand = fore > FRACTIONS["cuff"][1]
     assert (patch[hand] == 0).all()
     assert (material[hand] == SKIN).all()
@@ -121,14 +121,14 @@ def test_arm_patches_are_where_the_standard_says(shape: BodyShape, side: str) ->
 
 def test_every_patch_is_there_and_only_on_the_shirt() -> None:
     surface = mean_surface(STATURE_M)
-    assert set(surface.patch) == set(range(N_PATCHES + 1))
-    assert (surface.material[surface.patch > 0] == SHIRT).all()
+    assert set(surface.area) == set(range(N_PATCHES + 1))
+    assert (surface.material[surface.area > 0] == TOP).all()
 
 
 def test_neighbouring_patches_differ_in_colour() -> None:
     surface, colour = mean_surface(STATURE_M), standard_shirt().colour_of_patch
     patches_at: dict[int, set[int]] = {}
-    for triangle, patch in zip(surface.triangles, surface.patch, strict=True):
+    for triangle, patch in zip(surface.triangles, surface.area, strict=True):
         for vertex in triangle:
             patches_at.setdefault(int(vertex), set()).add(int(patch))
     for patches in patches_at.values():
@@ -163,8 +163,8 @@ def test_left_and_right_mirror_each_other(shape: BodyShape) -> None:
         surface.weights[twin][:, swap][rims], surface.weights[rims], atol=1e-9
     )
     for patch in range(1, N_PATCHES + 1):
-        here = np.unique(surface.triangles[surface.patch == patch])
-        there = np.unique(surface.triangles[surface.patch == other_side(np.array(patch))])
+        here = np.unique(surface.triangles[surface.area == patch])
+        there = np.unique(surface.triangles[surface.area == other_side(np.array(patch))])
         assert set(twin[here]) == set(there)
 
 

@@ -30,6 +30,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, from_camera, to_camera
+from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
 from tests.geometry.rigs import looking_at
 
@@ -41,7 +42,7 @@ CAMERAS = tuple(
     looking_at(name, np.array(eye_m), np.array([0.0, 1.1, 0.0]), roll_rad=0.02)
     for name, eye_m in (("left", (-1.4, 1.4, 2.3)), ("right", (1.5, 1.3, 2.2)))
 )
-FITTER = Fitter(MODEL, CAMERAS, [2, 2], FitParams())
+FITTER = Fitter(MODEL, shirt_labels(MODEL), CAMERAS, [2, 2], FitParams())
 
 
 def walking(i: int) -> MotionState:
@@ -167,7 +168,9 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras(
     rng = np.random.default_rng(3)
     factors = np.ones(len(free.sd))
     factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
-    seen = observations(20, Fitter(free.model, CAMERAS, [2, 2], FitParams()), factors)
+    seen = observations(
+        20, Fitter(free.model, shirt_labels(MODEL), CAMERAS, [2, 2], FitParams()), factors
+    )
     short = SelfCalibrationParams(
         rounds=8, averaged=4, surface_uncertainty=1e-3
     )  # the surface alone, no rings
@@ -216,7 +219,7 @@ def test_the_camera_columns_are_the_derivative_of_moving_the_camera() -> None:
         .copy()
     )
     cameras = (CAMERAS[0], move_camera(CAMERAS[1], motion))
-    fitter = Fitter(MODEL, cameras, [2, 2], FitParams())
+    fitter = Fitter(MODEL, shirt_labels(MODEL), cameras, [2, 2], FitParams())
     assert np.mean(fitter.drawings[1].render(state, 0.0, roi) != by_body) < 1e-3
     rows = RowGatherer(fitter, 10).gather(state, view)
     # the step that the columns ask for leads back, to first order

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import move_camera
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
@@ -13,6 +12,7 @@ from mocapd.calibrate.self_calibration.ring_pairs import RingPairs
 from mocapd.calibrate.self_calibration.sleeve_rings import N_ALONG, sleeve_rings
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, normalised, project, to_camera
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats
 from tests.geometry.rigs import looking_at
 

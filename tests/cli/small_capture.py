@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from mocapd.body.shirt_patches import N_COLOURS
+from mocapd.shirt.standard_shirt import N_COLOURS
 
 SIZE_PX = (64, 48)
 FRAMES = 10

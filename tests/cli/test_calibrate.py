@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.calibration.calibration_file import load_calibration
 from mocapd.geometry.rig_file import load_rig
+from mocapd.shirt.standard_shirt import standard_shirt
 from tests.calibrate.board_scenes import cameras, floor_pose, held_poses, write_pictures
 from tests.calibrate.seen_once import seen_once
 from tests.cli.mocapd_process import Outcome, mocapd_here

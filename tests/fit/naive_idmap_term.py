@@ -5,12 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics, retract, skin_and_project
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.raster_kernels import label_triangles, rasterise
@@ -29,7 +30,9 @@ class Posed:
     triangle_at: NDArray[np.int32]
 
 
-def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> Posed:
+def posed(
+    model: BodyModel, labels: SurfaceLabels, state: MotionState, camera: Camera, factor: int
+) -> Posed:
     """The whole picture of a state, averaged down by `factor`."""
     vertices, rest = shaped(model, state.factors)
     R, joints, turned = np.zeros((N_JOINTS, 3, 3)), np.zeros((N_JOINTS, 3)), np.zeros((N_JOINTS, 4))
@@ -42,7 +45,7 @@ def posed(model: BodyModel, state: MotionState, camera: Camera, factor: int) -> 
     h, w = camera.size_px[1] // factor, camera.size_px[0] // factor
     triangle_at, ids = np.empty((h, w), np.int32), np.empty((h, w), np.uint8)
     rasterise(xy, depth, model.triangles, np.empty((h, w), np.float32), triangle_at)
-    label_triangles(triangle_at, model.colour, ids)
+    label_triangles(triangle_at, labels.label, ids)
     return Posed(vertices, PosedJoints(rest, R, joints, turned), xy, ids, triangle_at)
 
 
@@ -62,14 +65,15 @@ class Sums:
         return cls(
             np.zeros((size, size)),
             np.zeros(size),
-            np.zeros(N_LABELS),
-            np.zeros(N_LABELS),
-            np.zeros(N_LABELS),
+            np.zeros(N_AREAS),
+            np.zeros(N_AREAS),
+            np.zeros(N_AREAS),
         )
 
 
 def accumulate(
     model: BodyModel,
+    labels: SurfaceLabels,
     state: MotionState,
     drawn: Posed,
     camera: Camera,
@@ -85,7 +89,7 @@ def accumulate(
     n_shape: int,
     weight: float,
 ) -> Sums:
-    """Rows of every disagreeing pixel, and of edges in place; `every` 2: of one colour of the
+    """Rows of every disagreeing pixel, and of edges in place; `every` 2: of every other, as on a
     checkerboard. Lengths are in work px, of which a pixel of these pictures has `grid_px`."""
     size = model.n_pose + n_shape
     out = Sums.zero(size)
@@ -100,9 +104,9 @@ def accumulate(
                 continue
             want, have = drawn.ids[y, x], image_ids[y, x]
             if want:
-                patch = model.patch[drawn.triangle_at[y, x]]
-                out.visible[patch] += units
-                out.matched[patch] += units * (want == have)
+                area = labels.area[drawn.triangle_at[y, x]]
+                out.visible[area] += units
+                out.matched[area] += units * (want == have)
             if want == have:
                 edge = _edge(drawn.ids, x, y)
                 if edge_weight and want and edge.any() and (x + y) // 2 % 2 == 0:
@@ -119,7 +123,7 @@ def accumulate(
                     _add(out, slopes[drawn.triangle_at[y, x]], away, strength, robust_px)
             if have:
                 to = _nearest(drawn.ids, x, y, have, reach)
-                t = _hidden(model, drawn, x, y, have, reach) if to is None else None
+                t = _hidden(model, labels, drawn, x, y, have, reach) if to is None else None
                 if to is not None:
                     t, place = drawn.triangle_at[to[1], to[0]], np.array(to, float)
                 elif t is not None:
@@ -127,7 +131,7 @@ def accumulate(
                 else:
                     out.cost += weight * robust_px**2
                     continue
-                out.unexplained[model.patch[t]] += units
+                out.unexplained[labels.area[t]] += units
                 _add(out, slopes[t], grid_px * (np.array([x, y]) - place), weight, robust_px)
     return out
 
@@ -148,9 +152,11 @@ def _middle(model: BodyModel, drawn: Posed, t: int) -> Floats:
     return middle
 
 
-def _hidden(model: BodyModel, drawn: Posed, x: int, y: int, k: int, radius_px: float) -> int | None:
-    """The triangle of a sleeve of colour k whose middle is nearest, though it may not be seen."""
-    mine = [int(t) for t in model.sleeves if model.colour[t] == k]
+def _hidden(
+    model: BodyModel, labels: SurfaceLabels, drawn: Posed, x: int, y: int, k: int, radius_px: float
+) -> int | None:
+    """The triangle of an arm of label k whose middle is nearest, though it may not be seen."""
+    mine = [int(t) for t in labels.arms if labels.label[t] == k]
     apart = [np.hypot(*(_middle(model, drawn, t) - (x, y))) for t in mine]
     return mine[int(np.argmin(apart))] if mine and min(apart) < radius_px else None
 
@@ -166,7 +172,7 @@ def _add(out: Sums, slope: Floats, away: Floats, strength: float, robust_px: flo
 
 
 def _nearest(ids: Bytes, x: int, y: int, k: int, radius_px: float) -> tuple[int, int] | None:
-    """The nearest pixel of a colour; of several, the upper, then the left one."""
+    """The nearest pixel of a label; of several, the upper, then the left one."""
     rows, columns = np.nonzero(ids == k)
     squared = (rows - y) ** 2 + (columns - x) ** 2
     near = squared <= radius_px**2

@@ -12,12 +12,14 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, moved
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.key_poses import arm_rotations
 from mocapd.types import Camera, Floats
 from tests.geometry.rigs import looking_at
 
 STATURE_M = 1.75
 MODEL = build_model(STATURE_M)
+LABELS = shirt_labels(MODEL)
 CAMERAS = tuple(
     looking_at(name, np.array(eye_m), np.array([0.0, 1.1, 0.0]))
     for name, eye_m in (
@@ -30,7 +32,7 @@ FACTOR = 2  # frames of 640x480 are averaged down to 320x240
 def fitter(n_cameras: int, params: FitParams | None = None) -> Fitter:
     cameras = CAMERAS[:n_cameras]
     return Fitter(
-        MODEL, cameras, [FACTOR] * n_cameras, params if params is not None else FitParams()
+        MODEL, LABELS, cameras, [FACTOR] * n_cameras, params if params is not None else FitParams()
     )
 
 
@@ -76,7 +78,9 @@ def textured_greys(
     """Each camera's picture (480,640) of a body whose brightness follows its surface, triangle by triangle."""
     brightness = np.random.default_rng(2).integers(30, 226, len(model.triangles)).astype(np.uint8)
     greys = []
-    for drawing in Fitter(model, cameras, [1] * len(cameras), FitParams()).drawings:
+    for drawing in Fitter(
+        model, shirt_labels(model), cameras, [1] * len(cameras), FitParams()
+    ).drawings:
         roi = (60, 0, 540, 480)
         drawing.render(state, 0.0, roi)
         at = drawing.last(roi)[1]

@@ -15,13 +15,13 @@ from mocapd.fit.idmap_term_kernels import (
     Search,
 )
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.nearest_pixel_kernels import colours_in_reach, offsets_by_distance
+from mocapd.fit.nearest_pixel_kernels import labels_in_reach, offsets_by_distance
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.types import Bytes
 from tests.fit import naive_idmap_term
 from tests.fit.naive_idmap_term import Posed, Sums, posed
-from tests.fit.synthetic import CAMERAS, MODEL, fitter, standing, stepped, views_of
+from tests.fit.synthetic import CAMERAS, LABELS, MODEL, fitter, standing, stepped, views_of
 
 pytestmark = pytest.mark.kernels
 
@@ -67,7 +67,7 @@ def accumulated(
     out.cost = sum_rows(
         ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, pixel_weight),
         Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, edge_weight),
-        drawn.xy, MODEL.surface, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
+        drawn.xy, MODEL.surface, LABELS, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
         drawn.joints, d_joints, PinholeArrays(camera.R, camera.t_m, fx, fy), WEIGHT,
         AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained),
     )  # fmt: skip
@@ -92,16 +92,16 @@ def test_accumulate_equals_the_naive_twin(
     truth, camera = standing(), CAMERAS[0]
     factors = 1.0 + rng.uniform(-0.05, 0.05, MODEL.n_shape)
     state = replace(stepped(fitter(1), truth, rng.normal(0.0, 0.08, MODEL.n_pose)), factors=factors)
-    image_ids = posed(MODEL, truth, camera, COARSE).ids
+    image_ids = posed(MODEL, LABELS, truth, camera, COARSE).ids
     wrong = rng.random(image_ids.shape) < 0.1
     image_ids[wrong] = rng.integers(0, 11, wrong.sum())
     pixel_weight = rng.integers(0, 256, image_ids.shape).astype(np.uint8)
-    drawn = posed(MODEL, state, camera, COARSE)
+    drawn = posed(MODEL, LABELS, state, camera, COARSE)
     got = accumulated(
         state, drawn, image_ids, pixel_weight, phase, every, edge_weight, n_shape, grid_px
     )
     wanted = naive_idmap_term.accumulate(
-        MODEL, state, drawn, camera, COARSE, image_ids, pixel_weight,
+        MODEL, LABELS, state, drawn, camera, COARSE, image_ids, pixel_weight,
         grid_px, RADIUS_PX, ROBUST_PX, phase, every, edge_weight, n_shape, WEIGHT,
     )  # fmt: skip
     for name in ("visible", "matched", "unexplained"):
@@ -113,13 +113,13 @@ def test_accumulate_equals_the_naive_twin(
     np.testing.assert_allclose(got.b, wanted.b, atol=1e-6 * np.abs(wanted.b).max())
 
 
-def test_a_colour_out_of_reach_is_not_searched_and_one_within_always_is() -> None:
+def test_a_label_out_of_reach_is_not_searched_and_one_within_always_is() -> None:
     """A cell may say too much, never too little."""
     rng = np.random.default_rng(0)
     ids = (rng.integers(1, 11, (60, 83)) * (rng.random((60, 83)) < 0.004)).astype(np.uint8)
     y, x = np.mgrid[:60, :83]
     for radius in (3.0, 8.0, 12.5, 20.0):
-        told = colours_in_reach(ids, radius)[y // 8, x // 8]
+        told = labels_in_reach(ids, radius)[y // 8, x // 8]
         for k in range(1, 11):
             near = np.zeros(ids.shape, bool)
             far = np.ones(ids.shape, bool)
@@ -134,7 +134,7 @@ def test_a_colour_out_of_reach_is_not_searched_and_one_within_always_is() -> Non
 
 def test_perfect_agreement_asks_for_no_step() -> None:
     state = standing()
-    drawn = posed(MODEL, state, CAMERAS[0], COARSE)
+    drawn = posed(MODEL, LABELS, state, CAMERAS[0], COARSE)
     sure = np.full(drawn.ids.shape, 255, np.uint8)
     got = accumulated(state, drawn, drawn.ids.copy(), sure, n_shape=MODEL.n_shape)
     assert got.cost == 0.0
@@ -147,7 +147,7 @@ def test_perfect_agreement_asks_for_no_step() -> None:
 def test_pixel_weight_weighs_what_the_picture_denies() -> None:
     """A body before nothing but unclassified pixels costs as much as those deny it."""
     state = standing()
-    drawn = posed(MODEL, state, CAMERAS[0], COARSE)
+    drawn = posed(MODEL, LABELS, state, CAMERAS[0], COARSE)
     nothing = np.zeros_like(drawn.ids)
     costs = [
         accumulated(state, drawn, nothing, np.full_like(drawn.ids, s)).cost for s in (0, 51, 255)

@@ -9,7 +9,6 @@ from mocapd.body.arrays import PosedJoints
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.regions import as_silhouette
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
@@ -21,13 +20,14 @@ from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
 from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import Floats, Ints
 from tests.fit.synthetic import textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
-BODY = as_silhouette(build_model(1.75, full_body()))
+BODY = build_model(1.75, full_body())
 SHAPED = Shaper(BODY)(np.ones(BODY.n_shape))
 ROOT = BODY.rest_m[0].copy()
 CAMERAS = tuple(
@@ -166,7 +166,7 @@ def test_a_raised_foot_is_left_in_the_air_and_a_jump_hardly_held() -> None:
 
 def fitted(terms: tuple[PoseTerm, ...], start: MotionState, truth: MotionState) -> Floats:
     """Joints after fitting the true silhouettes of both cameras side by side."""
-    fitter = Fitter(BODY, CAMERAS, [2, 2], FitParams())
+    fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [2, 2], FitParams())
     views = []
     for i, drawing in enumerate(fitter.drawings):
         ids = drawing.render(truth, 0.0, (0, 0, 320, 240)).copy()
@@ -193,7 +193,7 @@ def test_floor_and_distances_bring_back_a_body_that_is_too_far_away() -> None:
 
 def test_distances_are_measured_where_the_body_has_texture() -> None:
     """Pictures of a body whose brightness follows the surface: expected 15 cm too near, found to 3 cm."""
-    fitter = Fitter(BODY, CAMERAS, [2, 2], FitParams())
+    fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [2, 2], FitParams())
     still, known = np.zeros(BODY.n_pose), initial_information(BODY.space)
     truth = MotionState(ROOT, relaxed(), still, np.ones(BODY.n_shape), known)
     greys = textured_greys(BODY, CAMERAS, truth)

@@ -10,7 +10,7 @@ from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
 from mocapd.fit.solver import Fitter, View
 from mocapd.types import Floats
 from mocapd.vision.raster_kernels import NOTHING
-from tests.fit.synthetic import FACTOR, MODEL, standing, stepped, textured_greys
+from tests.fit.synthetic import FACTOR, LABELS, MODEL, standing, stepped, textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -41,7 +41,7 @@ def shifted(by: Fitter, state: MotionState, z_m: float) -> MotionState:
 
 
 def body() -> Fitter:
-    return Fitter(MODEL, SIDE_BY_SIDE, [FACTOR] * 2, FitParams())
+    return Fitter(MODEL, LABELS, SIDE_BY_SIDE, [FACTOR] * 2, FitParams())
 
 
 def off_m(by: Fitter, view: View, state: MotionState) -> Floats:

@@ -15,7 +15,6 @@ from lab.compared.roc import (
     sweep_assisted,
 )
 from mocapd.body.model import build_model
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import (
@@ -30,6 +29,8 @@ from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.session.offline import RecordedTrack
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.whitening import fold
+from mocapd.shirt.garment import shirt_labels
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes
 from tests.geometry.rigs import ring
 
@@ -129,7 +130,8 @@ def test_nothing_counted_adds_nothing() -> None:
 
 @pytest.fixture(scope="module")
 def fitter() -> Fitter:
-    return Fitter(build_model(1.7), ring(2), [2, 2], FitParams())
+    body = build_model(1.7)
+    return Fitter(body, shirt_labels(body), ring(2), [2, 2], FitParams())
 
 
 def random_state(fitter: Fitter, rng: np.random.Generator) -> MotionState:

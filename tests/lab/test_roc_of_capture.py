@@ -8,11 +8,11 @@ import pytest
 from lab.compared.patch_labels import labelled_frames, read_label
 from lab.compared.roc import correct_at
 from lab.compared.roc_of_capture import roc_of_capture
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence, open_case
 from mocapd.evaluate.recovery import recovery
 from mocapd.evaluate.score import score
 from mocapd.session.offline import RecordedTrack
+from mocapd.shirt.standard_shirt import standard_shirt
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import scenario
 

@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
 from mocapd.printing.shirt_drawing import centre_of
@@ -21,6 +20,7 @@ from mocapd.printing.shirt_pattern import (
 )
 from mocapd.printing.shirt_pdf import shirt_pdf as shirt_pdf_anew
 from mocapd.printing.shirt_tiles import EDGE_MM, FOOT_MM, tiling_of
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats
 from tests.printing.printed import pages, printed, text
 

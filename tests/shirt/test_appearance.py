@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats
 
 MODEL_MEAN = standard_shirt().srgb / 255.0

@@ -3,7 +3,6 @@
 import numpy as np
 
 from mocapd.body.arrays import plain
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.bare_skin import (
@@ -20,6 +19,7 @@ from mocapd.shirt.segmentation.cell_kernels import (
     LearnedPixels,
     classify,
 )
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats
 from tests.fit.synthetic import CAMERAS, FACTOR, STATURE_M, fitter, standing
 

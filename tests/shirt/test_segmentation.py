@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import plain
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.segmentation import bare_skin
 from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.cell_kernels import (
@@ -21,6 +20,7 @@ from mocapd.shirt.segmentation.segmentation_kernels import (
     colour_statistics,
     count_colours,
 )
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Ints, Singles
 from mocapd.vision.background_kernels import changed, learn_background
 from mocapd.vision.background_light import relight_background

@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import posed_vertices
 from mocapd.body.surface_building import build_surface
 from mocapd.geometry.camera_model import project
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import model_pictures, scribble_picture
@@ -60,7 +60,7 @@ def test_labels_agree_with_the_projected_patches() -> None:
             seen = [p for p in range(1, 21) if (patch == p).sum() > 15]
             assert len(seen) >= 8
             for p in seen:
-                corners = pixels[np.unique(surface.triangles[surface.patch == p])]
+                corners = pixels[np.unique(surface.triangles[surface.area == p])]
                 y, x = np.nonzero(patch == p)
                 slack = 2.0  # folds and rounding stand out a little from the coarse surface
                 assert x.min() > corners[:, 0].min() - slack

@@ -7,10 +7,10 @@ from typing import Any, cast
 
 import numpy as np
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.shape import mean_shape, skeleton_of
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local, joint_positions, rest_pose
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import FitParams
@@ -22,6 +22,7 @@ from mocapd.tracking.base import Track
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
+from mocapd.tracking.cues.clothes.regions import region_labels
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.lost_reason import LostReason
@@ -92,11 +93,9 @@ def _motion(t_ns: int, sight: Sight) -> MotionState:
 def _fit(model: BodyModel, motion: MotionState, quality: float) -> Fit:
     """Of pictures that confirm this share of each patch."""
     n = model.n_pose + model.n_shape
-    drawn = np.full(N_LABELS, _PATCH_PX)
+    drawn = np.full(N_AREAS, _PATCH_PX)
     information = 1e5 * np.eye(model.n_pose)
-    return Fit(
-        motion, drawn, quality * drawn, np.zeros(N_LABELS), 1e5 * np.eye(n), 0.0, information
-    )
+    return Fit(motion, drawn, quality * drawn, np.zeros(N_AREAS), 1e5 * np.eye(n), 0.0, information)
 
 
 class _Scripted:
@@ -104,7 +103,7 @@ class _Scripted:
 
     def __init__(self, script: Sequence[Sight], model: BodyModel) -> None:
         self.script, self.model = script, model
-        self.fitter = Fitter(model, (), [], FitParams())
+        self.fitter = Fitter(model, region_labels(model), (), [], FitParams())
         self.frames = FrameSet(0, {})  # those of the present step
 
     def reset(self) -> None:

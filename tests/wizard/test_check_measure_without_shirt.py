@@ -7,7 +7,6 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import as_silhouette
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import joint_positions
@@ -17,6 +16,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Probe, Track, unprobed
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import BodyState, Camera, Floats, Frame, FrameSet, Pose, Rig, Tracking
 from tests.geometry.rigs import looking_at
 
@@ -40,10 +40,10 @@ class Outlines:
 
     def __init__(self, cameras: tuple[Camera, ...]) -> None:
         self.probe: Probe = unprobed
-        self._model = as_silhouette(build_model(SHAPE.stature_m, full_body()))
+        self._model = build_model(SHAPE.stature_m, full_body())
         scales = image_scales(cameras, FitParams().work_width_px)
         self._drawings = [
-            IdMapRenderer(Shaper(self._model), camera, scale)
+            IdMapRenderer(Shaper(self._model), silhouette_labels(self._model), camera, scale)
             for camera, scale in zip(cameras, scales, strict=True)
         ]
 

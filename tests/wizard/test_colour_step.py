@@ -9,13 +9,13 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.capture.capture_folder import load_folder
 from mocapd.errors import CannotCreateError, InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.shirt.colour.white_balance import frobenius_distance
 from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes
 from mocapd.wizard.colour.colour_step import ColourStep
 from mocapd.wizard.draft import Draft, DraftCamera

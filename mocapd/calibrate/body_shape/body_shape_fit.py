@@ -25,6 +25,7 @@ from mocapd.fit.motion_state import (
     stepped,
 )
 from mocapd.fit.solver import Fitter, View
+from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.types import Camera, Floats, FrameSet
 
@@ -117,7 +118,8 @@ def fit_shape(
     """The proportions that agree best with all observations. Raises InputError when too few agree."""
     p = params if params is not None else ShapeParams()
     tracker = FitParams()
-    fitter = Fitter(model, cameras, image_scales(cameras, tracker.work_width_px), tracker)
+    scales = image_scales(cameras, tracker.work_width_px)
+    fitter = Fitter(model, shirt_labels(model), cameras, scales, tracker)
     gatherer = RowGatherer(fitter, p.radius_px)
     if len(observations) < p.fewest_observations:
         raise _too_few(len(observations), p)

@@ -21,6 +21,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, View
 from mocapd.geometry.rotations import IDENTITY_XYZW
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.garment import confirmed_colours
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter, ShirtCandidate
 from mocapd.shirt.segmentation.shirt_appearance import fresh
@@ -210,7 +211,7 @@ class LightReader:
                 for index in own:
                     self._segmenters[index].memory.references = ()
                 fit = self._refinement.fit(fit.state, views, turn)
-                seen = (fit.explained, fit.confirmed_colours())
+                seen = (fit.explained, confirmed_colours(fit))
                 readings = [
                     Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *seen)
                     for v in views

@@ -18,6 +18,7 @@ from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.garment import confirmed_colours, shirt_labels
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_kernels import colour_statistics
 from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
@@ -58,7 +59,8 @@ class LightRefinement:
     ) -> None:
         self._params, self._model = params, model
         scales = image_scales(cameras, params.fit.work_width_px)
-        self.fitter = Fitter(build_model(stature_m), tuple(cameras), scales, params.fit)
+        body = build_model(stature_m)
+        self.fitter = Fitter(body, shirt_labels(body), tuple(cameras), scales, params.fit)
         self.segmenters = [
             CameraSegmenter(c, f, model, np.eye(3), params.segmentation)
             for c, f in zip(cameras, scales, strict=True)
@@ -84,7 +86,7 @@ class LightRefinement:
             idle += 1
             fit = self.fit(fit.state, [view], turn)
             appearance = self.segmenters[index].memory.appearance
-            agreement, colours = fit.explained, fit.confirmed_colours()
+            agreement, colours = fit.explained, confirmed_colours(fit)
             reading = Reading(light, fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
                 best, idle = reading, 0
@@ -108,7 +110,7 @@ class LightRefinement:
         # no arm is called uncertain: looked for far away, its colours are found in the room, whose
         # background is not known yet
         ids, pixel_weight = self.segmenters[index].classify(
-            predicted, drawing.outline(), roi, np.empty(0, np.int64), may_relight=True
+            predicted, drawing, roi, np.empty(0, np.int64), may_relight=True
         )
         return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
 

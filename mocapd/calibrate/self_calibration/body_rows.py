@@ -24,7 +24,7 @@ class BodyRows:
     """Normal equations H (P,P), b (P,) by pose, then shape; at_m (3,): the hips as drawn; camera: its
     index.
 
-    visible, matched, unexplained (21,) per patch as in `Fit`, in units of two work px; cost: of the
+    visible, matched, unexplained (A,) by area as in `Fit`, in units of two work px; cost: of the
     robust residuals.
     """
 
@@ -39,7 +39,7 @@ class BodyRows:
 
     @property
     def match(self) -> float:
-        """Share of the rendered shirt whose colour the picture has."""
+        """Share of the rendered pixels whose label the picture has."""
         return float(self.matched.sum() / max(self.visible.sum(), 1.0))
 
 
@@ -47,7 +47,7 @@ class RowGatherer:
     """Draws states into the views of one fitter and gathers their rows; holds buffers only."""
 
     def __init__(self, fitter: Fitter, radius_px: int) -> None:
-        """radius_px: work px within which a colour is looked for."""
+        """radius_px: work px within which a label is looked for."""
         self.fitter = fitter
         self._search = search_within(
             offsets_by_distance(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,

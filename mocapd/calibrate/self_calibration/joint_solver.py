@@ -23,6 +23,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, stepped
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry.camera_model import centre
+from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
 
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
@@ -106,7 +107,7 @@ class JointSolver:
         self._n = self._n_shape + N_CAMERA * (len(cameras) - 1)
         self._views: list[list[View]] = []
         scene = _Scene(list(cameras), np.ones(self._n_shape), [])
-        fitter = Fitter(model, cameras, self._work, self._tracker)
+        fitter = Fitter(model, shirt_labels(model), cameras, self._work, self._tracker)
         for keyframe in keyframes:
             seen = keyframe_views(keyframe, self._work)
             fits = [
@@ -156,9 +157,9 @@ class JointSolver:
     def _gather(self) -> list[list[BodyRows]]:
         """The rows of every keyframe's views."""
         scene = self._scene
-        gatherer = RowGatherer(
-            Fitter(self._body.model, scene.cameras, self._work, self._tracker), self._p.radius_px
-        )
+        body = self._body.model
+        fitter = Fitter(body, shirt_labels(body), scene.cameras, self._work, self._tracker)
+        gatherer = RowGatherer(fitter, self._p.radius_px)
         return [
             [gatherer.gather(s, view) for view in v]
             for s, v in zip(scene.states, self._views, strict=True)

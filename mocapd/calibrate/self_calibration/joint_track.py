@@ -19,6 +19,7 @@ from mocapd.fit.motion_state import MotionState, gone_on, step_between
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
+from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
 
 _ITERATIONS = 6
@@ -35,7 +36,7 @@ class _Follower:
     def __init__(self, model: BodyModel, cameras: Sequence[Camera], factors: Floats) -> None:
         params = FitParams()
         self._scales = image_scales(cameras, params.work_width_px)
-        self._fitter = Fitter(model, cameras, self._scales, params)
+        self._fitter = Fitter(model, shirt_labels(model), cameras, self._scales, params)
         self._model, self._cameras, self._factors = model, cameras, factors
         self._last: tuple[int, MotionState] | None = None
 

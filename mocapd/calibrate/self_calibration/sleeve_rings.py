@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.self_calibration.patch_tracks import PatchSighting
 from mocapd.geometry.camera_model import normalised, project
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Camera, Floats
 
 Mask = NDArray[np.bool_]

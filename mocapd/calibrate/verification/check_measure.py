@@ -7,7 +7,6 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import as_silhouette
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
@@ -17,7 +16,9 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, step_between
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry.camera_model import to_camera
+from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track, Tracker
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 
 EVERY = 4  # frames: one in so many is measured
@@ -73,10 +74,9 @@ class MeasuringTracker:
         params = FitParams()
         self._work = image_scales(rig.cameras, params.work_width_px)
         self._by_outline = by_outline
-        model = build_model(stature_m)
-        if by_outline:
-            model = as_silhouette(build_model(stature_m, full_body()))
-        self._fitter = Fitter(model, rig.cameras, self._work, params)
+        model = build_model(stature_m, full_body() if by_outline else None)
+        labels = silhouette_labels(model) if by_outline else shirt_labels(model)
+        self._fitter = Fitter(model, labels, rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)
         self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
         self._known = known_of(known, model.space)[0]

@@ -1,4 +1,4 @@
-"""One arm cut out of the body model: its joints, and samples of its sleeve and of the bare hand beyond the cuff."""
+"""One arm cut out of the body model: its joints, and samples of what has a label and of the bare hand."""
 
 from dataclasses import dataclass
 
@@ -10,62 +10,64 @@ from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, LEFT_LEG, LEGS, RIGHT_ARM, RIGHT_LEG, TORSO
 from mocapd.fit.limbs.limb_search_kernels import ArmSamples
+from mocapd.fit.surface_labels import MAX_LABELS, SurfaceLabels
 from mocapd.types import Floats, Ints
 
-SKIN_ID = 11  # as a colour, beside the ten of the shirt
+SKIN_LABEL = MAX_LABELS - 1  # beside those that a surface has
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceSamples:
     """Triangles (S,) of an arm with their vertices (S,3), two bones (S,2) as places in its chain, their weights (S,2),
-    and colours (S,)."""
+    and labels (S,)."""
 
     triangle: Ints
     corners: NDArray[np.int32]
     link: Ints
     weights: Floats
-    colour: NDArray[np.uint8]
+    label: NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arm:
-    """One arm of the body model: its chain of joints (collar, upper, lower, hand), samples of sleeve and bare hand."""
+    """One arm of the body model: its chain of joints (collar, upper, lower, hand), and samples of what has a label and
+    of the bare hand."""
 
     side: str
     chain: Ints
-    sleeve: SurfaceSamples
+    labelled: SurfaceSamples
     hand: SurfaceSamples
     others: Ints  # all triangles but this arm's
     is_skin: NDArray[np.bool_]  # of these head and other hand, with a False for none
 
 
-def arm_of(model: BodyModel, side: str) -> Arm:
+def arm_of(model: BodyModel, labels: SurfaceLabels, side: str) -> Arm:
     """Cut one arm out of the body model; every third triangle is a sample."""
     mine = model.part == (LEFT_ARM if side == "left" else RIGHT_ARM)
     chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_arm"].joints])
-    bare = (model.colour == 0) & (model.part != TORSO) & (model.part != LEGS)
-    sleeve, hand = mine & (model.colour > 0), mine & (model.colour == 0)
+    label = labels.label
+    bare = (label == 0) & (model.part != TORSO) & (model.part != LEGS)
     return Arm(
-        side, chain, _samples(model, chain, np.flatnonzero(sleeve)[::3], model.colour),
-        _samples(model, chain, np.flatnonzero(hand)[::3], np.full_like(model.colour, SKIN_ID)),
+        side, chain, _samples(model, chain, np.flatnonzero(mine & (label > 0))[::3], label),
+        _samples(model, chain, np.flatnonzero(mine & bare)[::3], np.full_like(label, SKIN_LABEL)),
         np.flatnonzero(~mine), np.append(bare[~mine], False),
     )  # fmt: skip
 
 
-def leg_of(model: BodyModel, side: str) -> Arm:
+def leg_of(model: BodyModel, labels: SurfaceLabels, side: str) -> Arm:
     """Cut one leg out of a whole body: its chain is thigh, shank, foot and toes; nothing of it is bare."""
     mine = model.part == (LEFT_LEG if side == "left" else RIGHT_LEG)
     chain = np.array([INDEX[name] for name in model.space.parts[f"{side}_leg"].joints])
     nothing = np.empty(0, np.int64)
     return Arm(
-        side, chain, _samples(model, chain, np.flatnonzero(mine)[::3], model.colour),
-        _samples(model, chain, nothing, model.colour), np.flatnonzero(~mine),
+        side, chain, _samples(model, chain, np.flatnonzero(mine)[::3], labels.label),
+        _samples(model, chain, nothing, labels.label), np.flatnonzero(~mine),
         np.zeros(int((~mine).sum()) + 1, np.bool_),
     )  # fmt: skip
 
 
 def _samples(
-    model: BodyModel, chain: Ints, triangle: Ints, colour: NDArray[np.uint8]
+    model: BodyModel, chain: Ints, triangle: Ints, label: NDArray[np.uint8]
 ) -> SurfaceSamples:
     bones, weights = model.triangle_bones[triangle, :2], model.triangle_weights[triangle, :2]
     place = np.zeros(int(model.parents.size), dtype=np.int64)
@@ -73,7 +75,7 @@ def _samples(
     weights = np.where(np.isin(bones, chain), weights, 0.0)
     return SurfaceSamples(
         triangle, model.triangles[triangle], place[bones],
-        weights / weights.sum(axis=1, keepdims=True), colour[triangle],
+        weights / weights.sum(axis=1, keepdims=True), label[triangle],
     )  # fmt: skip
 
 
@@ -83,6 +85,4 @@ def placed(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(normals, axis=1)
     normals /= area[:, None]
-    return ArmSamples(
-        arm.chain, corners.mean(axis=1), normals, area, of.colour, of.link, of.weights
-    )
+    return ArmSamples(arm.chain, corners.mean(axis=1), normals, area, of.label, of.link, of.weights)

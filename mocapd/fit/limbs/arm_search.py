@@ -30,7 +30,7 @@ class ArmSearch:
 
     def __init__(self, fitter: Fitter, params: LimbSearchParams) -> None:
         self.fitter, self.params = fitter, params
-        self.arms = {side: arm_of(fitter.model, side) for side in SIDES}
+        self.arms = {side: arm_of(fitter.model, fitter.labels, side) for side in SIDES}
         self._library = {side: arm_library(fitter.model.space, _LIBRARY, side) for side in SIDES}
         u = spread(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.4, 0.6)[:, None]

@@ -9,8 +9,8 @@ from functools import partial
 
 import numpy as np
 
+from mocapd.body.areas import Area
 from mocapd.body.pose_space import SIDES
-from mocapd.body.regions import Label
 from mocapd.fit.fit_params import LegSearchParams
 from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
@@ -23,9 +23,9 @@ from mocapd.fit.terms.pose_term import PoseTerm
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-_LABELS = {
-    "left": [Label.LEFT_THIGH, Label.LEFT_SHIN],
-    "right": [Label.RIGHT_THIGH, Label.RIGHT_SHIN],
+_AREAS = {
+    "left": [Area.LEFT_THIGH, Area.LEFT_SHIN],
+    "right": [Area.RIGHT_THIGH, Area.RIGHT_SHIN],
 }
 _LIBRARY = 1024
 _IN_SIGHT = 0.02  # of all pixels that are drawn; a leg with fewer is not asked
@@ -35,9 +35,9 @@ class LegSearch:
     """Tries other poses of legs that the pictures do not confirm."""
 
     def __init__(self, fitter: Fitter, params: LegSearchParams) -> None:
-        """fitter: of a whole body whose pixels are counted by `Label`."""
+        """fitter: of a whole body whose legs' pixels are counted."""
         self.fitter, self.params = fitter, params
-        self.legs = {side: leg_of(fitter.model, side) for side in SIDES}
+        self.legs = {side: leg_of(fitter.model, fitter.labels, side) for side in SIDES}
         u = spread(_LIBRARY)
         near = np.where(np.arange(_LIBRARY) % 2, 1.2, 0.5)[:, None]
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.2, 0.4, 0.5, 1.2, 0.1, 0.1])
@@ -90,7 +90,7 @@ class LegSearch:
     def _scores(self, state: MotionState, leg: Arm, views: Sequence[View], tries: Floats) -> Floats:
         """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
         p = self.params
-        samples = placed(self.fitter.shaper(state.factors), leg, leg.sleeve)
+        samples = placed(self.fitter.shaper(state.factors), leg, leg.labelled)
         none = np.zeros(len(tries))
         scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
@@ -109,7 +109,7 @@ class LegSearch:
 
 def confirmed(side: str, fit: Fit) -> float:
     """0..1: share of its pixels that the pictures confirm, of the worse of thigh and shank; 1 for what is hardly in sight."""
-    mine = _LABELS[side]
+    mine = _AREAS[side]
     asked = fit.visible[mine] + fit.unexplained[mine]
     shares = (fit.matched * fit.in_depth)[mine] / (asked + 1.0)
     in_sight = asked >= _IN_SIGHT * fit.visible_px

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.fit.body_drawing import PartialRender
-from mocapd.fit.limbs.arm_samples import SKIN_ID, Arm, placed
+from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, placed
 from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.limb_search_kernels import ArmSamples, crowd_arms, score_arms
 from mocapd.fit.motion_state import MotionState
@@ -34,11 +34,11 @@ def score_arm_poses(
     """How much of each hypothesis (N,3,4) is seen, less what contradicts it and what is in the trunk (N,) [work px].
 
     farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2]; empty: share of
-    what lies where the picture shows none of the shirt's colours that contradicts it.
+    what lies where the picture shows no label that contradicts it.
     """
     model = fitter.model
     body = fitter.shaper(state.factors)
-    samples = placed(body, arm, arm.sleeve)
+    samples = placed(body, arm, arm.labelled)
     scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
@@ -63,7 +63,7 @@ def score_hand_places(
     empty: float,
 ) -> Floats:
     """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
-    less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for sleeves."""
+    less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for arms."""
     none = np.zeros(len(hypotheses))
     looked = [view for view in views if view.bare is not None]
     if not looked:
@@ -72,9 +72,9 @@ def score_hand_places(
 
     def seen_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
-        drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_ID), base.ids)
+        drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_LABEL), base.ids)
         assert view.bare is not None
-        seen = np.where(view.bare, np.uint8(SKIN_ID), view.ids)
+        seen = np.where(view.bare, np.uint8(SKIN_LABEL), view.ids)
         return _scores_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty)
 
     seen_px: Floats = PX_OF_M2 * sum(fitter.each(seen_in, looked), none)

@@ -15,14 +15,14 @@ _EDGE_PX = 2  # by how much the rest of the body may be drawn beside where it is
 
 
 class ArmSamples(NamedTuple):
-    """Samples of one arm's surface in the T-pose: middles and normals (S,3), area (S,) [m^2], colour
+    """Samples of one arm's surface in the T-pose: middles and normals (S,3), area (S,) [m^2], label
     (S,); link (S,2): their two bones as places in `chain` (4,), the arm's joints, and weights (S,2)."""
 
     chain: NDArray[np.int64]
     points: Array
     normals: Array
     area: Array
-    colour: NDArray[np.uint8]
+    label: NDArray[np.uint8]
     link: NDArray[np.int64]
     weights: Array
 
@@ -96,8 +96,8 @@ def pose_arm(
 
 
 @njit(cache=True, nogil=True)
-def colours_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
-    """Bit k of a pixel (h,w) is set where colour k is in the square of `reach` pixels around it."""
+def labels_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
+    """Bit k of a pixel (h,w) is set where label k is in the square of `reach` pixels around it."""
     h, w = ids.shape
     rows = np.zeros((h, w), np.int32)
     out = np.zeros((h, w), np.int32)
@@ -133,8 +133,8 @@ def score_arms(
     depth_off_m: float,
     scores: Array,
 ) -> None:
-    """Add to scores (N,): area seen where the picture has its colour, less half of what it denies [m^2], and
-    less a share `empty`, by pixel_weight, where it has none of the shirt's.
+    """Add to scores (N,): area seen where the picture has its label, less half of what it denies [m^2], and
+    less a share `empty`, by pixel_weight, where it has none.
 
     hypotheses (N,3,4): local rotations of collar, upper arm and forearm; the hand keeps straight.
     posed: the body, of which the collar's parent is used. A sample counts when it faces the camera
@@ -142,7 +142,7 @@ def score_arms(
     the body is seen that contradicts; depth_m (h,w): of what is seen, NaN where unknown, or (0,0): a sample that is farther
     than depth_off_m from it is denied, one that is not, well before the rest of the body, is seen.
     """
-    chain, points, normals, area, colour, link, weights = samples
+    chain, points, normals, area, label, link, weights = samples
     rest, R, joints, quats = posed
     cam_R, cam_t, K, dist = camera
     h, w = image_ids.shape
@@ -154,7 +154,7 @@ def score_arms(
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
     k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
     knows_depths = depth_m.shape[0] > 0
-    near_base = colours_beside(base_ids, _EDGE_PX)
+    near_base = labels_beside(base_ids, _EDGE_PX)
     for n in range(hypotheses.shape[0]):
         pose_arm(hypotheses[n], chain, parents, rest, R, joints, quats, G, J, M)
         for i in range(n_chain):
@@ -207,10 +207,10 @@ def score_arms(
                     score -= size
                     continue
                 if away <= depth_off_m and base_z[t, u] - Z > 2.0 * depth_off_m:
-                    score += size  # before the rest of the body, whatever their colours are
+                    score += size  # before the rest of the body, whatever their labels are
                     continue
-            if seen == colour[v]:
-                # where the rest of the body has that colour, or all but, it is not the arm that is seen
+            if seen == label[v]:
+                # where the rest of the body has that label, or all but, it is not the arm that is seen
                 if not near_base[t, u] >> seen & 1:
                     score += size
             elif seen > 0 and seen == base_ids[t, u]:

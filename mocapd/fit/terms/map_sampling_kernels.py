@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-_IDS = 16  # of regions or colours, fewer than that
+_IDS = 16  # as `surface_labels.MAX_LABELS`
 N_PARTS = 16  # of the body, fewer than that
 N_GROUPS = N_PARTS * _IDS
 

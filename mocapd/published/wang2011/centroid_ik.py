@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import difference, retract
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.published.wang2011.covariances import Covariances
 from mocapd.published.wang2011.drawing import (
     Grid,
@@ -28,7 +28,7 @@ _FRAME_S = 1.0 / 30.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Target:
-    """Where a camera sees the patches: centroid (21,2) [px] of those `wanted` (21,), on a grid to draw on."""
+    """Where a camera sees the patches: centroid (A,2) [px] of those `wanted` (A,), on a grid to draw on."""
 
     camera: Camera
     grid: Grid
@@ -93,9 +93,9 @@ class CentroidSolver:
     ) -> tuple[Floats, Floats]:
         """Jacobian (P,2,n_pose) and residual (P,2) [px] of the wanted patches."""
         model, camera = self.model, pinhole_arrays(camera_arrays(target.camera), 1.0)
-        J = np.empty((N_LABELS, 2, model.n_pose))
+        J = np.empty((N_AREAS, 2, model.n_pose))
         centroid_rows(
-            drawing.samples, wanted, drawing.count, self._points, plain(model.surface),
+            drawing.samples, wanted, drawing.count, self._points, model.area, plain(model.surface),
             plain(model.articulation), plain(posed_joints(model, body)), plain(camera), J,
         )  # fmt: skip
         residual = target.grid.to_pixels(drawing.centroid[wanted]) - target.centroid_px[wanted]

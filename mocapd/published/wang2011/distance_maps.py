@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.shirt_patches import N_COLOURS
 from mocapd.published.wang2011 import distance_kernels
+from mocapd.shirt.standard_shirt import N_COLOURS
 from mocapd.types import Bytes, Singles
 
 

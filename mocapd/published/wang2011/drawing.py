@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.published.wang2011.patch_kernels import rendered_patches
 from mocapd.types import Camera, Floats, Ints
@@ -45,7 +45,7 @@ class Posture:
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchRenderer:
     """What a camera sees of a posture: the triangle at each sample (h,w), -1 for none; samples (T,) per
-    triangle; per patch 0..20 the samples' count (21,) and mean position (21,2) on the grid."""
+    triangle; by area the samples' count (A,) and mean position (A,2) on the grid."""
 
     triangle_at: NDArray[np.int32]
     samples: Ints
@@ -88,8 +88,8 @@ def draw_vertices(
     triangle_at = np.empty((height, width), np.int32)
     rasterise(xy, depth, model.triangles, np.empty((height, width), np.float32), triangle_at)
     samples = np.empty(len(model.triangles), np.int64)
-    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
-    rendered_patches(triangle_at, model.patch, samples, count, centroid)
+    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
+    rendered_patches(triangle_at, model.area, samples, count, centroid)
     return PatchRenderer(triangle_at, samples, count, centroid)
 
 

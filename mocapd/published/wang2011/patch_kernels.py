@@ -16,7 +16,7 @@ Int32 = NDArray[np.int32]
 def rendered_patches(
     triangle_at: Int32, patch: Bytes, samples: NDArray[np.int64], count: Array, centroid: Array
 ) -> None:
-    """Samples seen per triangle (T,); per patch 0..20 their count (21,) and mean x, y (21,2)."""
+    """Samples seen per triangle (T,); per patch, an `Area`, their count (A,) and mean x, y (A,2)."""
     samples[:] = 0
     count[:] = 0.0
     centroid[:] = 0.0
@@ -46,7 +46,7 @@ def classified_patches(
     count: Array,
     centroid: Array,
 ) -> None:
-    """Count (21,) and mean x, y (21,2) of the classified samples (h,w) of each patch.
+    """Count (A,) and mean x, y (A,2) of the classified samples (h,w) of each patch.
 
     Each colour is on two patches: a sample belongs to the one whose rendered sample of that colour is
     nearest, nearest_yx (10,h,w,2).
@@ -98,18 +98,19 @@ def centroid_rows(
     wanted: NDArray[np.bool_],
     count: Array,
     points: Array,
+    patch: Bytes,
     surface: TriangleArrays,
     articulation: Articulation,
     posed: PosedJoints,
     camera: PinholeArrays,
     out: Array,
 ) -> None:
-    """d centroid [px] / d pose step of the wanted patches: out (21, 2, 3 + 3 G).
+    """d centroid [px] / d pose step of the wanted patches: out (A, 2, 3 + 3 G).
 
     The centroid is taken as the mean over the samples seen of each triangle's centre, with the set of
     samples held fixed and the lens' distortion left out of the derivative.
     """
-    _, _, patch, bones, weights, _, _, _ = surface
+    _, bones, weights, _ = surface
     rest, R, joints, _ = posed
     cam_R, cam_t, fx, fy = camera
     columns = out.shape[2]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.model import BodyModel
-from mocapd.body.shirt_patches import N_LABELS
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
 from mocapd.published.wang2011.drawing import (
@@ -19,6 +19,7 @@ from mocapd.published.wang2011.drawing import (
     triangle_points,
 )
 from mocapd.published.wang2011.segmenter import Sight
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase, camera_from_view
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_window
 from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS
@@ -85,12 +86,12 @@ def constraints(model: BodyModel, local_xyzw: Floats, guess: Guess, sight: Sight
     local[0] = rotations.IDENTITY_XYZW
     points = posed_points(model, posture(model, np.zeros(3), local), triangle_points(model))
     drawing, window = _as_database_draws(model, local, guess.view_from_root_xyzw)
-    patches = [p for p in range(1, N_LABELS) if drawing.count[p] >= _MIN_SAMPLES]
+    patches = [p for p in range(1, N_AREAS) if drawing.count[p] >= _MIN_SAMPLES]
     cx, cy, side = window
     cells = (drawing.centroid[patches] - [cx, cy]) / max(side, 1.0)
     pixels = sight.centre_px + cells * sight.map_scale * sight.map40.shape[0]
     means = np.array(
-        [np.average(points[model.patch == p], axis=0, weights=drawing.samples[model.patch == p])
+        [np.average(points[model.area == p], axis=0, weights=drawing.samples[model.area == p])
          for p in patches]
     ).reshape(-1, 3)  # fmt: skip
     # the map that the database knows better has the better patches
@@ -108,13 +109,14 @@ def _as_database_draws(
     t = -0.5 * (body.joints_m[0] + body.joints_m[3]) + np.array([0.0, 0.0, _VIEW_DISTANCE_M])
     view = Camera("view", (1, 1), np.diag([650.0, 650.0, 1.0]), np.zeros(5), np.eye(3), t)
     xy, depth = project_body(model, body, view, Grid(0, 0, 1, 1, 1))
-    shirt = np.unique(model.triangles[model.colour > 0])
+    colour = shirt_labels(model).label
+    shirt = np.unique(model.triangles[colour > 0])
     low, high = xy[shirt].min(axis=0), xy[shirt].max(axis=0)
     scale = (CANVAS - 2) / max(float((high - low).max()), 1.0)
     xy = (xy - 0.5 * (low + high)) * scale + 0.5 * (CANVAS - 1)
     drawing = draw_vertices(model, xy, depth, CANVAS, CANVAS)
     ids = np.empty((CANVAS, CANVAS), np.uint8)
-    label_triangles(drawing.triangle_at, model.colour, ids)
+    label_triangles(drawing.triangle_at, colour, ids)
     return drawing, crop_window(ids)
 
 

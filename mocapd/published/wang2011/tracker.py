@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from mocapd.body.areas import ARM_AREAS, N_AREAS, TORSO_QUARTERS, Area
 from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import (
     INDEX,
     N_JOINTS,
@@ -26,6 +26,7 @@ from mocapd.published.wang2011.patch_kernels import classified_patches
 from mocapd.published.wang2011.placement import blended_local, constraints, guess, place
 from mocapd.published.wang2011.segmenter import Sight, Wang2011Segmenter
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.tracking.base import (
     Probe,
@@ -39,7 +40,7 @@ from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Tracking
 from mocapd.vision.raster_kernels import label_triangles
 
 # The patches that show each joint; joints not named share the trunk's confidence.
-_LEFT, _RIGHT = (tuple(ShirtPatch)[SLEEVE_PATCHES[side]] for side in ("left", "right"))
+_LEFT, _RIGHT = (tuple(Area)[ARM_AREAS[side]] for side in ("left", "right"))
 _PATCHES_OF = {
     side + bone: sleeve[of_bone]
     for side, sleeve in (("left", _LEFT), ("right", _RIGHT))
@@ -75,6 +76,7 @@ class Wang2011Tracker:
         self.probe: Probe = unprobed
         self._database = database
         self._model = build_model(stature_m)
+        self._colour = shirt_labels(self._model).label
         self._tracking = TrackingState(tracking)
         self._solver = CentroidSolver(self._model, load_covariances(), self.params.iterations)
         self._segmenters = {
@@ -121,7 +123,7 @@ class Wang2011Tracker:
                     frames.frames[name].pixels,
                     sights[name].grid,
                     drawing,
-                    self._model.colour,
+                    self._colour,
                     refined[name],
                 )
             self.probe("learn")
@@ -201,7 +203,7 @@ class Wang2011Tracker:
             name: draw(model, body, self._segmenters[name].camera, sights[name].grid)
             for name in guesses
         }
-        alike = [_agreement(seen[name], model.colour, refined[name]) for name in guesses]
+        alike = [_agreement(seen[name], self._colour, refined[name]) for name in guesses]
         rendered = sum(n for _, n in alike)
         return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
 
@@ -212,15 +214,15 @@ class Wang2011Tracker:
         grid, params = sight.grid, self.params
         drawing = draw(self._model, blended, segmenter.camera, grid)
         rendered = np.empty((grid.height, grid.width), np.uint8)
-        label_triangles(drawing.triangle_at, self._model.colour, rendered)
+        label_triangles(drawing.triangle_at, self._colour, rendered)
         maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
         # farther away than this the prior alone exceeds the threshold
         reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
         distance = maps.fill(rendered, reach)
         ids = segmenter.refine(pixels, sight, distance) if params.pose_prior else sight.ids
-        count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
+        count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
         classified_patches(
-            ids, maps.nearest_yx, drawing.triangle_at, self._model.patch, count, centroid
+            ids, maps.nearest_yx, drawing.triangle_at, self._model.area, count, centroid
         )
         wanted = count >= params.min_patch_samples
         wanted[0] = False
@@ -247,7 +249,7 @@ def _agreement(drawing: PatchRenderer, colour: Bytes, ids: Bytes) -> tuple[int, 
 def _confidence(seen: list[PatchRenderer], agreement: float) -> Floats:
     """Per joint (J,): how much of its patches the best camera sees, times the overall agreement."""
     count = np.max([drawing.count for drawing in seen], axis=0)
-    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_PATCHES)].sum() / (4.0 * _WELL_SEEN)))
+    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_QUARTERS)].sum() / (4.0 * _WELL_SEEN)))
     for name, patches in _PATCHES_OF.items():
         out[INDEX[name]] = min(1.0, count[list(patches)].sum() / _WELL_SEEN)
     for j, name in enumerate(INDEX):

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
 from mocapd.shirt.colour.strokes import stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Floats, LabelledPicture
 
 # Spread of a printed or dyed standard colour, where no pictures of the shirt are given

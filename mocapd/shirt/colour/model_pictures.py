@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.boundary.files import is_file
 from mocapd.errors import ConfigError, InputError
 from mocapd.shirt.colour.strokes import (
@@ -14,6 +13,7 @@ from mocapd.shirt.colour.strokes import (
     strokes_beside,
 )
 from mocapd.shirt.colour.white_balance import balanced
+from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Floats, LabelledPicture
 
 

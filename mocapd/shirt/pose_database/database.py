@@ -12,6 +12,7 @@ from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_descriptor_kernels
 from mocapd.shirt.pose_database.idmap_crop_kernels import unpack
 from mocapd.shirt.pose_database.idmap_index import (
@@ -152,7 +153,7 @@ def content_hash(params: DatabaseParams) -> str:
     model = build_model(params.stature_m)
     for array in (model.vertices_m, model.weights, model.rest_m):
         digest.update(array.round(6).tobytes())
-    digest.update(model.triangles.tobytes() + model.colour.tobytes())
+    digest.update(model.triangles.tobytes() + shirt_labels(model).label.tobytes())
     return digest.hexdigest()[:32]
 
 
@@ -178,14 +179,15 @@ def render(
         np.zeros((n, PACKED), np.uint8), np.zeros((n, 3), np.float32), np.zeros(n, np.float32)
     )
     is_shirt = np.zeros(len(model.vertices_m), dtype=bool)
-    is_shirt[model.triangles[model.colour > 0]] = True
+    colour = shirt_labels(model).label
+    is_shirt[model.triangles[colour > 0]] = True
 
     body = Shaped(model.vertices_m, model.rest_m, model.centres_m)
 
     def draw(part: slice) -> None:
         render_poses(
             poses.local_xyzw[part], poses.camera_from_root_xyzw[part], body, model.skin,
-            model.surface, is_shirt, model.parents, params.focal_px, params.distance_m,
+            model.triangles, colour, is_shirt, model.parents, params.focal_px, params.distance_m,
             out.packed_maps[part], out.root_m[part], out.side_rad[part],
         )  # fmt: skip
 

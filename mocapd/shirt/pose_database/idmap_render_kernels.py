@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays, TriangleArrays
+from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
 from mocapd.body.shaping import Shaped
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_window, pack, resample
@@ -22,7 +22,8 @@ def render_poses(
     camera_from_root_xyzw: NDArray[np.float32],
     body: Shaped,
     skin: SkinArrays,
-    surface: TriangleArrays,
+    triangles: NDArray[np.int32],
+    colour: Bytes,
     is_shirt: NDArray[np.bool_],
     parents: NDArray[np.int64],
     focal_px: float,
@@ -35,10 +36,9 @@ def render_poses(
 
     root_m (N,3): the hips joint relative to the ray through the crop's centre, its depth as third
     coordinate; side_rad (N,): the crop's side [px] over the focal length.
-    is_shirt (V,): the vertices whose box the canvas is fitted to.
+    colour (T,): of the triangles; is_shirt (V,): the vertices whose box the canvas is fitted to.
     """
     vertices, rest, _ = body
-    triangles, colour = surface.corners, surface.colour
     J, V = rest.shape[0], vertices.shape[0]
     R, joints, turned = np.empty((J, 3, 3)), np.empty((J, 3)), np.empty((J, 4))
     local = np.empty((J, 4))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
-from mocapd.fit.body_drawing import Outline, Roi, work_size
+from mocapd.fit.body_drawing import IdMapRenderer, Roi, work_size
 from mocapd.fit.fit_params import TICK_S
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
@@ -139,10 +139,10 @@ class CameraSegmenter:
     # --- with a pose ---
 
     def classify(
-        self, predicted: Ids, outline: Outline, roi: Roi, uncertain: Ints, may_relight: bool
+        self, predicted: Ids, drawing: IdMapRenderer, roi: Roi, uncertain: Ints, may_relight: bool
     ) -> tuple[Ids, Ids]:
-        """ids and pixel_weight (h,w) over the region, given the predicted id map and where its vertices
-        are (buffers of this segmenter).
+        """ids and pixel_weight (h,w) over the region, given the predicted id map and what drew it
+        (buffers of this segmenter).
 
         uncertain: colours (0..9) whose place is uncertain. When the shirt is badly classified, or much
         worse than usual, other lights are tried and the best is kept: the light that carries the
@@ -154,7 +154,7 @@ class CameraSegmenter:
         divisor = _ALL_CERTAIN.copy()
         divisor[uncertain] = 3
         distance = self._distances(
-            predicted, outline, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
+            predicted, drawing, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )
         ids, pixel_weight = self._classified(memory.appearance, roi, distance, prior)
         if rendered == 0:
@@ -213,12 +213,12 @@ class CameraSegmenter:
         )  # fmt: skip
         return ids, pixel_weight
 
-    def _distances(self, predicted: Ids, outline: Outline, limit: int, divisor: Ints) -> Ids:
+    def _distances(self, predicted: Ids, drawing: IdMapRenderer, limit: int, divisor: Ints) -> Ids:
         h, w = predicted.shape
         h4, w4 = -(-h // CELL), -(-w // CELL)
         out = self._distance[: h4 * w4 * 10].reshape(h4, w4, 10)
         colour_distances(
-            predicted, outline.xy, outline.triangles, outline.sleeves, outline.colour,
+            predicted, drawing.xy, drawing.model.triangles, drawing.labels.arms, drawing.labels.label,
             limit, divisor, out,
         )  # fmt: skip
         return out

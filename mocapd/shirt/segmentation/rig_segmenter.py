@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mocapd.body.shirt_patches import SLEEVE_PATCHES, standard_shirt
+from mocapd.body.areas import ARM_AREAS
 from mocapd.each import in_turn
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
@@ -14,6 +14,7 @@ from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.segmentation.bare_skin import face_disc
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Ints
 from mocapd.vision.room_background import RoomBackground
 
@@ -67,7 +68,7 @@ class RigSegmenter:
                 return None
             roi, predicted = drawn
             ids, pixel_weight = self.each[i].classify(
-                predicted, drawing.outline(), roi, colours, may_relight=True
+                predicted, drawing, roi, colours, may_relight=True
             )
             bare = self.each[i].bare(roi, ids) if uncertain else None
             return View(i, roi, ids, pixel_weight, dt_s, bare)
@@ -123,5 +124,5 @@ def _colours_of(sides: tuple[str, ...]) -> Ints:
     """The colours (0..9) of the sleeves that are uncertain."""
     if not sides:
         return np.empty(0, np.int64)
-    colours = [standard_shirt().colour_of_patch[SLEEVE_PATCHES[side]] for side in sides]
+    colours = [standard_shirt().colour_of_patch[ARM_AREAS[side]] for side in sides]
     return np.unique(np.concatenate(colours)).astype(np.int64) - 1

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import INDEX
-from mocapd.body.surface import HEAD, LEFT_ARM, RIGHT_ARM, SHIRT, TORSO, TROUSERS
+from mocapd.body.surface import HEAD, LEFT_ARM, RIGHT_ARM, TOP, TORSO, TROUSERS
 from mocapd.sim.colour import linear_from_srgb
 from mocapd.sim.person.dress_kernels import (
     CHECKS,
@@ -42,7 +42,7 @@ def dress_of(
     """Of one person. Where nothing but the shirt is worn, every triangle has its own colour."""
     stature_m = shape.stature_m
     arms = (fine.part == LEFT_ARM) | (fine.part == RIGHT_ARM)
-    top, trousers = fine.material == SHIRT, fine.material == TROUSERS
+    top, trousers = fine.material == TOP, fine.material == TROUSERS
     rule = np.full(len(fine.triangles), FLAT, dtype=np.uint8)
     if face:
         rule[fine.part == HEAD] = FACE
@@ -93,7 +93,7 @@ def _under_jacket(fine: FineSurface, skeleton: Skeleton, stature_m: float, *, wo
         height = fine.vertices_m[fine.triangles, 1].mean(axis=1)
         hem_m = skeleton.rest_m[INDEX["hips"], 1] - _HEM * stature_m
         out[(fine.part == TORSO) & (height > hem_m)] = TRUNK
-        out[(fine.material == SHIRT) & (fine.part != TORSO)] = SLEEVE
+        out[(fine.material == TOP) & (fine.part != TORSO)] = SLEEVE
     return out
 
 

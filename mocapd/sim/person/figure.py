@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.body.skeleton import INDEX, joint_positions
-from mocapd.body.surface import HEAD, LEFT_LEG, LEGS, RIGHT_LEG, SHIRT, TROUSERS, Surface
+from mocapd.body.surface import HEAD, LEFT_LEG, LEGS, RIGHT_LEG, TOP, TROUSERS, Surface
 from mocapd.body.surface_building import build_surface, build_whole_surface
 from mocapd.geometry import rotations
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.sim.colour import linear_from_srgb
 from mocapd.sim.person.dress_kernels import REACH, Dress, jacket_share
 from mocapd.sim.person.dressing import dress_of, jacket_height
@@ -53,7 +53,7 @@ def build_figure(shape: BodyShape, clothes: Clothes, seed: int, *, whole: bool =
     fine = subdivide(coarse)
     rng = np.random.default_rng([seed, 3])
     cloth = np.zeros(len(fine.vertices_m))
-    cloth[np.unique(fine.triangles[fine.material == SHIRT])] = 1.0
+    cloth[np.unique(fine.triangles[fine.material == TOP])] = 1.0
     trousers = np.unique(fine.triangles[fine.material == TROUSERS])
     cloth[trousers] = np.maximum(cloth[trousers], 0.6)
     height = clothes.wrinkles_m * cloth * _folds(fine.vertices_m, rng)

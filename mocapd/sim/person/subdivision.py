@@ -14,7 +14,8 @@ _ROUNDNESS = 0.65  # Boubekeur and Alexa 2008, eq. 5: between flat (0) and fully
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FineSurface:
-    """A `Surface` with a vertex on each edge and the vertices' unit normals (V,3)."""
+    """A `Surface` with a vertex on each edge and the vertices' unit normals (V,3);
+    patch (T,): its areas, which a shirt's patches cover."""
 
     vertices_m: Floats
     normals: Floats
@@ -53,7 +54,7 @@ def subdivide(surface: Surface) -> FineSurface:
         vertices_m=fine_vertices,
         normals=fine_normals,
         triangles=fine_triangles,
-        patch=np.tile(surface.patch, 4),
+        patch=np.tile(surface.area, 4),
         material=np.tile(surface.material, 4),
         part=np.tile(surface.part, 4),
         weights=np.concatenate([surface.weights, 0.5 * (surface.weights[i] + surface.weights[j])]),

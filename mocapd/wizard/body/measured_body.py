@@ -12,6 +12,7 @@ from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.geometry.camera_model import project
+from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Bytes, Camera, Pose
 
 _OUTLINE_BGR, _BONE_BGR, _UNDER_BGR = (138, 240, 93), (255, 216, 79), (0, 0, 0)
@@ -32,7 +33,7 @@ def body_picture(
     if view is None:
         return out
     image_scale = image_scales([camera], FitParams().work_width_px)[0]
-    drawing = IdMapRenderer(Shaper(model), camera, image_scale)
+    drawing = IdMapRenderer(Shaper(model), shirt_labels(model), camera, image_scale)
     ids = drawing.render(state, view.dt_s, view.roi)
     at = np.array([view.roi[0], view.roi[1]])
     for colour in range(1, int(ids.max(initial=0)) + 1):

@@ -9,10 +9,10 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import replace
 
-from mocapd.body.shirt_patches import standard_shirt
 from mocapd.boundary.numbers import brief
 from mocapd.calibrate.colours.stroke_proposal import Proposal
 from mocapd.errors import InputError, MocapdError, Problem
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
 from mocapd.wizard.colour.colour_solving import (

@@ -5,9 +5,9 @@ import base64
 import cv2
 import numpy as np
 
-from mocapd.body.shirt_patches import N_COLOURS, standard_shirt
 from mocapd.boundary.pictures import decode_picture
 from mocapd.errors import InputError, MalformedError
+from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Bytes
 
 _ROOM = 0.35  # brightness of what is not the shirt

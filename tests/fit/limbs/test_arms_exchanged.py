@@ -10,11 +10,11 @@ from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
 from mocapd.fit.limbs.limb_fits import with_limb
 from mocapd.fit.limbs.reaching import poses_to
 from mocapd.fit.motion_state import MotionState
-from tests.fit.synthetic import MODEL, fitter, standing
+from tests.fit.synthetic import LABELS, MODEL, fitter, standing
 
 pytestmark = pytest.mark.kernels
 
-ARMS = {side: arm_of(MODEL, side) for side in SIDES}
+ARMS = {side: arm_of(MODEL, LABELS, side) for side in SIDES}
 BY = fitter(1)
 
 

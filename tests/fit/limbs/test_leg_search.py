@@ -7,7 +7,6 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body
-from mocapd.body.regions import by_region
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
 from mocapd.fit.limbs.leg_search import LegSearch, confirmed
@@ -15,12 +14,13 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import seldom
 from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
+from mocapd.tracking.cues.clothes.regions import region_labels
 from tests.geometry.rigs import ring
 
 pytestmark = pytest.mark.kernels
 
-BODY = by_region(build_model(1.75, full_body()))
-FITTER = Fitter(BODY, ring(2), [2, 2], FitParams())
+BODY = build_model(1.75, full_body())
+FITTER = Fitter(BODY, region_labels(BODY), ring(2), [2, 2], FitParams())
 PARAMS = LegSearchParams()
 OUTER = np.array([INDEX[side + "Foot"] for side in SIDES])
 

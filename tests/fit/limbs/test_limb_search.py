@@ -23,7 +23,7 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
-from tests.fit.synthetic import FACTOR, MODEL, fitter, standing, views_of
+from tests.fit.synthetic import FACTOR, LABELS, MODEL, fitter, standing, views_of
 
 pytestmark = pytest.mark.kernels
 
@@ -57,7 +57,7 @@ def test_candidates_hold_the_mirror_images_in_depth(side: str) -> None:
     """The two poses of a segment that project alike: a bone turned over in the plane that its end
     and the ray span. At the camera's distance perspective leaves a few pixels of difference."""
     by, state = fitter(1), standing("forward", "forward")
-    arm, views = arm_of(MODEL, side), views_of(by, state)
+    arm, views = arm_of(MODEL, LABELS, side), views_of(by, state)
     found = candidates(by, state, arm, views, NO_CLOUD, NO_LIBRARY)
     assert len(found) == 4
     camera = by.drawings[0].camera
@@ -82,7 +82,7 @@ def test_candidates_hold_the_mirror_images_in_depth(side: str) -> None:
 
 def test_every_camera_adds_its_own_mirror_images_and_the_rest_follow() -> None:
     by, state = fitter(2), standing()
-    arm, views = arm_of(MODEL, "left"), views_of(by, state)
+    arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, state)
     cloud, library = (
         np.random.default_rng(0).normal(0, 0.5, (5, 6)),
         arm_library(MODEL.space, 7, "left"),
@@ -121,18 +121,18 @@ def test_the_library_fills_the_joint_limits(side: str) -> None:
 def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
     """Area of the samples seen where the picture has their colour and the rest of the body explains it not, less half
     of what the picture denies, and all of it where the rest of the body is seen."""
-    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
+    arm, camera = arm_of(MODEL, LABELS, side), by.drawings[view.index].camera
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     nearest = base.zbuffer.copy()
-    corners = shaped(MODEL, state.factors)[0][arm.sleeve.corners]
+    corners = shaped(MODEL, state.factors)[0][arm.labelled.corners]
     rest = MODEL.rest_m
     joints, turned = by.joints(state)
     score = 0.0
-    for s in range(len(arm.sleeve.triangle)):
+    for s in range(len(arm.labelled.triangle)):
         middle = corners[s].mean(axis=0)
         normal = 0.5 * np.cross(corners[s, 1] - corners[s, 0], corners[s, 2] - corners[s, 0])
         point, posed_normal = np.zeros(3), np.zeros(3)
-        for place, weight in zip(arm.sleeve.link[s], arm.sleeve.weights[s], strict=True):
+        for place, weight in zip(arm.labelled.link[s], arm.labelled.weights[s], strict=True):
             bone = arm.chain[place]
             point += weight * (joints[bone] + rotations.rotate(turned[bone], middle - rest[bone]))
             posed_normal += weight * rotations.rotate(turned[bone], normal)
@@ -148,7 +148,7 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
             continue
         have = view.ids[y, x]
         beside = base.ids[max(y - 2, 0) : y + 3, max(x - 2, 0) : x + 3]
-        if have == arm.sleeve.colour[s]:
+        if have == arm.labelled.label[s]:
             score += 0.0 if (beside == have).any() else facing
         elif have and have == base.ids[y, x]:
             score -= facing
@@ -160,12 +160,12 @@ def naive_score(by: Fitter, state: MotionState, view: View, side: str) -> float:
 
 
 def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Floats) -> Floats:
-    arm, camera = arm_of(MODEL, side), by.drawings[view.index].camera
+    arm, camera = arm_of(MODEL, LABELS, side), by.drawings[view.index].camera
     base = by.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
     out = np.zeros(len(hypotheses))
     score_arms(
         hypotheses,
-        placed(by.shaper(state.factors), arm, arm.sleeve),
+        placed(by.shaper(state.factors), arm, arm.labelled),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
         base.zbuffer, base.ids, view.ids, view.pixel_weight, EMPTY, 1.0, NO_DEPTHS, 0.1, out,
@@ -201,7 +201,7 @@ def test_the_true_arm_scores_above_the_library(side: str, pose: str) -> None:
 def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
-    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, truth)
     tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
     seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0, EMPTY)
     best = best_poses(tries[:, 1:], seen_px, 3)
@@ -221,7 +221,7 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
 
 def test_a_pose_farther_away_must_be_seen_more() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
-    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, truth)
     tries = candidates(by, truth, arm, views, NO_CLOUD, arm_library(MODEL.space, 50, "left"))
     freely, held = (score_arm_poses(by, truth, arm, views, tries, px, EMPTY) for px in (0.0, 10.0))
     np.testing.assert_allclose(held[0], freely[0])
@@ -232,13 +232,13 @@ def test_a_pose_farther_away_must_be_seen_more() -> None:
 def test_an_arm_in_the_trunk_is_worth_less() -> None:
     """What no picture shows, behind the body, must be possible all the same."""
     by, truth = fitter(1), standing("hanging", "hanging")
-    arm, views = arm_of(MODEL, "left"), views_of(by, truth)
+    arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, truth)
     through = truth.local_xyzw[arm.chain[:3]].copy()
     through[1:] = rotations.exp(np.array([[0.0, 0.0, -1.35], [0.0, 0.0, -0.9]]))
     tries = np.stack([truth.local_xyzw[arm.chain[:3]], through])
     stiff = score_arm_poses(by, truth, arm, views, tries, 0.0, EMPTY)
     soft_params = replace(by.params, collision_sd_m=10.0)
-    soft = Fitter(MODEL, [d.camera for d in by.drawings], [FACTOR], soft_params)
+    soft = Fitter(MODEL, LABELS, [d.camera for d in by.drawings], [FACTOR], soft_params)
     assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0, EMPTY)[1] - 1.0
 
 
@@ -250,7 +250,7 @@ def with_bare_skin(by: Fitter, state: MotionState, views: list[View]) -> list[Vi
         drawing.render(state, view.dt_s, view.roi)
         seen = drawing.last(view.roi)[1]
         skin = np.append(
-            (MODEL.colour == 0) & np.isin(MODEL.part, (LEFT_ARM, RIGHT_ARM, HEAD)), False
+            (LABELS.label == 0) & np.isin(MODEL.part, (LEFT_ARM, RIGHT_ARM, HEAD)), False
         )
         out.append(replace(view, bare=skin[seen]))
     return out
@@ -260,7 +260,7 @@ def hand_px(by: Fitter, state: MotionState, views: list[View], *poses: str) -> F
     """What is seen of the left hand in these poses of its arm."""
     bones = [INDEX["left" + bone] for bone in BONES]
     tries = np.array([standing(pose).local_xyzw[bones] for pose in poses])
-    return score_hand_places(by, state, arm_of(MODEL, "left"), views, tries, EMPTY)
+    return score_hand_places(by, state, arm_of(MODEL, LABELS, "left"), views, tries, EMPTY)
 
 
 def test_a_hand_is_where_skin_is_seen_that_is_nobody_elses() -> None:
@@ -285,7 +285,7 @@ def by_left_hand(by: Fitter, state: MotionState, view: View) -> NDArray[np.bool_
     """Where the left hand is drawn (h,w)."""
     drawing = by.drawings[view.index]
     drawing.render(state, view.dt_s, view.roi)
-    hand = np.append((MODEL.colour == 0) & (MODEL.part == LEFT_ARM), False)
+    hand = np.append((LABELS.label == 0) & (MODEL.part == LEFT_ARM), False)
     out: NDArray[np.bool_] = hand[drawing.last(view.roi)[1]]
     return out
 
@@ -330,7 +330,7 @@ def test_a_hidden_arm_goes_where_its_hand_is_seen() -> None:
     """No colour of the sleeve shows."""
     by, truth = fitter(2), standing("hand_on_hip", "hanging")
     views = with_bare_skin(by, truth, views_of(by, truth))
-    colours = np.unique(arm_of(MODEL, "left").sleeve.colour)
+    colours = np.unique(arm_of(MODEL, LABELS, "left").labelled.label)
     wrong = swapped(truth, "left", standing("hand_on_belly", "hand_on_belly"))
     hidden = [hidden_sleeve(by, truth, view, colours) for view in views]
     off = []
@@ -351,7 +351,7 @@ def hidden_sleeve(by: Fitter, state: MotionState, view: View, colours: NDArray[n
     """The left sleeve is behind something that is no shirt."""
     drawing = by.drawings[view.index]
     drawing.render(state, view.dt_s, view.roi)
-    sleeve = np.append((MODEL.colour > 0) & (MODEL.part == LEFT_ARM), False)
+    sleeve = np.append((LABELS.label > 0) & (MODEL.part == LEFT_ARM), False)
     ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()
     mine = sleeve[drawing.last(view.roi)[1]]
     assert set(np.unique(ids[mine])) <= set(colours.tolist())

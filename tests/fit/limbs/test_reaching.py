@@ -13,7 +13,7 @@ from mocapd.fit.limbs.limb_scores import score_arm_poses
 from mocapd.fit.limbs.reaching import poses_to, reaching_poses
 from mocapd.fit.solver import Fitter, View
 from mocapd.types import Floats
-from tests.fit.synthetic import FACTOR, MODEL, standing
+from tests.fit.synthetic import FACTOR, LABELS, MODEL, standing
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -25,7 +25,7 @@ BESIDE = tuple(
 
 
 def body() -> Fitter:
-    return Fitter(MODEL, BESIDE, [FACTOR] * 2, FitParams())
+    return Fitter(MODEL, LABELS, BESIDE, [FACTOR] * 2, FitParams())
 
 
 def hands(by: Fitter, arm: Arm, poses: Floats) -> Floats:
@@ -46,7 +46,7 @@ def poses(by: Fitter, arm: Arm, hands_m: Floats) -> Floats:
 
 @pytest.mark.parametrize("side", SIDES)
 def test_hands_reach_what_is_in_reach(side: str) -> None:
-    by, arm = body(), arm_of(MODEL, side)
+    by, arm = body(), arm_of(MODEL, LABELS, side)
     shoulder = by.joints(standing())[0][arm.chain[1]]
     wanted = shoulder + np.array([[0.1, 0.1, 0.35], [0.2, -0.3, 0.2], [-0.2, 0.0, 0.3]])
     found = poses(by, arm, wanted)
@@ -56,7 +56,7 @@ def test_hands_reach_what_is_in_reach(side: str) -> None:
 
 @pytest.mark.parametrize("side", SIDES)
 def test_a_hand_out_of_reach_is_pointed_at(side: str) -> None:
-    by, arm = body(), arm_of(MODEL, side)
+    by, arm = body(), arm_of(MODEL, LABELS, side)
     shoulder = by.joints(standing())[0][arm.chain[1]]
     (hand, *_) = hands(by, arm, poses(by, arm, shoulder + np.array([[0.0, 0.0, 2.0]])))
     way = hand - shoulder
@@ -65,7 +65,7 @@ def test_a_hand_out_of_reach_is_pointed_at(side: str) -> None:
 
 @pytest.mark.parametrize("side", SIDES)
 def test_elbows_bend_about_their_hinge_forwards(side: str) -> None:
-    by, arm = body(), arm_of(MODEL, side)
+    by, arm = body(), arm_of(MODEL, LABELS, side)
     shoulder = by.joints(standing())[0][arm.chain[1]]
     forearms = poses(by, arm, shoulder + np.array([[0.1, -0.1, 0.3]]))[:, 2]
     outwards = 1.0 if side == "left" else -1.0
@@ -76,7 +76,7 @@ def test_elbows_bend_about_their_hinge_forwards(side: str) -> None:
 @pytest.mark.parametrize("side", SIDES)
 def test_an_arm_stretched_out_to_the_cameras_is_found_by_its_depth(side: str) -> None:
     """Before a trunk of its own colour no outline tells; thought to hang, it is tried and scores best where it is."""
-    by, arm = body(), arm_of(MODEL, side)
+    by, arm = body(), arm_of(MODEL, LABELS, side)
     truth, thought = standing("forward_low", "forward_low"), standing("hanging", "hanging")
     truth = replace(truth, local_xyzw=truth.local_xyzw.copy())
     drawing = by.drawings[0]
@@ -101,4 +101,4 @@ def test_nothing_is_tried_where_no_camera_sees_depths() -> None:
     by = body()
     flat = np.zeros((40, 40), np.uint8)
     view = View(0, (100, 60, 140, 100), flat, flat, 0.0)
-    assert len(reaching_poses(by, standing(), arm_of(MODEL, "left"), [view], 24, 0)) == 0
+    assert len(reaching_poses(by, standing(), arm_of(MODEL, LABELS, "left"), [view], 24, 0)) == 0

@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import camera_arrays, pinhole_arrays, plain
 from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import retract
 from mocapd.body.shape import mean_shape
-from mocapd.body.shirt_patches import N_LABELS, standard_shirt
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project
@@ -35,8 +35,10 @@ from mocapd.published.wang2011.placement import Constraints, Guess, place
 from mocapd.published.wang2011.segmenter import Wang2011Segmenter
 from mocapd.published.wang2011.tracker import Wang2011Tracker
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.shirt.pose_database.key_poses import arm_rotations
+from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.tracking.tracking_state import TrackingStateParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Tracking
 from tests.tracking.stepping import Stepping
@@ -46,6 +48,7 @@ pytestmark = pytest.mark.kernels
 STATURE_M = 1.75
 FRAME_NS = 33_333_333
 MODEL = build_model(STATURE_M)
+COLOUR = shirt_labels(MODEL).label
 
 
 def camera(name: str, azimuth_deg: float) -> Camera:
@@ -102,7 +105,7 @@ def picture(body: Posture | None, seen_by: Camera, light: tuple[float, ...] = (1
     seen = draw(MODEL, body, seen_by, Grid(0, 0, 640, 480, 1)).triangle_at
     paint = np.vstack([[70, 60, 50], standard_shirt().srgb])[:, ::-1].astype(float)
     painted = np.clip(paint * light, 0, 255).astype(np.uint8)
-    pixels[seen >= 0] = painted[MODEL.colour[seen[seen >= 0]]]
+    pixels[seen >= 0] = painted[COLOUR[seen[seen >= 0]]]
     pixels.flags.writeable = False
     return pixels
 
@@ -138,12 +141,12 @@ def test_patches_of_a_drawing_equal_numpy_twin() -> None:
     seen = draw(MODEL, standing(), RIG.cameras[0], Grid(100, 50, 200, 180, 2))
     samples, count, centroid = (
         np.empty(len(MODEL.triangles), int),
-        np.empty(N_LABELS),
-        np.empty((N_LABELS, 2)),
+        np.empty(N_AREAS),
+        np.empty((N_AREAS, 2)),
     )
-    rendered_patches(seen.triangle_at, MODEL.patch, samples, count, centroid)
-    patch_at = np.where(seen.triangle_at >= 0, MODEL.patch[seen.triangle_at], 255)
-    for p in range(N_LABELS):
+    rendered_patches(seen.triangle_at, MODEL.area, samples, count, centroid)
+    patch_at = np.where(seen.triangle_at >= 0, MODEL.area[seen.triangle_at], 255)
+    for p in range(N_AREAS):
         y, x = np.nonzero(patch_at == p)
         assert count[p] == len(x)
         if len(x):
@@ -162,7 +165,7 @@ def test_a_colour_is_given_to_the_nearer_of_its_two_patches() -> None:
     ids[4:7, 1:5], ids[4:7, 15:19] = 4, 4
     nearest = np.full((10, 10, 20, 2), -1, np.int16)
     nearest[3, :, :10], nearest[3, :, 10:] = (5, 2), (5, 17)
-    count, centroid = np.empty(N_LABELS), np.empty((N_LABELS, 2))
+    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
     classified_patches(ids, nearest, triangle_at, patch, count, centroid)
     assert count[a] == count[b] == 12
     assert centroid[a].tolist() == [2.5, 5.0]
@@ -175,17 +178,17 @@ def test_centroid_derivative_equals_differences() -> None:
     seen = draw(MODEL, body, c, Grid(0, 0, 320, 240, 2))
     wanted = seen.count >= 20
     wanted[0] = False
-    J = np.empty((N_LABELS, 2, MODEL.n_pose))
+    J = np.empty((N_AREAS, 2, MODEL.n_pose))
     centroid_rows(
-        seen.samples, wanted, seen.count, points, plain(MODEL.surface), plain(MODEL.articulation),
+        seen.samples, wanted, seen.count, points, MODEL.area, plain(MODEL.surface), plain(MODEL.articulation),
         plain(posed_joints(MODEL, body)), plain(pinhole_arrays(camera_arrays(c), 1.0)), J,
     )  # fmt: skip
 
     def centroids(at: Posture) -> Floats:
         xy = project(c, posed_points(MODEL, at, points))
-        out = np.zeros((N_LABELS, 2))
+        out = np.zeros((N_AREAS, 2))
         for p in np.flatnonzero(wanted):
-            here = MODEL.patch == p
+            here = MODEL.area == p
             out[p] = np.average(xy[here], axis=0, weights=seen.samples[here])
         return out
 
@@ -279,8 +282,8 @@ def test_white_balance_follows_the_light_and_a_new_light_is_remembered() -> None
     segmenter = Wang2011Segmenter(c, colours(), np.eye(3), Params())
     grid = Grid(0, 0, 320, 240, 2)
     seen = draw(MODEL, body, c, grid)
-    refined = np.where(seen.triangle_at >= 0, MODEL.colour[seen.triangle_at], 0).astype(np.uint8)
-    segmenter.learn(picture(body, c, light), grid, seen, MODEL.colour, refined)
+    refined = np.where(seen.triangle_at >= 0, COLOUR[seen.triangle_at], 0).astype(np.uint8)
+    segmenter.learn(picture(body, c, light), grid, seen, COLOUR, refined)
     white = segmenter.W @ light[::-1]
     assert white.max() / white.min() < 1.2  # 1.8 before; the hue is right, brightness may lag
     assert len(segmenter.references) == 2

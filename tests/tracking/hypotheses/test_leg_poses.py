@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import by_region
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
+from mocapd.tracking.cues.clothes.regions import region_labels
 from mocapd.tracking.hypotheses.legs import (
     are_crossed,
     twist_rad,
@@ -23,8 +23,8 @@ from mocapd.tracking.hypotheses.legs import (
 )
 from tests.geometry.rigs import ring
 
-BODY = by_region(build_model(1.75, full_body()))
-FITTER = Fitter(BODY, ring(2), [2, 2], FitParams())
+BODY = build_model(1.75, full_body())
+FITTER = Fitter(BODY, region_labels(BODY), ring(2), [2, 2], FitParams())
 FEET = [INDEX["leftFoot"], INDEX["rightFoot"]]
 
 

@@ -11,6 +11,7 @@ from mocapd.fit.motion_state import initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.geometry.camera_model import to_camera
+from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
 from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.joint_network import JOINTS
@@ -61,7 +62,7 @@ def test_any_stance_is_found_whichever_way_it_faces(
     off_m = there_m[SEEN] - joints_m[SEEN]
     assert np.linalg.norm(off_m.mean(axis=0)) < away_m
     assert np.linalg.norm(off_m - off_m.mean(axis=0), axis=1).max() < 0.05
-    by = Fitter(BODY, rig(places_m), [2, 2], FitParams())
+    by = Fitter(BODY, shirt_labels(BODY), rig(places_m), [2, 2], FitParams())
     state = pose_through(by, there_m, np.ones(BODY.n_shape), initial_information(BODY.space))
     assert state is not None
     limbs = [j for j in SEEN if j not in (INDEX["head"], INDEX["neck"])]
@@ -83,7 +84,7 @@ def test_joints_that_only_one_camera_sees_are_placed_and_others_are_not_made_up(
 
 
 def test_without_a_trunk_there_is_no_pose() -> None:
-    by = Fitter(BODY, rig(WIDE), [2, 2], FitParams())
+    by = Fitter(BODY, shirt_labels(BODY), rig(WIDE), [2, 2], FitParams())
     nowhere = np.full_like(BODY.rest_m, np.nan)
     known = np.ones(BODY.n_shape), initial_information(BODY.space)
     assert pose_through(by, nowhere, *known) is None

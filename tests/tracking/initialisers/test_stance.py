@@ -5,7 +5,6 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import as_silhouette
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
@@ -13,6 +12,7 @@ from mocapd.fit.solver import Fit, Fitter
 from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.initialisers.stance import blobs_of, first_fit, standing, views_of
 from mocapd.vision.foreground_kernels import BEFORE
 from tests.geometry.rigs import looking_at
@@ -44,7 +44,7 @@ def turned(yaw_rad: float) -> MotionState:
 
 def found(state: MotionState) -> Fit:
     """The first fit to somebody's outlines."""
-    by = Fitter(as_silhouette(BODY), CAMERAS, [FACTOR] * 2, FitParams(iterations=6))
+    by = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [FACTOR] * 2, FitParams(iterations=6))
     blobs = {}
     for i, drawing in enumerate(by.drawings):
         before = np.zeros((240, 320), np.uint8)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from mocapd.body.regions import Band, Region
 from mocapd.tracking.cues.clothes.appearance_kernels import (
     BITS,
     DISTANCE_GRID_PX,
@@ -22,6 +21,7 @@ from mocapd.tracking.cues.clothes.appearance_kernels import (
     log_table,
 )
 from mocapd.tracking.cues.clothes.region_distance_kernels import LANES, chamfer_distances
+from mocapd.tracking.cues.clothes.regions import Band, Region
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW
 

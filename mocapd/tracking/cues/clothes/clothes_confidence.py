@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from mocapd.body.regions import Label
-from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES
+from mocapd.body.areas import ARM_AREAS, N_AREAS, Area
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.solver import Fit
 from mocapd.tracking.tracking_state import faded
@@ -14,34 +13,34 @@ _HALF_M = 0.10  # an uncertainty that halves it: this tracker's are twice the sh
 
 
 def _seen_by() -> dict[str, tuple[int, ...]]:
-    """The labels that show each joint."""
-    trunk = (Label.TRUNK,)
+    """The areas that show each joint."""
+    trunk = (Area.TORSO,)
     out: dict[str, tuple[int, ...]] = dict.fromkeys(("hips", "spine", "chest", "upperChest"), trunk)
-    out |= dict.fromkeys(("neck", "head"), (Label.HEAD,))
+    out |= dict.fromkeys(("neck", "head"), (Area.HEAD,))
     for side, thigh, shin in (
-        ("left", Label.LEFT_THIGH, Label.LEFT_SHIN),
-        ("right", Label.RIGHT_THIGH, Label.RIGHT_SHIN),
+        ("left", Area.LEFT_THIGH, Area.LEFT_SHIN),
+        ("right", Area.RIGHT_THIGH, Area.RIGHT_SHIN),
     ):
-        sleeve = tuple(range(N_LABELS)[SLEEVE_PATCHES[side]])
-        out[side + "Shoulder"] = (*trunk, sleeve[0])
-        out[side + "UpperArm"] = sleeve[:3]
-        out[side + "LowerArm"] = sleeve[1:5]
-        out[side + "Hand"] = sleeve[3:]
+        arm = tuple(range(N_AREAS)[ARM_AREAS[side]])
+        out[side + "Shoulder"] = (*trunk, arm[0])
+        out[side + "UpperArm"] = arm[:3]
+        out[side + "LowerArm"] = arm[1:5]
+        out[side + "Hand"] = arm[3:]
         out[side + "UpperLeg"] = (*trunk, thigh)
         out[side + "LowerLeg"] = (thigh, shin)
         out[side + "Foot"] = out[side + "Toes"] = (shin,)
     return out
 
 
-def _labels_of_joints() -> Floats:
-    out = np.zeros((N_JOINTS, N_LABELS))
+def _areas_of_joints() -> Floats:
+    out = np.zeros((N_JOINTS, N_AREAS))
     for name, mine in _seen_by().items():
         if name in INDEX:
             out[INDEX[name], list(mine)] = 1.0
     return out
 
 
-_LABELS = _labels_of_joints()
+_AREAS = _areas_of_joints()
 
 
 def joint_confidence(
@@ -51,8 +50,8 @@ def joint_confidence(
     there is no evidence. uncertainty_m (J,): one standard deviation of each place; away_s: since the last evidence [s]."""
     if fit is None:
         return np.zeros(N_JOINTS)
-    matched = _LABELS @ (fit.matched * fit.in_depth)
-    asked = _LABELS @ (fit.visible + fit.unexplained)
+    matched = _AREAS @ (fit.matched * fit.in_depth)
+    asked = _AREAS @ (fit.visible + fit.unexplained)
     share = matched / np.maximum(asked, 1.0)
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
     out = np.minimum(1.25 * share, 1.0) * enough / (1.0 + (uncertainty_m / _HALF_M) ** 2)

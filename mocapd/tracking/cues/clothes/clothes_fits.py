@@ -7,7 +7,6 @@ import numpy as np
 
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import full_body, upper_body
-from mocapd.body.regions import Region, as_silhouette
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
@@ -21,6 +20,7 @@ from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.look import DressedFitters
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
+from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
 from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.cues.stereo.depth_views import with_depths
@@ -75,8 +75,8 @@ class ClothesFits:
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
         dressed = DressedFitters(body, rig.cameras, smaller, p.fit, p.limbs, p.legs, each)
         self.wardrobe = Wardrobe(dressed, p)
-        self.silhouettes = Fitter(as_silhouette(body), rig.cameras, smaller, p.fit, each)
-        self.model = self.fitter.model
+        self.silhouettes = Fitter(body, silhouette_labels(body), rig.cameras, smaller, p.fit, each)
+        self.model = body
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())

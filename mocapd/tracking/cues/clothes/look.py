@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.body.regions import Band, Region, recoloured, regions
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.solver import Fitter
 from mocapd.tracking.cues.clothes.appearance import Appearance
+from mocapd.tracking.cues.clothes.regions import Band, Region, worn_labels
 from mocapd.types import Camera
 
 Look = tuple[
@@ -88,7 +88,7 @@ class DressedFitters:
         legs: LegSearchParams,
         each: Each = in_turn,
     ) -> None:
-        """body: a whole one, in any colours; image_scales, each: as `Fitter`."""
+        """body: a whole one; image_scales, each: as `Fitter`."""
         self._body, self._cameras, self._scales = body, cameras, image_scales
         self._fit, self._limbs, self._legs, self._each = fit, limbs, legs, each
         self._made: dict[Look, Dressed] = {}
@@ -97,9 +97,8 @@ class DressedFitters:
         """The same ones to whoever asks for the same look, unless _KEPT others were asked for since."""
         dressed = self._made.pop(look, None)
         if dressed is None:
-            colour = np.array(look, np.uint8)[regions(self._body)]
-            worn = recoloured(self._body, colour)
-            fitter = Fitter(worn, self._cameras, self._scales, self._fit, self._each)
+            labels = worn_labels(self._body, look)
+            fitter = Fitter(self._body, labels, self._cameras, self._scales, self._fit, self._each)
             dressed = Dressed(fitter, ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs))
         self._made[look] = dressed
         if len(self._made) > _KEPT:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from mocapd.body.areas import ARM_AREAS, N_AREAS, TORSO_QUARTERS, Area
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shirt_patches import N_LABELS, SLEEVE_PATCHES, TORSO_PATCHES, ShirtPatch
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.solver import Fit
 from mocapd.tracking.tracking_state import FADE_S
@@ -15,18 +15,18 @@ _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a j
 _HALF_M = 0.06
 _HEAD = 0.5  # what the shirt tells of it, of the neck's
 
-_UPPER_TORSO = tuple(patch for patch in TORSO_PATCHES if "UPPER" in patch.name)
-_LOWER_TORSO = tuple(patch for patch in TORSO_PATCHES if "LOWER" in patch.name)
+_UPPER_TORSO = tuple(patch for patch in TORSO_QUARTERS if "UPPER" in patch.name)
+_LOWER_TORSO = tuple(patch for patch in TORSO_QUARTERS if "LOWER" in patch.name)
 
 
-def _seen_by() -> dict[str, tuple[ShirtPatch, ...]]:
+def _seen_by() -> dict[str, tuple[Area, ...]]:
     """The patches that show each joint."""
     out = {
-        "hips": _LOWER_TORSO, "spine": TORSO_PATCHES, "chest": TORSO_PATCHES,
+        "hips": _LOWER_TORSO, "spine": TORSO_QUARTERS, "chest": TORSO_QUARTERS,
         "upperChest": _UPPER_TORSO, "neck": _UPPER_TORSO,
     }  # fmt: skip
     for side in SIDES:
-        sleeve = tuple(ShirtPatch)[SLEEVE_PATCHES[side]]
+        sleeve = tuple(Area)[ARM_AREAS[side]]
         torso = tuple(p for p in _UPPER_TORSO if p.name.endswith(side.upper()))
         out[side + "Shoulder"] = (*torso, sleeve[0])
         out[side + "UpperArm"] = sleeve[:3]  # shoulder, upper arm
@@ -36,7 +36,7 @@ def _seen_by() -> dict[str, tuple[ShirtPatch, ...]]:
 
 
 def _patches_of_joints() -> Floats:
-    out = np.zeros((N_JOINTS, N_LABELS))
+    out = np.zeros((N_JOINTS, N_AREAS))
     for name, patches in _seen_by().items():
         out[INDEX[name], list(patches)] = 1.0
     return out

@@ -15,6 +15,7 @@ from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fit, Fitter, View
 from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.garment import confirmed_colours, shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.tracking.base import Probe
@@ -64,7 +65,9 @@ class ShirtCue:
         self._cameras, self._database = rig.cameras, database
         self.model: BodyModel = build_model(stature_m)
         smaller = image_scales(rig.cameras, p.fit.work_width_px)
-        self.fitter = Fitter(self.model, rig.cameras, smaller, p.fit, each)
+        self.fitter = Fitter(
+            self.model, shirt_labels(self.model), rig.cameras, smaller, p.fit, each
+        )
         self.segmenters = RigSegmenter(
             self.fitter, colours, white_balance, p.segmentation, backgrounds
         )
@@ -247,7 +250,7 @@ class ShirtCue:
         p = self.params
         return bool(
             fit.explained >= p.accept_match
-            and fit.confirmed_colours() >= p.accept_colours
+            and confirmed_colours(fit) >= p.accept_colours
             and 2.0 * fit.matched.sum() >= p.min_shirt_px
         )
 

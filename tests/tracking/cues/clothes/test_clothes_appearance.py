@@ -8,7 +8,6 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import Band, Region
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.tracking.cues.clothes.appearance import Appearance, AppearanceParams, region_distances
 from mocapd.tracking.cues.clothes.appearance_kernels import (
@@ -19,6 +18,7 @@ from mocapd.tracking.cues.clothes.appearance_kernels import (
     log_table,
 )
 from mocapd.tracking.cues.clothes.look import ALL_DIFFER, DressedFitters, look_of
+from mocapd.tracking.cues.clothes.regions import Band, Region
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, SHADOW
 from tests.geometry.rigs import ring
 
@@ -77,7 +77,7 @@ def test_a_long_sleeve_is_one_with_the_trunk_and_hands_stay_their_own() -> None:
     fitters = DressedFitters(
         body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams()
     )
-    apart, one = fitters.of(ALL_DIFFER)[0].model.colour, fitters.of(look)[0].model.colour
+    apart, one = (fitters.of(worn)[0].labels.label for worn in (ALL_DIFFER, look))
     assert set(apart.tolist()) == {int(part) for part in (*Region, *Band)}
     assert (one[apart == Region.FOREARM] == Region.TRUNK).all()
     assert (one[apart == Region.HAND] == Region.HAND).all()
@@ -123,9 +123,9 @@ def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
     worn = (
         DressedFitters(body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams())
         .of(look)[0]
-        .model
+        .labels
     )
-    assert worn.colour.max() <= max(Region)
+    assert worn.label.max() <= max(Region)
 
 
 def test_colours_are_expected_as_dim_as_the_background_became() -> None:

@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 
-from mocapd.body.regions import Region
 from mocapd.tracking.cues.clothes.appearance import region_distances
 from mocapd.tracking.cues.clothes.appearance_kernels import DISTANCE_GRID_PX
+from mocapd.tracking.cues.clothes.regions import Region
 
 
 def test_distances_are_those_of_a_distance_transform_of_each_region() -> None:

@@ -9,7 +9,6 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import by_region
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibration.from_origin import from_capture
@@ -18,13 +17,14 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
+from mocapd.tracking.cues.clothes.regions import region_labels
 from mocapd.tracking.hypotheses.turned import turned_round
 from mocapd.types import BodyState, Floats, Pose
 from tests.geometry.rigs import ring
 from tests.tracking.profiles import markerless_tracker
 
-BODY = by_region(build_model(1.75, full_body()))
-FITTER = Fitter(BODY, ring(2), [2, 2], FitParams())
+BODY = build_model(1.75, full_body())
+FITTER = Fitter(BODY, region_labels(BODY), ring(2), [2, 2], FitParams())
 ALONG = np.array([0.0, -0.3, -1.0])
 
 
@@ -97,8 +97,8 @@ def test_who_is_thought_to_show_their_back_is_turned_when_the_face_is_seen(
     stature_m = calibration.wearer.stature_m
     tracker, shape = markerless_tracker(calibration), mean_shape(stature_m)
     assert calibration.rig is not None
-    model = by_region(build_model(stature_m, full_body()))
-    fitter = Fitter(model, calibration.rig.cameras, [2, 2], FitParams())
+    body = build_model(stature_m, full_body())
+    fitter = Fitter(body, region_labels(body), calibration.rig.cameras, [2, 2], FitParams())
     facing = []
     for k, frames in enumerate(frame_sets(folder)):
         track = tracker.step(frames, shape)

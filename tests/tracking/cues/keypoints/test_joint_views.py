@@ -13,6 +13,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry.camera_model import to_camera
+from mocapd.shirt.garment import shirt_labels
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World, rig_of
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
@@ -39,7 +40,7 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
     world, rig = World(scenario), rig_of(scenario)
     renderers = camera_renderers(world)
     body = build_model(world.shape.stature_m, full_body())
-    fitter = Fitter(body, rig.cameras, [1] * len(rig.cameras), FitParams())
+    fitter = Fitter(body, shirt_labels(body), rig.cameras, [1] * len(rig.cameras), FitParams())
     cameras = CameraViews(fitter, ClothesParams())
     cameras.reset()
     levels = np.ones(len(table["lights"]))

@@ -11,7 +11,7 @@ from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.solver import Fitter, View
 from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.types import Camera, Frame, FrameSet
-from tests.fit.synthetic import CAMERAS, FACTOR, MODEL, standing, textured_greys
+from tests.fit.synthetic import CAMERAS, FACTOR, LABELS, MODEL, standing, textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -48,7 +48,7 @@ def views(by: Fitter, state: MotionState, *others: MotionState) -> list[View]:
 
 
 def test_the_body_stays_and_who_is_far_behind_goes() -> None:
-    by, state = Fitter(MODEL, BESIDE, [FACTOR] * 2, FitParams()), standing()
+    by, state = Fitter(MODEL, LABELS, BESIDE, [FACTOR] * 2, FitParams()), standing()
     behind = replace(state, root_m=state.root_m + np.array([0.9, 0.0, -1.6]))
     before = views(by, state, behind)
     drawn = [drawing.last((0, 0, 320, 240))[0] > 0 for drawing in by.drawings]
@@ -66,9 +66,9 @@ def test_the_body_stays_and_who_is_far_behind_goes() -> None:
 
 def test_cameras_that_see_other_sides_and_one_alone_know_no_depths() -> None:
     state = standing()
-    crossing = Fitter(MODEL, CAMERAS[:2], [FACTOR] * 2, FitParams())
+    crossing = Fitter(MODEL, LABELS, CAMERAS[:2], [FACTOR] * 2, FitParams())
     seen = views(crossing, state)
     assert with_depths(crossing, state, seen, filmed(CAMERAS[:2], state), PARAMS) == seen
-    by = Fitter(MODEL, BESIDE, [FACTOR] * 2, FitParams())
+    by = Fitter(MODEL, LABELS, BESIDE, [FACTOR] * 2, FitParams())
     alone = views(by, state)[:1]
     assert with_depths(by, state, alone, filmed(BESIDE, state), PARAMS) == alone

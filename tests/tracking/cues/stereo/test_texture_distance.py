@@ -9,7 +9,7 @@ from mocapd.fit.solver import Fitter, View
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
 from mocapd.types import Camera, Floats, Frame, FrameSet
-from tests.fit.synthetic import CAMERAS, MODEL, standing, stepped, textured_greys
+from tests.fit.synthetic import CAMERAS, LABELS, MODEL, standing, stepped, textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -51,7 +51,7 @@ def drawn(by: Fitter, state: MotionState) -> list[View]:
 
 def test_a_pair_side_by_side_pulls_the_body_to_where_its_texture_is() -> None:
     truth = standing()
-    by = Fitter(MODEL, SIDE_BY_SIDE, [2, 2], FitParams())
+    by = Fitter(MODEL, LABELS, SIDE_BY_SIDE, [2, 2], FitParams())
     nearer = shifted(by, truth, np.array([0.0, 0.0, 0.12]))
     (term,) = texture_distances(
         by, nearer, drawn(by, nearer), textured(SIDE_BY_SIDE, truth), 0, MeasuringParams()
@@ -65,11 +65,11 @@ def test_a_pair_side_by_side_pulls_the_body_to_where_its_texture_is() -> None:
 
 def test_cameras_that_see_other_sides_and_one_alone_do_not_ask() -> None:
     truth = standing()
-    crossing = Fitter(MODEL, CAMERAS[:2], [2, 2], FitParams())
+    crossing = Fitter(MODEL, LABELS, CAMERAS[:2], [2, 2], FitParams())
     frames = textured(CAMERAS[:2], truth)
     views = drawn(crossing, truth)
     assert texture_distances(crossing, truth, views, frames, 0, MeasuringParams()) == ()
-    alone = Fitter(MODEL, SIDE_BY_SIDE, [2, 2], FitParams())
+    alone = Fitter(MODEL, LABELS, SIDE_BY_SIDE, [2, 2], FitParams())
     views = drawn(alone, truth)[:1]
     frames = textured(SIDE_BY_SIDE, truth)
     assert texture_distances(alone, truth, views, frames, 0, MeasuringParams()) == ()

@@ -5,14 +5,10 @@ import json
 import numpy as np
 
 from mocapd.assets import asset_path
-from mocapd.body.shirt_patches import (
-    N_COLOURS,
-    N_PATCHES,
-    SLEEVE_PATCHES,
-    TORSO_PATCHES,
-    ShirtPatch,
-    standard_shirt,
-)
+from mocapd.body.areas import ARM_AREAS, FOREARM_END, SHOULDER_END, TORSO_QUARTERS, Area
+from mocapd.body.model import build_model
+from mocapd.shirt.garment import shirt_labels
+from mocapd.shirt.standard_shirt import N_COLOURS, N_PATCHES, standard_shirt
 
 
 def test_it_says_what_the_file_says() -> None:
@@ -30,14 +26,11 @@ def test_it_says_what_the_file_says() -> None:
         assert shirt.srgb[colour["id"] - 1].tolist() == colour["srgb"]
 
 
-def test_patches_have_the_standard_s_names() -> None:
-    names = standard_shirt().patch_names
-    assert [patch.name.lower() for patch in ShirtPatch if patch] == list(names)
-    covered = [
-        *TORSO_PATCHES,
-        *(p for side in SLEEVE_PATCHES.values() for p in list(ShirtPatch)[side]),
-    ]
-    assert covered == [patch for patch in ShirtPatch if patch]
+def test_each_patch_covers_the_area_of_its_number() -> None:
+    names = [name.replace("cuff", "wrist").upper() for name in standard_shirt().patch_names]
+    arms = [area for side in ARM_AREAS.values() for area in list(Area)[side]]
+    assert [area.name for area in (*TORSO_QUARTERS, *arms)] == names
+    assert [*TORSO_QUARTERS, *arms] == list(range(1, N_PATCHES + 1))
 
 
 def test_every_colour_is_on_two_patches() -> None:
@@ -51,3 +44,13 @@ def test_arm_spans_follow_each_other() -> None:
     assert spans["upper_arm"][1] == 1.0
     assert spans["forearm"][0] == 0.0
     assert spans["forearm"][1] == spans["cuff"][0]
+    assert spans["shoulder"][1] == SHOULDER_END
+    assert spans["forearm"][1] == FOREARM_END
+
+
+def test_a_body_in_the_shirt_shows_its_colours() -> None:
+    model = build_model(1.66)
+    labels = shirt_labels(model)
+    np.testing.assert_array_equal(labels.label, standard_shirt().colour_of_patch[model.area])
+    np.testing.assert_array_equal(labels.area, model.area)
+    assert set(labels.label) == set(range(N_COLOURS + 1))

@@ -1,16 +1,17 @@
-"""The whole body by what looks alike on it, whatever is worn: for trackers that learn appearance."""
+"""Any clothes as a garment: the regions of a whole body that look alike, whatever is worn."""
 
-from dataclasses import replace
+from collections.abc import Sequence
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.model import BodyModel, sleeves_by_colour
+from mocapd.body.areas import Area
+from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shirt_patches import ShirtPatch
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, LEFT_LEG, RIGHT_ARM, RIGHT_LEG, TORSO
+from mocapd.fit.surface_labels import SurfaceLabels, surface_labels
 
 _BROW = 0.045  # of the stature below the crown: hair above
 _FOOT = 0.05  # of the stature, in the T-pose: what is lower is shoe
@@ -32,7 +33,7 @@ class Region(IntEnum):
 
 
 class Band(IntEnum):
-    """Parts of the body that belong to one region or another by what is worn: how long shirt and sleeves are."""
+    """Parts of the body that belong to one region or another by what is worn: how long top and sleeves are."""
 
     LOW_SLEEVE = 8  # of an upper arm, from the elbow: forearm or trunk
     HIGH_SLEEVE = 9
@@ -41,34 +42,29 @@ class Band(IntEnum):
     WAIST = 12
 
 
-class Label(IntEnum):
-    """Where pixels are counted (`Fit.visible`, `matched`); sleeves keep the labels of the shirt's patches."""
-
-    TRUNK = 1
-    HEAD = 2
-    LEFT_THIGH = 3
-    LEFT_SHIN = 4  # and foot
-    RIGHT_THIGH = 5
-    RIGHT_SHIN = 6
-
-
-def by_region(model: BodyModel) -> BodyModel:
-    """A whole body in a shirt to the hips and with long sleeves, whose colours are its regions. Raises ValueError for a body
-    without legs of its own."""
+def region_labels(model: BodyModel) -> SurfaceLabels:
+    """Of a whole body with clothes to the hips and with long sleeves: its regions. Raises ValueError as `worn_labels`."""
     worn = np.arange(1 + max(Band), dtype=np.uint8)
     worn[[Band.LOW_HIPS, Band.HIGH_HIPS]] = Region.LEG
     worn[[Band.WAIST, Band.LOW_SLEEVE, Band.HIGH_SLEEVE]] = Region.TRUNK
-    return recoloured(model, worn[regions(model)])
+    return worn_labels(model, worn)
 
 
-def as_silhouette(model: BodyModel) -> BodyModel:
-    """A whole body of one colour, as it is seen before its background. Raises ValueError as `by_region`."""
-    return recoloured(model, np.ones(len(model.colour), np.uint8))
+def silhouette_labels(model: BodyModel) -> SurfaceLabels:
+    """Of a whole body as it is seen before its background: one. Raises ValueError as `worn_labels`."""
+    return worn_labels(model, np.ones(1 + max(Band), np.uint8))
+
+
+def worn_labels(model: BodyModel, worn: Sequence[int] | NDArray[np.uint8]) -> SurfaceLabels:
+    """Of a whole body: that of each region or band, by its number. Raises ValueError for a body without legs of its own."""
+    if not model.space.whole:
+        raise ValueError("a body of the upper pose space has no legs to be told apart")
+    return surface_labels(model, np.asarray(worn, np.uint8)[regions(model)], _areas(model))
 
 
 def regions(model: BodyModel) -> NDArray[np.uint8]:
     """The region (T,) of each triangle, or the band where clothes decide."""
-    out = np.full(len(model.colour), Region.TRUNK, np.uint8)
+    out = np.full(len(model.triangles), Region.TRUNK, np.uint8)
     forearm = [INDEX[side + bone] for side in SIDES for bone in ("LowerArm", "Hand")]
     arms = (model.part == LEFT_ARM) | (model.part == RIGHT_ARM)
     legs = (model.part == LEFT_LEG) | (model.part == RIGHT_LEG)
@@ -97,17 +93,17 @@ def regions(model: BodyModel) -> NDArray[np.uint8]:
     return out
 
 
-def labels(model: BodyModel) -> NDArray[np.uint8]:
-    """The label (T,) of each triangle: a `Label`, or a sleeve's patch; hands count as cuffs."""
-    out = np.full(len(model.colour), Label.TRUNK, np.uint8)
-    out[model.part == HEAD] = Label.HEAD
+def _areas(model: BodyModel) -> NDArray[np.uint8]:
+    """The `Area` (T,) of each triangle of a whole body whose trunk is one; hands count as wrists."""
+    out = np.full(len(model.triangles), Area.TORSO, np.uint8)
+    out[model.part == HEAD] = Area.HEAD
     main = model.triangle_bones[:, 0]
-    for side, arm, leg, cuff, thigh, shin in (
-        ("left", LEFT_ARM, LEFT_LEG, ShirtPatch.LEFT_CUFF, Label.LEFT_THIGH, Label.LEFT_SHIN),
-        ("right", RIGHT_ARM, RIGHT_LEG, ShirtPatch.RIGHT_CUFF, Label.RIGHT_THIGH, Label.RIGHT_SHIN),
+    for side, arm, leg, wrist, thigh, shin in (
+        ("left", LEFT_ARM, LEFT_LEG, Area.LEFT_WRIST, Area.LEFT_THIGH, Area.LEFT_SHIN),
+        ("right", RIGHT_ARM, RIGHT_LEG, Area.RIGHT_WRIST, Area.RIGHT_THIGH, Area.RIGHT_SHIN),
     ):
-        sleeve = model.part == arm
-        out[sleeve] = np.where(model.patch[sleeve] > 0, model.patch[sleeve], cuff)
+        on_arm = model.part == arm
+        out[on_arm] = np.where(model.area[on_arm] > 0, model.area[on_arm], wrist)
         lower = np.isin(
             main,
             [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX],
@@ -115,11 +111,3 @@ def labels(model: BodyModel) -> NDArray[np.uint8]:
         out[(model.part == leg) & ~lower] = thigh
         out[(model.part == leg) & lower] = shin
     return out
-
-
-def recoloured(model: BodyModel, colour: NDArray[np.uint8]) -> BodyModel:
-    """A whole body of these colours (T,), whose pixels are counted by `Label`. Raises ValueError as `by_region`."""
-    if not model.space.whole:
-        raise ValueError("a body of the upper pose space has no legs to be told apart")
-    sleeves, start = sleeves_by_colour(model.part, colour)
-    return replace(model, colour=colour, patch=labels(model), sleeves=sleeves, sleeve_start=start)

@@ -3,10 +3,18 @@
 import numpy as np
 import pytest
 
+from mocapd.body.areas import TORSO_QUARTERS, Area
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.regions import Band, Label, Region, as_silhouette, by_region, labels, regions
 from mocapd.body.skeleton import INDEX
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.tracking.cues.clothes.regions import (
+    Band,
+    Region,
+    region_labels,
+    regions,
+    silhouette_labels,
+)
 
 BODY = build_model(1.75, full_body())
 
@@ -47,35 +55,30 @@ def test_left_and_right_are_alike() -> None:
         assert abs(np.count_nonzero(x > 0.0) - np.count_nonzero(x < 0.0)) <= 0.02 * len(x)
 
 
-def test_colours_are_the_regions_or_one_for_all() -> None:
-    of, worn = regions(BODY), by_region(BODY).colour
+def test_labels_are_the_regions_or_one_for_all() -> None:
+    of, worn = regions(BODY), region_labels(BODY).label
     assert np.array_equal(worn[of <= max(Region)], of[of <= max(Region)])
     assert set(worn.tolist()) == {int(region) for region in Region}
-    assert set(as_silhouette(BODY).colour.tolist()) == {1}
-
-
-@pytest.mark.parametrize("dress", [by_region, as_silhouette])
-def test_hidden_arms_are_found_by_their_colour(dress) -> None:  # type: ignore[no-untyped-def]
-    dressed = dress(BODY)
-    for colour in range(1, 11):
-        mine = dressed.sleeves[dressed.sleeve_start[colour] : dressed.sleeve_start[colour + 1]]
-        assert (dressed.colour[mine] == colour).all()
-    assert len(dressed.sleeves) == dressed.sleeve_start[-1]
+    assert set(silhouette_labels(BODY).label.tolist()) == {1}
 
 
 def test_a_body_without_legs_is_refused() -> None:
     with pytest.raises(ValueError, match="no legs"):
-        by_region(build_model(1.75))
+        region_labels(build_model(1.75))
 
 
 def test_pixels_are_counted_by_limb() -> None:
-    of, centres = labels(BODY), BODY.centres_m
+    of, centres = region_labels(BODY).area, BODY.centres_m
     knee = BODY.rest_m[INDEX["leftLowerLeg"], 1]
     for thigh, shin, side in (
-        (Label.LEFT_THIGH, Label.LEFT_SHIN, 1.0),
-        (Label.RIGHT_THIGH, Label.RIGHT_SHIN, -1.0),
+        (Area.LEFT_THIGH, Area.LEFT_SHIN, 1.0),
+        (Area.RIGHT_THIGH, Area.RIGHT_SHIN, -1.0),
     ):
         assert (side * centres[(of == thigh) | (of == shin), 0] > -0.02).all()
         assert centres[of == thigh, 1].mean() > knee > centres[of == shin, 1].mean()
-    assert centres[of == Label.HEAD, 1].min() > centres[of == Label.TRUNK, 1].mean()
-    assert (by_region(BODY).patch == of).all()
+    assert centres[of == Area.HEAD, 1].min() > centres[of == Area.TORSO, 1].mean()
+    assert not np.isin(of, TORSO_QUARTERS).any()
+    on_arms = np.isin(BODY.part, (LEFT_ARM, RIGHT_ARM))
+    carried = on_arms & (BODY.area > 0)
+    assert (of[carried] == BODY.area[carried]).all()
+    assert set(of[on_arms & ~carried].tolist()) == {Area.LEFT_WRIST, Area.RIGHT_WRIST}

@@ -1,0 +1,33 @@
+"""What the pictures are compared with: labels of the body's surface, as one kind of evidence tells them apart."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.model import BodyModel
+from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.types import Bytes, Ints
+
+MAX_LABELS = 16  # all labels are smaller: kernels keep a bit or a list of each
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceLabels:
+    """T triangles of a body, of which S on the arms have a label. Labels are those that a picture's pixels get."""
+
+    label: Bytes  # (T,) 0: has none
+    area: Bytes  # (T,) the `Area` where its pixels are counted
+    arms: Ints  # (S,) triangles by label: the picture may show them where the body as drawn hides them
+    arms_start: Ints  # (MAX_LABELS + 1,) first place in `arms` of each label, and the end
+
+
+def surface_labels(
+    model: BodyModel, label: NDArray[np.uint8], area: NDArray[np.uint8]
+) -> SurfaceLabels:
+    """Labels and areas (T,) of a body's triangles."""
+    on_arms = (model.part == LEFT_ARM) | (model.part == RIGHT_ARM)
+    labelled = np.flatnonzero(on_arms & (label > 0))
+    arms = labelled[np.argsort(label[labelled], kind="stable")]
+    start = np.searchsorted(label[arms], np.arange(MAX_LABELS + 1))
+    return SurfaceLabels(label, area, arms, start)
