@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from mocapd.body.model import BodyModel
-from mocapd.fit.solver import Fit, confirmed_parts
+from mocapd.fit.fit_result import Fit, confirmed_parts
 from mocapd.fit.surface_labels import SurfaceLabels, surface_labels
 from mocapd.shirt.standard_shirt import standard_shirt
 

@@ -10,9 +10,10 @@ from mocapd.body.pose_space import full_body
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
 from mocapd.clock import seconds
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Track
 from mocapd.tracking.cues.clothes.clothes_confidence import (

@@ -6,8 +6,8 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, step_between
-from mocapd.fit.solver import Fit
 from mocapd.types import Floats
 
 _UNSEEN = 0.15  # confirmation of an arm up to which its velocity is not believed at all

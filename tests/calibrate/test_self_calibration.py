@@ -27,7 +27,8 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, from_camera, to_camera
 from mocapd.shirt.garment import shirt_labels

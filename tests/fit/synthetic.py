@@ -10,7 +10,8 @@ from mocapd.body.model import BodyModel, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, moved
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database.key_poses import arm_rotations

@@ -8,9 +8,9 @@ from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.collision_kernels import SLICES, TorsoSlices, depth_in_torso, push_arms_out
-from mocapd.fit.collision_term import TorsoHull, arm_chains
 from mocapd.fit.motion_state import stepped
+from mocapd.fit.terms.collision_kernels import SLICES, TorsoSlices, depth_in_torso, push_arms_out
+from mocapd.fit.terms.collision_term import TorsoHull, arm_chains
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 

@@ -86,7 +86,7 @@ def test_a_second_camera_and_a_look_at_an_arm_make_it_smaller() -> None:
     def told_m(n_cameras: int, left: str) -> Floats:
         by = fitter(n_cameras)
         state = standing(left=left)
-        fit = by.fit(state, views_of(by, state), 1.0 / 30.0, 3, learn_shape=False)
+        fit = by.fit(state, views_of(by, state), 1.0 / 30.0, 3)
         covariance = pose_covariance(by.model, fit.H)
         return joint_uncertainty_m(by.model, *by.joints(fit.state), covariance)
 

@@ -74,7 +74,7 @@ def test_a_fit_says_what_its_cameras_cannot() -> None:
     depth_sd = []
     for cameras in (1, 2):
         by = fitter(cameras)
-        fit = by.fit(truth, views_of(by, truth), 1 / 30, 2, learn_shape=False)
+        fit = by.fit(truth, views_of(by, truth), 1 / 30, 2)
         ray = truth.root_m + by.drawings[0].camera.R.T @ by.drawings[0].camera.t_m
         ray /= np.linalg.norm(ray)
         depth_sd.append(float(np.sqrt(ray @ fit.covariance[:3, :3] @ ray)))

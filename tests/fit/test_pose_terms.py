@@ -13,11 +13,12 @@ from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, stepped
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.distance_measuring import measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm, MeasuredDistances
 from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
@@ -60,7 +61,7 @@ def posed(root: Floats, local: Floats) -> PosedJoints:
     return out
 
 
-def system(term: PoseTerm, root: Floats, local: Floats) -> tuple[float, Floats, Floats]:
+def system(term: Term, root: Floats, local: Floats) -> tuple[float, Floats, Floats]:
     H, b = np.zeros((BODY.n_pose, BODY.n_pose)), np.zeros(BODY.n_pose)
     return term.add(posed(root, local), SHAPED, H, b), H, b
 
@@ -90,7 +91,7 @@ def distances(root: Floats, local: Floats, farther_m: Floats) -> MeasuredDistanc
     )
 
 
-def terms() -> list[tuple[PoseTerm, float]]:
+def terms() -> list[tuple[Term, float]]:
     """Each with a residual so small that its weight hardly changes, and how high the body is above where it stands."""
     rng = np.random.default_rng(5)
     local = bent()
@@ -123,7 +124,7 @@ def test_rows_are_the_derivatives_of_the_cost(which: int) -> None:
         assert slope == pytest.approx(-2.0 * b[k], rel=0.03, abs=2e-3 * np.abs(b).max())
 
 
-def settled(term: PoseTerm, root: Floats, local: Floats) -> tuple[Floats, Floats]:
+def settled(term: Term, root: Floats, local: Floats) -> tuple[Floats, Floats]:
     """After ten steps, with a little that holds the pose."""
     for _ in range(10):
         _, H, b = system(term, root, local)
@@ -164,14 +165,14 @@ def test_a_raised_foot_is_left_in_the_air_and_a_jump_hardly_held() -> None:
     assert abs(high) < 0.35 * abs(low)
 
 
-def fitted(terms: tuple[PoseTerm, ...], start: MotionState, truth: MotionState) -> Floats:
+def fitted(terms: tuple[Term, ...], start: MotionState, truth: MotionState) -> Floats:
     """Joints after fitting the true silhouettes of both cameras side by side."""
     fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [2, 2], FitParams())
     views = []
     for i, drawing in enumerate(fitter.drawings):
         ids = drawing.render(truth, 0.0, (0, 0, 320, 240)).copy()
         views.append(View(i, (0, 0, 320, 240), ids, np.full(ids.shape, 255, np.uint8), 0.0))
-    fit = fitter.fit(start, views, 0.4, 10, learn_shape=False, terms=terms)
+    fit = fitter.fit(start, views, 0.4, 10, terms=terms)
     return fitter.joints(fit.state)[0]
 
 

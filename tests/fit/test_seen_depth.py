@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from mocapd.fit.depth_agreement_kernels import compare_depths
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.depth_agreement_kernels import compare_depths
+from mocapd.fit.view import View
 from mocapd.types import Floats
 from mocapd.vision.raster_kernels import NOTHING
 from tests.fit.synthetic import FACTOR, LABELS, MODEL, standing, stepped, textured_greys

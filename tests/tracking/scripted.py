@@ -14,8 +14,9 @@ from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local, joint_positions, rest_pose
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.tracking.base import Track

@@ -24,7 +24,8 @@ from mocapd.fit.motion_state import (
     step_between,
     stepped,
 )
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.types import Camera, Floats, FrameSet

@@ -11,9 +11,11 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.fit.body_drawing import IdMapRenderer, image_scales
+from mocapd.fit.fit_result import Fit, confirmed_parts
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter, View, confirmed_parts
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS
@@ -95,8 +97,8 @@ class LightRefinement:
 
     def fit(self, state: MotionState, views: list[View], turn: int) -> Fit:
         """The body in these views, its arms searched for."""
-        fit = self.fitter.fit(state, views, LOOSE_S, self._params.fit.iterations, learn_shape=False)
-        return self._arms.improve(fit, views, LOOSE_S, turn, learn_shape=False)[0]
+        fit = self.fitter.fit(state, views, LOOSE_S, self._params.fit.iterations)
+        return self._arms.improve(fit, views, LOOSE_S, turn)[0]
 
     def classify(self, index: int, fit: Fit) -> View | None:
         """The picture's colours, given where the body was; None when it left the picture."""

@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.fit.idmap_term import CameraRows, search_within
-from mocapd.fit.idmap_term_kernels import ComparedPictures
 from mocapd.fit.motion_state import MotionState, moved
-from mocapd.fit.nearest_pixel_kernels import offsets_by_distance
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.id_map_kernels import ComparedPictures
+from mocapd.fit.terms.id_map_sums import CameraSums, search_within
+from mocapd.fit.terms.nearest_pixel_kernels import offsets_by_distance
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
@@ -56,15 +57,15 @@ class RowGatherer:
 
     def gather(self, state: MotionState, view: View) -> BodyRows:
         """The rows of one camera, at every pixel."""
-        fitter, n_shape = self.fitter, self.fitter.model.n_shape
-        rows = CameraRows(fitter.model)
+        fitter, model = self.fitter, self.fitter.model
+        rows = CameraSums(model)
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
-        drawn = drawing.draw(*moved(fitter.model, state, view.dt_s), body, view.roi)
+        drawn = drawing.draw(*moved(model, state, view.dt_s), body, view.roi)
         rows.gather(
             drawing, body, ComparedPictures(*drawn, view.ids, view.pixel_weight), self._search,
-            n_shape, fitter.params.row_weight,
+            model.n_pose + model.n_shape, fitter.params.row_weight,
         )  # fmt: skip
-        H, b = rows.system(fitter.model.n_pose + n_shape)
+        H, b = rows.by_size[model.n_pose + model.n_shape][:2]
         at_m = drawing.posed.joints[0].copy()
         return BodyRows(
             view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost

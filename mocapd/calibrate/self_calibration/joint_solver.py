@@ -21,7 +21,8 @@ from mocapd.errors import ConfigError
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, stepped
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
@@ -111,7 +112,7 @@ class JointSolver:
         for keyframe in keyframes:
             seen = keyframe_views(keyframe, self._work)
             fits = [
-                fitter.fit(s, seen, params.loose_s, 8, learn_shape=False)
+                fitter.fit(s, seen, params.loose_s, 8)
                 for s in initial_states(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)

@@ -15,8 +15,10 @@ from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, Pat
 from mocapd.clock import seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, gone_on, step_between
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.garment import shirt_labels
@@ -47,9 +49,7 @@ class _Follower:
         last, dt_s = self._before(keyframe.t_ns)
         if last is not None:
             starts = [replace(s, velocity=last.velocity) for s in starts]
-        fits = [
-            self._fitter.fit(s, views, _LOOSE_S, _ITERATIONS, learn_shape=False) for s in starts
-        ]
+        fits = [self._fitter.fit(s, views, _LOOSE_S, _ITERATIONS) for s in starts]
         if last is not None:
             fits.append(self._predicted(last, views, dt_s))
         best = min(fits, key=lambda fit: fit.cost)
@@ -78,7 +78,7 @@ class _Follower:
 
     def _predicted(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
         state = gone_on(self._model, last, dt_s, _DAMPING)
-        return self._fitter.fit(state, views, dt_s, _ITERATIONS, learn_shape=False)
+        return self._fitter.fit(state, views, dt_s, _ITERATIONS)
 
 
 def followed_together(

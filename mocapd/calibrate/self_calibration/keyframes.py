@@ -10,7 +10,7 @@ from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, PatchSighting
 from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
-from mocapd.fit.solver import View
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import from_camera
 from mocapd.geometry.triangulation import triangulate

@@ -14,7 +14,8 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information, known_of, step_between
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track, Tracker

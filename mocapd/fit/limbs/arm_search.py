@@ -8,6 +8,7 @@ import numpy as np
 from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.pose_space import SIDES, PoseSpace
 from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
@@ -16,8 +17,9 @@ from mocapd.fit.limbs.limb_scores import know_depths, score_arm_poses, score_han
 from mocapd.fit.limbs.reaching import reaching_poses
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import arm_motions, unusualness
-from mocapd.fit.solver import Fit, Fitter, View
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -53,8 +55,8 @@ class ArmSearch:
         views: Sequence[View],
         dt_s: float,
         turn: int,
-        learn_shape: bool,
-        terms: Sequence[PoseTerm] = (),
+        terms: Sequence[Term] = (),
+        learn_shape: bool = False,
     ) -> tuple[Fit, tuple[str, ...]]:
         """A better fit, if another pose of an uncertain arm gives one, and the sides that changed.
 

@@ -12,14 +12,16 @@ import numpy as np
 from mocapd.body.areas import Area
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import LegSearchParams
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import seldom, unusual_leg, usual_leg
-from mocapd.fit.solver import Fit, Fitter, View
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -54,7 +56,7 @@ class LegSearch:
         views: Sequence[View],
         dt_s: float,
         turn: int,
-        terms: Sequence[PoseTerm] = (),
+        terms: Sequence[Term] = (),
         motion: Floats | None = None,
     ) -> tuple[Fit, tuple[str, ...]]:
         """A better fit, if another pose of an uncertain leg gives one, and the sides that changed.
@@ -64,7 +66,7 @@ class LegSearch:
         p = self.params
         changed = []
         refit = partial(
-            self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=False, fine=1, motion=motion, terms=terms
+            self.fitter.fit, views=views, dt_s=dt_s, iterations=3, fine=1, motion=motion, terms=terms
         )  # fmt: skip
         for side, leg in self.legs.items():
             if confirmed(side, fit) >= p.uncertain:

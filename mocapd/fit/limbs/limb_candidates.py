@@ -13,7 +13,8 @@ from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.limbs.mirroring_kernels import mirrored_in_depth
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit
 from mocapd.types import Floats
 
 

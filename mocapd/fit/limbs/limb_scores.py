@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from mocapd.fit.body_drawing import PartialRender
 from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, placed
 from mocapd.fit.limbs.limb_candidates import turned_rad2
-from mocapd.fit.limbs.limb_search_kernels import ArmSamples, crowd_arms, score_arms
+from mocapd.fit.limbs.limb_search_kernels import ArmSamples, score_arms, trunk_depths
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.types import Floats
 
 PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m]; of usual lenses at some 2.7 m
@@ -37,14 +38,14 @@ def score_arm_poses(
     what lies where the picture shows no label that contradicts it.
     """
     model = fitter.model
-    body = fitter.shaper(state.factors)
+    body, arms = fitter.shaper(state.factors), fitter.trunk.arms
     samples = placed(body, arm, arm.labelled)
     scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
-    crowd_arms(
-        hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.torso(body),
-        fitter.arms.hips, fitter.arms.chest, fitter.arms.top, depths_m2,
+    trunk_depths(
+        hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.trunk.slices(body),
+        arms.hips, arms.chest, arms.top, depths_m2,
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
     # an arm before a trunk that looks like it is told by depths

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints
 from mocapd.body.posing_kernels import quat_matrix, quat_multiply
-from mocapd.fit.collision_kernels import ALONG, TorsoSlices, depth_in_torso
+from mocapd.fit.terms.collision_kernels import ALONG, TorsoSlices, depth_in_torso
 
 Array = NDArray[np.float64]
 _EDGE_PX = 2  # by how much the rest of the body may be drawn beside where it is
@@ -28,7 +28,7 @@ class ArmSamples(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def crowd_arms(
+def trunk_depths(
     hypotheses: Array,
     chain: NDArray[np.int64],
     parents: NDArray[np.int64],

@@ -13,7 +13,8 @@ from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.limbs.reaching_kernels import bend_to, rotations_of_bends
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import GRID_PX, grid_rays
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Floats

@@ -30,7 +30,7 @@ class MeasuredDistances:
 
 
 class DistanceTerm:
-    """The distances of one frame set for one body model, a `PoseTerm`."""
+    """The distances of one frame set for one body model, a `Term`."""
 
     is_measured = True
 
@@ -39,7 +39,7 @@ class DistanceTerm:
         self._information = 1.0 / measured.sd_m**2
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
-        """See `PoseTerm`."""
+        """See `Term`."""
         m, seen = self._model, self._measured
         cost: float = pull_along_rays(
             seen.triangle, seen.origin_m, seen.rays, seen.distance_m, self._information, _ROBUST_M,

@@ -28,7 +28,7 @@ class FloorParams:
 
 
 class FloorTerm:
-    """The floor at y = 0 under one body model, a `PoseTerm`."""
+    """The floor at y = 0 under one body model, a `Term`."""
 
     is_measured = False
 
@@ -38,7 +38,7 @@ class FloorTerm:
         self._feet = np.array([INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")])
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
-        """See `PoseTerm`."""
+        """See `Term`."""
         m, p = self._model, self._params
         cost: float = stand_on_floor(
             self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.standing_sd_m**2),

@@ -42,7 +42,7 @@ class JointRays:
 
 
 class JointTerm:
-    """What the cameras of one frame set saw of one body's joints, a `PoseTerm`."""
+    """What the cameras of one frame set saw of one body's joints, a `Term`."""
 
     is_measured = False
 
@@ -105,7 +105,7 @@ class JointTerm:
         return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if seen.any() else 0.0
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
-        """See `PoseTerm`."""
+        """See `Term`."""
         m, p = self._model, self._params
         cost = 0.0
         for one in self.seen:

@@ -8,8 +8,10 @@ from mocapd.body.areas import ARM_AREAS
 from mocapd.each import in_turn
 from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.segmentation.bare_skin import face_disc
 from mocapd.shirt.segmentation.camera_segmenter import CameraSegmenter

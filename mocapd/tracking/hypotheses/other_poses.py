@@ -5,13 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_search import is_uncertain
 from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.pose_prior import unusual_legs
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
@@ -32,7 +34,7 @@ from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _TURNS_S = 0.4  # a body that is turned round is held as loosely as a prediction over this time
 
-Terms = Sequence[PoseTerm]
+Terms = Sequence[Term]
 
 
 class OtherPoses:
@@ -87,7 +89,7 @@ class OtherPoses:
         fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
         is_long = found.tried or any(is_uncertain(one, fit, self._params.limbs) for one in SIDES)
-        fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
+        fit, arms = dressed.arms.improve(fit, views, dt_s, turn, terms)
         changed = [*found.changed, *(f"{side}_arm" for side in arms)]
         probe("arms")
         self._facing.look(dressed.fitter, fit.state, views, frames, turn)
@@ -187,7 +189,7 @@ class OtherPoses:
         unusual = 0.0 if hips_too else 1.0
         return cheapest_fit(
             fit, starts,
-            lambda start: fitter.fit(start, views, dt_s, p.crossed_iterations, learn_shape=False, terms=terms),
+            lambda start: fitter.fit(start, views, dt_s, p.crossed_iterations, terms=terms),
             lambda one: one.cost + unusual * unusual_legs(one.state.local_xyzw), p.crossed_gain,
         )  # fmt: skip
 
@@ -219,4 +221,4 @@ class OtherPoses:
         for view in views:
             fitter.drawings[view.index].render(start, view.dt_s, view.roi)
         iterations, terms = self._params.start.iterations, anew.measured(start, views)
-        return fitter.fit(start, views, _TURNS_S, iterations, learn_shape=False, terms=terms)
+        return fitter.fit(start, views, _TURNS_S, iterations, terms=terms)

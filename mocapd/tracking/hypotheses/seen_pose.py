@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
@@ -38,7 +39,7 @@ def starts_as_seen(
     fitter: Fitter,
     fit: Fit,
     seen: JointTerm,
-    held: Sequence[PoseTerm],
+    held: Sequence[Term],
     params: SeenPoseParams,
     legs_alone: bool = False,
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
@@ -94,7 +95,7 @@ def seen_pose(
     fitter: Fitter,
     state: MotionState,
     seen: JointTerm,
-    held: Sequence[PoseTerm],
+    held: Sequence[Term],
     params: SeenPoseParams,
     limbs: Collection[str] = (),
 ) -> MotionState:
@@ -106,9 +107,7 @@ def seen_pose(
         state = replace(state, local_xyzw=rotations.canonical(local))
     state = _bent(fitter, state, seen, limbs)
     terms = (*held, seen.trusting)
-    return fitter.fit(
-        state, (), params.loose_s, params.iterations, learn_shape=False, terms=terms
-    ).state
+    return fitter.fit(state, (), params.loose_s, params.iterations, terms=terms).state
 
 
 def _bent(

@@ -9,12 +9,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.two_bones import LIMBS
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.tracking.hypotheses.seen_pose import WHOLE, SeenPoseParams, starts_as_seen
 from mocapd.types import Floats
 
@@ -26,7 +28,7 @@ class Anew:
     """What a pose is judged by that is not the predicted one: views of it, which draws it, and then its terms."""
 
     classified: Callable[[MotionState], list[View]]
-    measured: Callable[[MotionState, Sequence[View]], Sequence[PoseTerm]]
+    measured: Callable[[MotionState, Sequence[View]], Sequence[Term]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +37,7 @@ class Judged:
 
     fit: Fit
     views: Sequence[View]
-    terms: Sequence[PoseTerm]
+    terms: Sequence[Term]
     changed: tuple[str, ...] = ()
     tried: bool = False
 
@@ -66,7 +68,7 @@ def tried_as_seen(
             continue
         terms = anew.measured(start, views)
         fit = fitter.fit(
-            start, views, dt_s, params.fit_iterations, learn_shape=False, rendered=True, fine=1, motion=motion, terms=terms
+            start, views, dt_s, params.fit_iterations, rendered=True, fine=1, motion=motion, terms=terms
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - params.farther * away_rad2

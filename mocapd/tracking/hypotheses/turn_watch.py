@@ -5,7 +5,7 @@ From the side both ways look nearly alike; which one agrees better, time after t
 
 from dataclasses import dataclass
 
-from mocapd.fit.solver import Fit
+from mocapd.fit.fit_result import Fit
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
@@ -145,9 +146,7 @@ class KeypointInitialiser:
             if posed is None:
                 return None
             held = (self._floor, joints.trusting)
-            state = fitter.fit(
-                posed, (), self._start.loose_s, p.iterations, learn_shape=False, terms=held
-            ).state
+            state = fitter.fit(posed, (), self._start.loose_s, p.iterations, terms=held).state
             hips_m = state.root_m
         fit = fit_to_blobs(
             fitter, views_of(who, self._views.present), state, self._start.iterations, (self._floor, joints),

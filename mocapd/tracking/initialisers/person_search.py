@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.clock import nanoseconds
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import (

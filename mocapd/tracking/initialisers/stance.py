@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.body_drawing import Roi
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter, View
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, rays
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
@@ -159,7 +161,7 @@ def first_fit(
     views: Sequence[View],
     factors: Floats,
     information: Floats,
-    terms: Sequence[PoseTerm],
+    terms: Sequence[Term],
     params: StartParams,
 ) -> Generator[None, None, Fit]:
     """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
@@ -193,11 +195,11 @@ def fit_to_blobs(
     views: Sequence[View],
     state: MotionState,
     iterations: int,
-    terms: Sequence[PoseTerm],
+    terms: Sequence[Term],
     params: StartParams,
 ) -> Fit:
     """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
-    return fitter.fit(state, views, params.loose_s, iterations, learn_shape=False, terms=terms)
+    return fitter.fit(state, views, params.loose_s, iterations, terms=terms)
 
 
 def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:

@@ -12,7 +12,8 @@ from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
 from mocapd.fit.limbs.leg_search import LegSearch, confirmed
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.pose_prior import seldom
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels
 from tests.geometry.rigs import ring
@@ -51,14 +52,14 @@ def test_a_knee_that_came_up_unseen_is_found(side: str) -> None:
     views = views_of(posed(side, 1.4, 1.8))
     there = FITTER.joints(posed(side, 1.4, 1.8))[0]
     search = LegSearch(FITTER, PARAMS)
-    fit = FITTER.fit(posed(side, 0.0, 0.0), views, TICK_S, 4, learn_shape=False)
+    fit = FITTER.fit(posed(side, 0.0, 0.0), views, TICK_S, 4)
     missed_m = np.linalg.norm(FITTER.joints(fit.state)[0][OUTER] - there[OUTER], axis=1).max()
     assert confirmed(side, fit) < PARAMS.uncertain
     changed: set[str] = set()
     for turn in range(6):
         fit, sides = search.improve(fit, views, TICK_S, turn)
         changed.update(sides)
-        fit = FITTER.fit(fit.state, views, TICK_S, 4, learn_shape=False)
+        fit = FITTER.fit(fit.state, views, TICK_S, 4)
     found_m = np.linalg.norm(FITTER.joints(fit.state)[0][OUTER] - there[OUTER], axis=1).max()
     assert side in changed
     assert missed_m > 0.3
@@ -68,7 +69,7 @@ def test_a_knee_that_came_up_unseen_is_found(side: str) -> None:
 def test_legs_that_are_where_they_are_seen_stay_there() -> None:
     truth = posed("left", 0.7, 1.0)
     views = views_of(truth)
-    fit = FITTER.fit(truth, views, TICK_S, 4, learn_shape=False)
+    fit = FITTER.fit(truth, views, TICK_S, 4)
     search = LegSearch(FITTER, PARAMS)
     for turn in range(6):
         fit, sides = search.improve(fit, views, TICK_S, turn)
@@ -87,10 +88,10 @@ def test_a_deep_squat_with_the_knees_out_is_found() -> None:
     for side, mirror in (("left", 1.0), ("right", -1.0)):  # as somebody kneels
         local[INDEX[side + "UpperLeg"]] = rotations.exp(np.array([-0.4, 0.0, 0.2 * mirror]))
     search = LegSearch(FITTER, PARAMS)
-    fit = FITTER.fit(replace(squat, local_xyzw=local), views, TICK_S, 4, learn_shape=False)
+    fit = FITTER.fit(replace(squat, local_xyzw=local), views, TICK_S, 4)
     for turn in range(12):
         fit, _ = search.improve(fit, views, TICK_S, turn)
-        fit = FITTER.fit(fit.state, views, TICK_S, 4, learn_shape=False)
+        fit = FITTER.fit(fit.state, views, TICK_S, 4)
     found_m = np.linalg.norm(FITTER.joints(fit.state)[0][OUTER] - there[OUTER], axis=1)
     assert found_m.max() < 0.12
 
@@ -113,7 +114,7 @@ def test_a_leg_does_not_settle_on_the_other_one() -> None:
     there = FITTER.joints(replace(truth, local_xyzw=local))[0]
     local = local.copy()
     local[INDEX["leftUpperLeg"]] = rotations.exp(np.array([0.0, 0.0, -0.12]))  # onto the right one
-    fit = FITTER.fit(replace(truth, local_xyzw=local), views, TICK_S, 1, learn_shape=False)
+    fit = FITTER.fit(replace(truth, local_xyzw=local), views, TICK_S, 1)
     search = LegSearch(FITTER, PARAMS)
     for turn in range(6):
         fit, _ = search.improve(fit, views, TICK_S, turn)
@@ -130,6 +131,6 @@ def test_a_leg_out_of_every_picture_is_not_asked() -> None:
         seen = (x0, y0, x1, y0 + waist)
         views.append(replace(one, roi=seen, ids=np.ascontiguousarray(one.ids[:waist]),
                              pixel_weight=np.ascontiguousarray(one.pixel_weight[:waist])))  # fmt: skip
-    fit = FITTER.fit(truth, views, TICK_S, 2, learn_shape=False)
+    fit = FITTER.fit(truth, views, TICK_S, 2)
     assert fit.visible.sum() > 0.0
     assert all(confirmed(side, fit) >= PARAMS.uncertain for side in SIDES)

@@ -19,7 +19,8 @@ from mocapd.fit.limbs.limb_candidates import best_poses, candidates
 from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
 from mocapd.fit.limbs.limb_search_kernels import score_arms
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats
@@ -296,9 +297,9 @@ def by_left_hand(by: Fitter, state: MotionState, view: View) -> NDArray[np.bool_
 def test_an_arm_is_confirmed_where_the_pictures_show_it() -> None:
     by, truth = fitter(2), standing("t_pose", "t_pose")
     views = views_of(by, truth)
-    right = by.fit(truth, views, 1 / 30, 1, learn_shape=False)
+    right = by.fit(truth, views, 1 / 30, 1)
     moved = swapped(truth, "left", standing("hanging", "hanging"))
-    wrong = by.fit(moved, views, 1 / 30, 1, learn_shape=False)
+    wrong = by.fit(moved, views, 1 / 30, 1)
     for side in SIDES:
         assert right.confirmed_arms[side] > 0.9
     assert wrong.confirmed_arms["left"] < 0.4
@@ -311,14 +312,14 @@ def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
     views, search = views_of(by, truth), ArmSearch(by, params)
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     # one iteration, so that the fit itself does not find back
-    fit = by.fit(wrong, views, 1 / 30, 1, learn_shape=False)
+    fit = by.fit(wrong, views, 1 / 30, 1)
     assert is_uncertain("left", fit, params)
     assert not is_uncertain("right", fit, params)
     changed: set[str] = set()
     for turn in range(4):
-        fit, sides = search.improve(fit, views, 1 / 30, turn, learn_shape=False)
+        fit, sides = search.improve(fit, views, 1 / 30, turn)
         changed |= set(sides)
-    fit = by.fit(fit.state, views, 1 / 30, 8, learn_shape=False)
+    fit = by.fit(fit.state, views, 1 / 30, 8)
     assert changed == {"left"}
     assert not is_uncertain("left", fit, params)
     for side in SIDES:
@@ -336,11 +337,11 @@ def test_a_hidden_arm_goes_where_its_hand_is_seen() -> None:
     off = []
     for seen in (hidden, [replace(view, bare=None) for view in hidden]):
         fit, search = (
-            by.fit(wrong, seen, 1 / 30, 1, learn_shape=False),
+            by.fit(wrong, seen, 1 / 30, 1),
             ArmSearch(by, LimbSearchParams()),
         )
         for turn in range(8):
-            fit, _ = search.improve(fit, seen, 1 / 30, turn, learn_shape=False)
+            fit, _ = search.improve(fit, seen, 1 / 30, turn)
         off_m = arm_joints(by, fit.state, "left")[2] - arm_joints(by, truth, "left")[2]
         off.append(float(np.linalg.norm(off_m)))
     assert off[0] < 0.12
@@ -363,7 +364,7 @@ def test_arms_that_agree_are_not_searched() -> None:
     params = LimbSearchParams()
     by, truth = fitter(2), standing()
     views = views_of(by, truth)
-    fit = by.fit(truth, views, 1 / 30, 2, learn_shape=False)
-    again, sides = ArmSearch(by, params).improve(fit, views, 1 / 30, 0, learn_shape=False)
+    fit = by.fit(truth, views, 1 / 30, 2)
+    again, sides = ArmSearch(by, params).improve(fit, views, 1 / 30, 0)
     assert again is fit
     assert sides == ()

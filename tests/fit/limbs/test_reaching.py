@@ -11,7 +11,8 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.limb_scores import score_arm_poses
 from mocapd.fit.limbs.reaching import poses_to, reaching_poses
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.types import Floats
 from tests.fit.synthetic import FACTOR, LABELS, MODEL, standing
 from tests.geometry.rigs import looking_at

@@ -8,9 +8,9 @@ import pytest
 
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import View
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
@@ -80,9 +80,9 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
     goal_m = FITTER.joints(there)[0]
     joints = seen_at(goal_m)
     views = drawn(here)
-    fit = FITTER.fit(here, views, DT_S, 2, learn_shape=False, rendered=True, terms=(joints,))
+    fit = FITTER.fit(here, views, DT_S, 2, rendered=True, terms=(joints,))
 
-    def measured(_: MotionState, __: Sequence[View]) -> Sequence[PoseTerm]:
+    def measured(_: MotionState, __: Sequence[View]) -> Sequence[Term]:
         return (joints,)
 
     now = Judged(fit, views, (joints,))
@@ -100,7 +100,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
 
 def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
     here = standing(0.0, 0.1)
-    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    fit = FITTER.fit(here, drawn(here), DT_S, 1)
     now = Judged(fit, drawn(here), ())
     seen = seen_at(FITTER.joints(fit.state)[0])
     anew = Anew(drawn, lambda _, __: ())
@@ -119,7 +119,7 @@ def test_legs_that_are_taken_for_each_other_are_no_reason_to_move_them() -> None
     here = kicking(standing(0.0, 0.1), "left")
     here_m = FITTER.joints(here)[0]
     taken_m = with_legs_of_the_other_side(here_m)
-    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    fit = FITTER.fit(here, drawn(here), DT_S, 1)
     for seen_m, exchanged in (
         (here_m, False),
         (taken_m, True),
@@ -136,7 +136,7 @@ def test_where_the_upper_body_is_known_legs_are_tried_as_seen_unless_the_trunk_i
     None
 ):
     here = kicking(standing(0.0, 0.1), "left")
-    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    fit = FITTER.fit(here, drawn(here), DT_S, 1)
     here_m = FITTER.joints(fit.state)[0]
     legs_m = with_legs_of_the_other_side(here_m)
     ((start, changed), *_) = starts_as_seen(
@@ -153,7 +153,7 @@ def test_where_the_upper_body_is_known_legs_are_tried_as_seen_unless_the_trunk_i
 
 def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
     here, there = standing(0.0, 0.1), kicking(standing(0.0, 0.1), "left")
-    fit = FITTER.fit(here, drawn(here), DT_S, 1, learn_shape=False)
+    fit = FITTER.fit(here, drawn(here), DT_S, 1)
     goal_m = FITTER.joints(there)[0]
     ((start, changed), *_) = starts_as_seen(FITTER, fit, seen_at(goal_m), (), PARAMS)
     assert changed == ("left_leg",)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.fit.solver import Fit
+from mocapd.fit.fit_result import Fit
 from mocapd.tracking.hypotheses.turn_watch import TurnWatch, TurnWatchParams
 from tests.fit.synthetic import standing
 

@@ -7,8 +7,9 @@ from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fit, Fitter
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.clothes_params import StartParams

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.fit.collision_kernels import ALONG
+from mocapd.fit.terms.collision_kernels import ALONG
 from mocapd.published.hecht2009.mass_spring.angular_limits import Hinges, Swings
 
 Array = NDArray[np.float64]

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.body_drawing import Roi, work_size
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.appearance import Appearance, region_distances
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.floor_view import FloorView

@@ -4,7 +4,7 @@ import numpy as np
 
 from mocapd.body.areas import ARM_AREAS, N_AREAS, Area
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.solver import Fit
+from mocapd.fit.fit_result import Fit
 from mocapd.tracking.tracking_state import faded
 from mocapd.types import Floats
 

@@ -8,8 +8,9 @@ import numpy as np
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
+from mocapd.fit.view import View
 from mocapd.tracking.base import Probe, no_time_passes
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFits, ClothesFound, Observed
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams

@@ -10,11 +10,13 @@ from mocapd.body.pose_space import full_body, upper_body
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
@@ -119,7 +121,7 @@ class ClothesFits:
         joints = self.terms.joints
         seen = joints.term(model, map(joints.watch(fitter, somebody, cameras), cameras.present))
         terms = (*self.terms.measured(fitter, somebody, views, frames, 0), *seen)
-        fit = fitter.fit(somebody, views, TICK_S, 2, learn_shape=False, terms=terms)
+        fit = fitter.fit(somebody, views, TICK_S, 2, terms=terms)
         predicted_information(
             fit.covariance, somebody.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
         )
@@ -151,13 +153,13 @@ class ClothesFits:
                 fitter, last, known.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
             )
 
-        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             return (*self.terms.measured(fitter, drawn, shown, frames, turn), *seen.joints)
 
         terms = terms_of(predicted, views)
         probe("clothes.distances")
         fit = fitter.fit(
-            predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms
+            predicted, views, dt_s, p.fit.iterations, rendered=True, motion=motion, terms=terms
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.improve(
@@ -197,14 +199,14 @@ class ClothesFits:
             return None
         fitter = self.fitter
 
-        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             measured = self.terms.measured(fitter, drawn, shown, frames, turn, _BELOW)
             return (*measured, *seen.joints)
 
         terms = terms_of(seen.drawn, seen.views)
         probe("clothes.distances")
         fit = fitter.fit(
-            start, seen.views, dt_s, iterations, learn_shape=False, rendered=seen.drawn is start, fine=1, motion=held,
+            start, seen.views, dt_s, iterations, rendered=seen.drawn is start, fine=1, motion=held,
             terms=terms,
         )  # fmt: skip
         probe("clothes.fit")
@@ -229,7 +231,7 @@ class ClothesFits:
         if not views:
             return None
         fit = fitter.fit(
-            there, views, BEGUN_S, self.params.fit.iterations, learn_shape=False,
+            there, views, BEGUN_S, self.params.fit.iterations,
             terms=self.terms.measured(fitter, there, views, frames, turn),
         )  # fmt: skip
         return self._found(fit, None, BEGUN_S, views, ())
@@ -251,7 +253,7 @@ class ClothesFits:
         if not views:
             return None
         fit = self.silhouettes.fit(
-            start, views, dt_s, iterations, learn_shape=False, fine=1, motion=held, terms=(self.terms.floor,)
+            start, views, dt_s, iterations, fine=1, motion=held, terms=(self.terms.floor,)
         )  # fmt: skip
         if fit.explained >= p.learn_explained:
             self.wardrobe.learn_first(fit.state, cameras)

@@ -4,9 +4,10 @@ from collections.abc import Collection, Sequence
 
 from mocapd.body.model import BodyModel
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.joint_views import JointViews
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
@@ -30,7 +31,7 @@ class PoseTerms:
         frames: FrameSet,
         turn: int,
         only: Collection[int] = (),
-    ) -> tuple[PoseTerm, ...]:
+    ) -> tuple[Term, ...]:
         """The floor, and distances of all regions or of these only, of a body that was drawn last into every view."""
         distances = texture_distances(fitter, drawn, views, frames, turn, self._params, only)
         return (self.floor, *distances)

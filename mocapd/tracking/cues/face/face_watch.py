@@ -13,7 +13,8 @@ import numpy as np
 from mocapd.body.head_proportions import FACE_WIDTH, MIDDLE
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, to_camera
 from mocapd.types import Camera, Floats, FrameSet

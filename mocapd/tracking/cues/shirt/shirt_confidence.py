@@ -5,7 +5,7 @@ import numpy as np
 from mocapd.body.areas import ARM_AREAS, N_AREAS, TORSO_QUARTERS, Area
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.solver import Fit
+from mocapd.fit.fit_result import Fit
 from mocapd.tracking.tracking_state import FADE_S
 from mocapd.types import Floats
 

@@ -11,9 +11,11 @@ from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import Roi, image_scales
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.garment import confirmed_colours, shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -131,7 +133,7 @@ class ShirtCue:
         )  # fmt: skip
         probe("shirt.fit")
         before = fit
-        fit, jumped = self._arms.improve(fit, views, dt_s, turn, learning, terms)
+        fit, jumped = self._arms.improve(fit, views, dt_s, turn, terms, learning)
         probe("shirt.arms")
         if not self._is_seen(fit):
             return None
@@ -164,8 +166,8 @@ class ShirtCue:
         views = self.segmenters.views(start, present)
         if not views:
             return None
-        fit = self.fitter.fit(start, views, BEGUN_S, self.params.fit.iterations, learn_shape=False)
-        fit, _ = self._arms.improve(fit, views, BEGUN_S, turn, learn_shape=False)
+        fit = self.fitter.fit(start, views, BEGUN_S, self.params.fit.iterations)
+        fit, _ = self._arms.improve(fit, views, BEGUN_S, turn)
         if not self._is_acceptable(fit):
             return None
         still = replace(fit.state, velocity=np.zeros(self.model.n_pose))

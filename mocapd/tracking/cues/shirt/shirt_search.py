@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, normalised, rays
 from mocapd.geometry.triangulation import triangulate
@@ -99,7 +101,7 @@ def best_fit(fitter: Fitter, states: Sequence[MotionState], views: Sequence[View
     """Fit all hypotheses a little, the best three more; the one of least cost, None when there is none."""
     if not states:
         return None
-    first = [fitter.fit(s, views, _LOOSE_S, 2, learn_shape=False, fine=1) for s in states]
+    first = [fitter.fit(s, views, _LOOSE_S, 2, fine=1) for s in states]
     first.sort(key=lambda fit: fit.cost)
-    more = [fitter.fit(f.state, views, _LOOSE_S, 4, learn_shape=False) for f in first[:3]]
+    more = [fitter.fit(f.state, views, _LOOSE_S, 4) for f in first[:3]]
     return min(more, key=lambda fit: fit.cost)

@@ -7,7 +7,8 @@ import numpy as np
 
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.stereo.texture_distance import greys_of
 from mocapd.types import FrameSet

@@ -6,10 +6,11 @@ import cv2
 import numpy as np
 
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.distance_measuring import MeasuringParams, measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm
-from mocapd.fit.terms.pose_term import PoseTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
 from mocapd.types import Bytes, FrameSet
 
 
@@ -31,7 +32,7 @@ def texture_distances(
     turn: int,
     params: MeasuringParams,
     only: Collection[int] = (),
-) -> tuple[PoseTerm, ...]:
+) -> tuple[Term, ...]:
     """Distances of the predicted body, which the fitter drew last into every view; none where cameras see other sides.
 
     turn: a running number, by which other points are taken; only: ids of the body's, where not all are wanted.

@@ -7,8 +7,9 @@ import pytest
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.fit_result import Fit
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
-from mocapd.fit.solver import Fit, View
+from mocapd.fit.view import View
 from mocapd.geometry.camera_model import project
 from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence
 from mocapd.types import Floats
@@ -24,7 +25,7 @@ TORSO = [INDEX[name] for name in ("hips", "spine", "chest", "upperChest", "neck"
 def fit_of(n_cameras: int) -> Fit:
     """A fit to what the cameras see of a person in the open."""
     by, state = fitter(n_cameras), standing("t_pose", "t_pose")
-    return by.fit(state, views_of(by, state), 1 / 30, 5, learn_shape=False)
+    return by.fit(state, views_of(by, state), 1 / 30, 5)
 
 
 def behind_a_board(n_cameras: int) -> Fit:
@@ -40,7 +41,7 @@ def behind_a_board(n_cameras: int) -> Fit:
         ids, pixel_weight = view.ids.copy(), view.pixel_weight.copy()
         ids[:, beyond], pixel_weight[:, beyond] = 0, 60
         views.append(replace(view, ids=ids, pixel_weight=pixel_weight))
-    return by.fit(state, views, 1 / 30, 5, learn_shape=False)
+    return by.fit(state, views, 1 / 30, 5)
 
 
 def confidence(fit: Fit, n_cameras: int, away_s: float = 0.0) -> Floats:

@@ -8,7 +8,8 @@ import pytest
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.seen_depth import SeenDepthParams
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.types import Camera, Frame, FrameSet
 from tests.fit.synthetic import CAMERAS, FACTOR, LABELS, MODEL, standing, textured_greys

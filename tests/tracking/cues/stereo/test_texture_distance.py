@@ -5,8 +5,9 @@ import pytest
 
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.solver import Fitter, View
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.distance_measuring import MeasuringParams
+from mocapd.fit.view import View
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
 from mocapd.types import Camera, Floats, Frame, FrameSet
 from tests.fit.synthetic import CAMERAS, LABELS, MODEL, standing, stepped, textured_greys

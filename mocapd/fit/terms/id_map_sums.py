@@ -1,4 +1,4 @@
-"""One camera's rows of the fit: the body as drawn, aligned with the picture as classified."""
+"""One camera's share of the normal equations: the body as drawn, aligned with the picture as classified."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,8 @@ from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.body_drawing import IdMapRenderer
-from mocapd.fit.idmap_term_kernels import (
-    AlignmentSums,
-    ComparedPictures,
-    Search,
-    accumulate,
-)
 from mocapd.fit.surface_labels import SurfaceLabels
+from mocapd.fit.terms.id_map_kernels import AlignmentSums, ComparedPictures, Search, accumulate
 from mocapd.types import Floats
 
 _ROBUST = 0.6  # of the search radius: where a residual has lost half of its weight
@@ -72,14 +67,17 @@ def sum_rows(
     return cost
 
 
-class CameraRows:
-    """One camera's share of the normal equations: H (P,P), b (P,), counts (A,) by area, cost."""
+class CameraSums:
+    """The sums of one camera, by how many unknowns there are, its counts (A,) by area and its cost."""
 
     def __init__(self, model: BodyModel) -> None:
         P = model.n_pose + model.n_shape
         H, b = np.zeros(P * P), np.zeros(P)
-        self.visible, self.matched, self.unexplained = (np.zeros(N_AREAS) for _ in range(3))
-        self._systems = {n: (H[: n * n].reshape(n, n), b[:n]) for n in (model.n_pose, P)}
+        counts = [np.zeros(N_AREAS) for _ in range(3)]
+        self.by_size = {
+            n: AlignmentSums(H[: n * n].reshape(n, n), b[:n], *counts) for n in (model.n_pose, P)
+        }
+        self.visible, self.matched, self.unexplained = counts
         self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))
         self.cost = 0.0
 
@@ -89,24 +87,14 @@ class CameraRows:
         body: Shaped,
         pictures: ComparedPictures,
         search: Search,
-        n_shape: int,
+        n_unknown: int,
         weight: float,
     ) -> None:
-        """Add up anew, from the body that `drawing` posed last; the pictures are on the search's grid.
-
-        n_shape: how many shape factors are columns after those of the pose, none or all. weight: of a
-        pixel's row.
-        """
+        """Add up anew, from the body that `drawing` posed last; the pictures are on the search's grid. n_unknown: those of
+        the pose, or of pose and shape; weight: of a pixel's row."""
         m = drawing.model
-        sums = AlignmentSums(
-            *self._systems[m.n_pose + n_shape], self.visible, self.matched, self.unexplained
-        )
-        xy = drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy
         self.cost = sum_rows(
-            pictures, search, xy, m.surface, drawing.labels, body.centres, m.articulation,
-            drawing.posed, self._d_joints, drawing.pinhole, weight, sums,
+            pictures, search, drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy, m.surface, drawing.labels,
+            body.centres, m.articulation, drawing.posed, self._d_joints, drawing.pinhole, weight,
+            self.by_size[n_unknown],
         )  # fmt: skip
-
-    def system(self, P: int) -> tuple[Floats, Floats]:
-        """H and b as last added up."""
-        return self._systems[P]

@@ -1,4 +1,4 @@
-"""A further term of the fit: rows that do not come from id maps."""
+"""What the fit sums up: something that holds or pulls the body."""
 
 from typing import Protocol
 
@@ -7,7 +7,7 @@ from mocapd.body.shaping import Shaped
 from mocapd.types import Floats
 
 
-class PoseTerm(Protocol):
+class Term(Protocol):
     """What a term must do; it keeps nothing of the poses that it is asked about.
 
     is_measured: whether its rows were measured for one pose, so that its cost tells nothing of poses far from that.

@@ -1,4 +1,5 @@
-"""One Gauss-Newton step of the pose: evidence, motion prior, rest prior, joint limits and shape prior."""
+"""One Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint limits and
+proportions. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`."""
 
 from typing import NamedTuple
 
@@ -6,8 +7,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
+from mocapd.body.joint_limit_kernels import JointLimits
 from mocapd.body.posing_kernels import difference
+from mocapd.fit.terms.held_pose_kernels import pull_back
+from mocapd.fit.terms.joint_limit_term_kernels import keep_in_limits
+from mocapd.fit.terms.tilt_kernels import set_upright
 
 Array = NDArray[np.float64]
 
@@ -49,33 +53,15 @@ def gauss_newton_step(
     A = H.copy()
     g = b.copy()
     away = np.empty(n_pose)
-    difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
     for p in range(n_pose):
         for q in range(n_pose):
             A[p, q] += motion_information[p, q] + rest_information[p, q]
-    _add_pulls(motion_information, away, g)
+    difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
+    pull_back(motion_information, away, g)
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
-    _add_pulls(rest_information, away, g)
-    # by which rotation vector, in the world, the hips lean: of Y over to where they point up
-    x, y, z, w = local[0, 0], local[0, 1], local[0, 2], local[0, 3]
-    A[3, 3] += tilt_information
-    A[5, 5] += tilt_information
-    g[3] -= tilt_information * 2.0 * (y * z + w * x)
-    g[5] += tilt_information * 2.0 * (x * y - w * z)
-    G = joint_of_group.shape[0]
-    excess = np.zeros((G, 3))
-    slope = np.zeros((G, 3, 3))
-    limit_residuals(local, limits, excess, slope)
-    for group in range(G):
-        first = 3 + 3 * group
-        for i in range(3):
-            if excess[group, i] == 0.0:
-                continue
-            for p in range(3):
-                pull = limit_information * slope[group, i, p]
-                g[first + p] -= pull * excess[group, i]
-                for q in range(3):
-                    A[first + p, first + q] += pull * slope[group, i, q]
+    pull_back(rest_information, away, g)
+    set_upright(local[0], tilt_information, A, g)
+    keep_in_limits(local, limits, limit_information, A, g)
     for i in range(P - n_pose):
         for j in range(P - n_pose):
             A[n_pose + i, n_pose + j] += shape_information[i, j]
@@ -84,16 +70,3 @@ def gauss_newton_step(
     for p in range(P):
         g[p] = step[p]
     return g
-
-
-@njit(cache=True, nogil=True)
-def _add_pulls(information: Array, away: Array, g: Array) -> None:
-    """Add information (n,n) times away (n,) to the first of g (P,); n is a multiple of three, and three sums that are made
-    beside each other take a third of the time of one."""
-    for p in range(0, away.shape[0], 3):
-        x, y, z = g[p], g[p + 1], g[p + 2]
-        for q in range(away.shape[0]):
-            x += information[p, q] * away[q]
-            y += information[p + 1, q] * away[q]
-            z += information[p + 2, q] * away[q]
-        g[p], g[p + 1], g[p + 2] = x, y, z

@@ -12,8 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.fit.nearest_pixel_kernels import CELL, labels_in_reach, nearest, nearest_hidden
-from mocapd.fit.row_products_kernels import add_products
+from mocapd.fit.terms.nearest_pixel_kernels import CELL, labels_in_reach, nearest, nearest_hidden
+from mocapd.fit.terms.row_products_kernels import add_products
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
 

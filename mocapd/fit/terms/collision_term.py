@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import TORSO
-from mocapd.fit.collision_kernels import SLICES, ArmChains, TorsoSlices
+from mocapd.fit.terms.collision_kernels import SLICES, ArmChains, TorsoSlices, push_arms_out
 from mocapd.types import Floats, Ints
 
 _BELOW_HIPS_M = 0.12  # the cylinder begins there
@@ -64,3 +65,31 @@ def arm_chains(model: BodyModel) -> ArmChains:
     return ArmChains(
         np.array(chains), np.array(first), INDEX["hips"], INDEX["chest"], INDEX["upperChest"]
     )
+
+
+class CollisionTerm:
+    """The trunk of one body model as a `Term`; remembers the trunk of the last proportions."""
+
+    is_measured = False
+
+    def __init__(self, model: BodyModel, information: float) -> None:
+        """information: of a depth in the trunk [1/m^2]."""
+        self.arms = arm_chains(model)
+        self._model, self._information = model, information
+        self._hull, self._plain_arms = TorsoHull.of(model), plain(self.arms)
+        self._body: Shaped | None = None
+
+    def slices(self, body: Shaped) -> TorsoSlices:
+        """The trunk of a body."""
+        if self._body is not body:
+            self._body, self._slices = body, self._hull.sized(body)
+            self._plain_slices = plain(self._slices)
+        return self._slices
+
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+        """See `Term`."""
+        self.slices(body)
+        cost: float = push_arms_out(
+            posed.R, posed.joints, self._model.parents, self._plain_slices, self._plain_arms, self._information, H, b
+        )  # fmt: skip
+        return cost

@@ -8,19 +8,21 @@ import pytest
 from mocapd.body.arrays import PinholeArrays
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.idmap_term import sum_rows
-from mocapd.fit.idmap_term_kernels import (
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.id_map_kernels import (
     AlignmentSums,
     ComparedPictures,
     Search,
 )
-from mocapd.fit.motion_state import MotionState
-from mocapd.fit.nearest_pixel_kernels import labels_in_reach, offsets_by_distance
-from mocapd.fit.solver import Fit, Fitter, View
+from mocapd.fit.terms.id_map_sums import sum_rows
+from mocapd.fit.terms.nearest_pixel_kernels import labels_in_reach, offsets_by_distance
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.types import Bytes
-from tests.fit import naive_idmap_term
-from tests.fit.naive_idmap_term import Posed, Sums, posed
+from tests.fit import naive_id_map_term
+from tests.fit.naive_id_map_term import Posed, Sums, posed
 from tests.fit.synthetic import CAMERAS, LABELS, MODEL, fitter, standing, stepped, views_of
 
 pytestmark = pytest.mark.kernels
@@ -100,7 +102,7 @@ def test_accumulate_equals_the_naive_twin(
     got = accumulated(
         state, drawn, image_ids, pixel_weight, phase, every, edge_weight, n_shape, grid_px
     )
-    wanted = naive_idmap_term.accumulate(
+    wanted = naive_id_map_term.accumulate(
         MODEL, LABELS, state, drawn, camera, COARSE, image_ids, pixel_weight,
         grid_px, RADIUS_PX, ROBUST_PX, phase, every, edge_weight, n_shape, WEIGHT,
     )  # fmt: skip
@@ -178,7 +180,7 @@ def beside(by: Fitter, truth: MotionState, seed: int) -> MotionState:
 
 
 def fitted(by: Fitter, start: MotionState, views: list[View]) -> Fit:
-    return by.fit(start, views, TICK_S, 8, learn_shape=False)
+    return by.fit(start, views, TICK_S, 8)
 
 
 # What remains of a fit to perfect ids, whose pixels are 9 mm wide at the body: edges in place weigh
@@ -207,10 +209,10 @@ def test_the_cost_falls() -> None:
     views, start = views_of(by, truth), beside(by, truth, 4)
     costs = []
     for iterations in (1, 8):
-        state = by.fit(start, views, TICK_S, iterations, learn_shape=False).state
+        state = by.fit(start, views, TICK_S, iterations).state
         # asked again of that state, by one iteration of the same radius
-        costs.append(by.fit(state, views, TICK_S, 1, learn_shape=False).cost)
-    first = by.fit(start, views, TICK_S, 1, learn_shape=False).cost
+        costs.append(by.fit(state, views, TICK_S, 1).cost)
+    first = by.fit(start, views, TICK_S, 1).cost
     assert costs[1] < costs[0] < first
     assert costs[1] < 0.2 * first
 
