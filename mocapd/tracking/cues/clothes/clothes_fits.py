@@ -187,7 +187,7 @@ class ClothesFits:
         is_new = known.whole is None
         iterations = p.start.iterations if is_new else p.guided_iterations
         dt_s = BEGUN_S if is_new else dt_s
-        held = self._held(dt_s)
+        held = self._held(known, dt_s)
         if not cameras.know_appearance:
             return self._outlined(
                 start, None if is_new else known.motion, dt_s, held, iterations, turn
@@ -277,12 +277,18 @@ class ClothesFits:
             fit, replace(fit.state, velocity=velocity), tuple(views), names, changed
         )
 
-    def _held(self, dt_s: float) -> Floats:
+    def _held(self, known: TrackState, dt_s: float) -> Floats:
         """Information (n_pose,n_pose) of a prediction whose trunk and arms the shirt carries."""
         held = np.zeros(self.model.n_pose)
         held[:3] = self.params.guided_sd_m**-2
         held[3 : upper_body().n_pose] = self.params.guided_sd_rad**-2
-        return np.diag(held + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+        if known.whole is None:
+            return np.diag(held + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5)))
+        p = self.params
+        motion = prediction_prior(
+            self.fitter, known.whole, known.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+        )
+        return np.asarray(motion + np.diag(held))
 
 
 def _is_believed(fit: Fit, params: ClothesParams) -> bool:
