@@ -91,7 +91,7 @@ class Trouble(msgspec.Struct, frozen=True):
 class StatusReport(msgspec.Struct, frozen=True):
     """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
     published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
-    tracked though somebody moves, and what they can do; mostly empty."""
+    tracked though somebody moves, and what they can do; mostly empty; effort: see messages.Health."""
 
     version: str
     pid: int
@@ -112,3 +112,4 @@ class StatusReport(msgspec.Struct, frozen=True):
     last_trouble: Trouble | None = None
     lost_reason: str = ""
     schema: str = STATUS
+    effort: str = "full"

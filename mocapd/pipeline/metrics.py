@@ -8,6 +8,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
 
@@ -30,7 +31,7 @@ class Metrics:
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
     was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
     since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
-    has come round, with frames or without.
+    has come round, with frames or without; effort: how much of its work the tracker does.
     """
 
     rate_hz: float
@@ -46,6 +47,7 @@ class Metrics:
     latency_counts: LatencyCounts = field(default_factory=LatencyCounts)
     turns: int = 0
     lost_reason: LostReason | None = None
+    effort: Effort = Effort.FULL
 
 
 class MetricsRecorder:
@@ -63,6 +65,7 @@ class MetricsRecorder:
         self._tracking = Tracking.LOST
         self._tracker = ""
         self._lost_reason: LostReason | None = None
+        self._effort = Effort.FULL
 
     def published(
         self,
@@ -90,6 +93,11 @@ class MetricsRecorder:
         with self._lock:
             self._tracking, self._lost_reason = body.tracking, None
 
+    def effort_changed(self, effort: Effort) -> None:
+        """The tracker does so much of its work from now on."""
+        with self._lock:
+            self._effort = effort
+
     def turned(self) -> None:
         """The pipeline's thread has come round."""
         with self._lock:
@@ -103,6 +111,7 @@ class MetricsRecorder:
             spread, published = self._spread_ms.samples(), self._published
             tracking, tracker, turns = self._tracking, self._tracker, self._turns
             latencies, lost_reason = self._latencies.counts(), self._lost_reason
+            effort = self._effort
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -120,4 +129,5 @@ class MetricsRecorder:
             latency_counts=latencies,
             turns=turns,
             lost_reason=lost_reason,
+            effort=effort,
         )

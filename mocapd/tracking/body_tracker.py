@@ -17,6 +17,7 @@ from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
+from mocapd.tracking.effort import WORK, Effort
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.published_body import CueFindings, published_body
@@ -81,6 +82,12 @@ class BodyTracker:
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._turn = self._begun_ns = 0
 
+    def set_effort(self, effort: Effort) -> None:
+        """See EffortTracker."""
+        for cue in (self._shirt, self._clothes):
+            if cue is not None:
+                cue.work = WORK[effort]
+
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """See `RoomLearner`. Raises ConfigError as `step` does, and where no cue looks at clothes."""
         if self._clothes is None:
@@ -126,16 +133,8 @@ class BodyTracker:
                 self._model, motion, self._coasts_s(now, frames.t_ns), self.params.damping
             )
         track = published_body(
-            now,
-            motion,
-            found,
-            self._shirt,
-            self._clothes,
-            self._filter,
-            frames.t_ns,
-            tracking,
-            shape,
-        )
+            now, motion, found, self._shirt, self._clothes, self._filter, frames.t_ns, tracking, shape
+        )  # fmt: skip
         self.probe("publish")
         return track
 

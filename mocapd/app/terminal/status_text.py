@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 from mocapd.control.control_messages import CameraStatusReport, OutputReport, StatusReport
 from mocapd.errors import one_line
+from mocapd.service.health import effort_text
 
 _STATES = {
     "tracking": "tracking",
@@ -25,6 +26,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
         ),
         ("state", f"{_state(report)} ({report.tracker}, {report.tracking})"),
         ("rate", _rate(report)),
+        *((("effort", effort),) if (effort := effort_text(report.effort)) else ()),
         ("calibration", _calibration(report, now_unix_s)),
         *((f"camera {one.id}", _camera(one)) for one in report.cameras),
         *((f"output {one.name}", _output(one)) for one in report.outputs),

@@ -74,6 +74,7 @@ class OtherPoses:
         dt_s: float,
         frames: FrameSet,
         turn: int,
+        searches: bool,
         terms: Terms,
         seen: Sequence[JointTerm],
         anew: Anew,
@@ -81,11 +82,14 @@ class OtherPoses:
     ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """The fit, or a better one, its views, and the parts of the body that changed over.
 
-        turn: a running number; terms: of the fit; seen: those of them that saw joints; anew: for other poses.
+        turn: a running number; searches: whether others are tried than where joints were seen; terms: of the fit; seen: those
+        of them that saw joints; anew: for other poses.
         """
         found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, None)
         fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
+        if not searches:
+            return fit, list(views), found.changed
         is_long = found.tried or any(is_uncertain(one, fit, self._params.limbs) for one in SIDES)
         fit, arms = dressed.arms.improve(fit, views, dt_s, turn, False, terms)
         changed = [*found.changed, *(f"{side}_arm" for side in arms)]
@@ -116,6 +120,7 @@ class OtherPoses:
         views: Sequence[View],
         dt_s: float,
         turn: int,
+        searches: bool,
         terms: Terms,
         seen: Sequence[JointTerm],
         anew: Anew,
@@ -123,6 +128,8 @@ class OtherPoses:
     ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """As `improve`, of the legs alone; motion: of every fit, where an upper body leads."""
         found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, motion)
+        if not searches:
+            return found.fit, list(found.views), found.changed
         fit, legs = self._searched_legs(
             dressed, found.fit, found.views, dt_s, turn, found.terms, motion
         )

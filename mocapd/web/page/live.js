@@ -94,7 +94,8 @@ export class Live {
       ...tracking(figures),
       `tracker ${figures.tracker || "–"}, ${number(figures.rate_hz)} poses a second, ` +
         `${number(latency.median)} ms from light to output, step ${number(figures.step_ms.median)} ms, ` +
-        `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped`,
+        `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped` +
+        (figures.effort ? `; ${figures.effort}` : ""),
     );
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);

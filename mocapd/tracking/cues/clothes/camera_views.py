@@ -153,12 +153,11 @@ class CameraViews:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
         self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
 
-    def renew_before(self, turn: int) -> None:
-        """Renew what stands before each background, now and then everywhere, where something may have been uncovered."""
-        self._each(lambda i: self._renew_before(i, turn), self.present)
+    def renew_before(self, looks_round: bool) -> None:
+        """Renew what stands before each background; looks_round: everywhere, where something may have been uncovered."""
+        self._each(lambda i: self._renew_before(i, looks_round), self.present)
 
-    def _renew_before(self, i: int, turn: int) -> None:
-        looks_round = turn % self._params.uncovered_turns == 0
+    def _renew_before(self, i: int, looks_round: bool) -> None:
         self.each[i].stand_before(everywhere=looks_round)
         if looks_round:
             self._take_uncovered(i)
@@ -177,14 +176,14 @@ class CameraViews:
         camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
 
     def prepared(
-        self, state: MotionState, turn: int, also: Callable[[int], T]
+        self, state: MotionState, looks_round: bool, also: Callable[[int], T]
     ) -> tuple[list[View], list[T]]:
         """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
         each camera all in one go, as threads that wait for each other after every step gain nothing."""
 
         def prepare(i: int) -> tuple[View | None, T]:
             self._mark(i, state)
-            self._renew_before(i, turn)
+            self._renew_before(i, looks_round)
             return self._classified(i, state, marked=True), also(i)
 
         done = self._each(prepare, self.present)

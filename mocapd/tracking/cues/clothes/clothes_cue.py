@@ -14,6 +14,7 @@ from mocapd.tracking.base import Probe, no_time_passes
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFits, ClothesFound, Observed
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
@@ -50,6 +51,15 @@ class ClothesCue:
     def fitter(self) -> Fitter:
         """Of the wearer's present look."""
         return self._fits.fitter
+
+    @property
+    def work(self) -> OptionalWork:
+        """What optional work is done."""
+        return self._fits.work
+
+    @work.setter
+    def work(self, work: OptionalWork) -> None:
+        self._fits.work = work
 
     def reset(self) -> None:
         """Forget background and look."""
@@ -91,17 +101,21 @@ class ClothesCue:
         p = self.params
         if self.cameras.are_new or not self.cameras.know_appearance:
             return None
+        if carried and self._rests_legs:
+            return None
         if carried:
             is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
                 p.guided_joint_after_s
             )
-            looks = self._turn % p.guided_joint_turns == 1 and not is_new
+            looks = (
+                self._turn % (p.guided_joint_turns * self._fits.work.network) == 1 and not is_new
+            )
         else:
-            looks = not self._measures_depths
+            looks = self._turn % (p.depth_turns * self._fits.work.network) == 1
         joints, fitter = self._fits.terms.joints, self.fitter
         watch = joints.watch(fitter, predicted, self.cameras) if looks else unwatched
         rays: list[JointRays | None]
-        views, rays = self.cameras.prepared(predicted, self._turn, watch)
+        views, rays = self.cameras.prepared(predicted, self._fits.looks_round(self._turn), watch)
         return Observed(predicted, views, joints.term(self.model, rays))
 
     def whole(
@@ -121,12 +135,19 @@ class ClothesCue:
     ) -> ClothesFound | None:
         """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
         self._find.give_up()
+        if seen is None and self._rests_legs and known.whole is not None:
+            return ClothesFound(known.whole, start, (), ())
         return self._fits.below(known, start, seen, dt_s, frames, self._turn, probe)
 
     @property
     def _measures_depths(self) -> bool:
-        """Whether this frame does, where cameras look from one side; the others look for joints, and learn."""
-        return self._turn % self.params.depth_turns == 0
+        """Whether this frame does, where cameras look from one side; others look for joints, and learn."""
+        return self._turn % (self.params.depth_turns * self._fits.work.depths) == 0
+
+    @property
+    def _rests_legs(self) -> bool:
+        """Whether legs and head below a trunk that the shirt carries go on as they moved."""
+        return self._turn % self._fits.work.legs != 0
 
     # --- from nothing ---
 
@@ -154,7 +175,7 @@ class ClothesCue:
 
     def learn(self, found: ClothesFound | None, nobody: bool, carried: bool) -> None:
         """The look of a body that agrees well, and the background beside it, or everywhere where nobody is known."""
-        p, cameras = self.params, self.cameras
+        p, cameras, looks = self.params, self.cameras, self._fits.work.looks
         if nobody and self._turn % p.absorb_turns:
             cameras.mark_unknown()  # what stays for long is furniture that was moved
         elif nobody:
@@ -163,8 +184,8 @@ class ClothesCue:
         views: Sequence[View] = ()
         if found is not None and carried:
             # with two cameras: the look is learned in one of them, in two of four frames
-            views = found.views[self._turn % 4 :: 4]
-        elif found is not None and not self._measures_depths:
+            views = found.views[self._turn % (4 * looks) :: 4 * looks]
+        elif found is not None and self._turn % (p.depth_turns * looks) == 1:
             # depths and arms that are searched for make their frames long enough
             views = found.views
         cameras.learn(found.motion if found is not None and agrees else None, views)

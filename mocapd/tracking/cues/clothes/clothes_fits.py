@@ -24,6 +24,7 @@ from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
 from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.cues.stereo.depth_views import with_depths
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
 from mocapd.tracking.hypotheses.seen_pose import WHOLE
 from mocapd.tracking.hypotheses.seen_tries import Anew
@@ -80,6 +81,15 @@ class ClothesFits:
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
+        self.work = OptionalWork()
+
+    def looks_round(self, turn: int) -> bool:
+        """Whether all of the pictures are compared with the background in this frame, and not only about the body."""
+        return turn % (self.params.uncovered_turns * self.work.uncovered) == 0
+
+    def _searches(self, turn: int) -> bool:
+        """Whether other poses are tried in this frame."""
+        return turn % self.work.other_poses == 0
 
     @property
     def fitter(self) -> Fitter:
@@ -157,11 +167,12 @@ class ClothesFits:
         terms = terms_of(predicted, views)
         probe("clothes.distances")
         fit = fitter.fit(
-            predicted, views, dt_s, p.fit.iterations, learn_shape=False, rendered=True, motion=motion, terms=terms
+            predicted, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learn_shape=False, rendered=True,
+            fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.improve(
-            self.wardrobe.dressed, fit, views, dt_s, frames, turn, terms, seen.joints,
+            self.wardrobe.dressed, fit, views, dt_s, frames, turn, self._searches(turn), terms, seen.joints,
             Anew(self.cameras.classified, terms_of), probe,
         )  # fmt: skip
         return self._found(fit, known.motion, dt_s, views, changed)
@@ -183,7 +194,9 @@ class ClothesFits:
             cameras.seed_background()
         # legs that were not seen before have a way to go
         is_new = known.whole is None
-        iterations = p.start.iterations if is_new else p.guided_iterations
+        iterations = (
+            p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
+        )
         dt_s = BEGUN_S if is_new else dt_s
         held = self._held(dt_s)
         if not cameras.know_appearance:
@@ -191,7 +204,7 @@ class ClothesFits:
                 start, None if is_new else known.motion, dt_s, held, iterations, turn
             )
         if seen is None:
-            views, rays = cameras.prepared(start, turn, unwatched)
+            views, rays = cameras.prepared(start, self.looks_round(turn), unwatched)
             seen = Observed(start, views, self.terms.joints.term(self.model, rays))
         if not seen.views:
             return None
@@ -209,7 +222,7 @@ class ClothesFits:
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.other_legs(
-            self.wardrobe.dressed, fit, seen.views, dt_s, turn, terms, seen.joints,
+            self.wardrobe.dressed, fit, seen.views, dt_s, turn, self._searches(turn), terms, seen.joints,
             Anew(cameras.classified, terms_of), held,
         )  # fmt: skip
         probe("clothes.legs")
@@ -246,7 +259,7 @@ class ClothesFits:
         """Somebody whose look is not known yet, by what stands before the background; it is learned then."""
         p, cameras = self.params, self.cameras
         cameras.mark_body(start)
-        cameras.renew_before(turn)
+        cameras.renew_before(self.looks_round(turn))
         views = cameras.silhouettes(start)
         if not views:
             return None

@@ -22,6 +22,7 @@ from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt import shirt_search as detection
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose, upper_of
@@ -73,6 +74,7 @@ class ShirtCue:
         )
         self._columns = {side: self.model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self.fitter, p.limbs)
+        self.work = OptionalWork()
         self.reset()
 
     def rehearse(self) -> None:
@@ -88,9 +90,11 @@ class ShirtCue:
         """Forget light and background."""
         self.segmenters.reset()
         self._next_search_ns = 0
+        self._turn = 0
 
     def take(self, pictures: Pictures) -> None:
         """Take the work pictures of a frame set."""
+        self._turn += 1
         self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present})
 
     # --- with a body ---
@@ -127,11 +131,14 @@ class ShirtCue:
         )
         terms = texture_distances(fitter, start, views, frames, turn, p.distances)
         fit = fitter.fit(
-            start, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion, terms=terms
+            start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
+            fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("shirt.fit")
         before = fit
-        fit, jumped = self._arms.improve(fit, views, dt_s, turn, learning, terms)
+        jumped: tuple[str, ...] = ()
+        if self._turn % self.work.other_poses == 0:
+            fit, jumped = self._arms.improve(fit, views, dt_s, turn, learning, terms)
         probe("shirt.arms")
         if not self._is_seen(fit):
             return None
@@ -256,6 +263,8 @@ class ShirtCue:
 
     def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
         """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
+        if found is not None and self._turn % self.work.looks:
+            return
         if found is not None:
             self.segmenters.learn_with(found.motion, found.fit, list(found.views), found.redraw)
         self.segmenters.learn_background(present, nobody=nobody)
