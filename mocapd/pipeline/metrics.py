@@ -1,5 +1,6 @@
 """How the pipeline does, for the status line and the health message."""
 
+import math
 import threading
 from dataclasses import dataclass, field
 
@@ -27,7 +28,8 @@ class Metrics:
     """A snapshot. Percentiles are over the last 300 frame sets (10 s at 30 Hz).
 
     rate_hz: bodies of frames published per second over the last 2 s; latency_ms: capture (the set's
-    `t_ns`) to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
+    `t_ns`) to after the last output; lag_ms: how much older a pose of somebody who moves is than that, see
+    BodyState.smoothing_lag_ns (0 of nobody); step_ms: the tracker alone; spread_ms: of the frames within a set;
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
     was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
     since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
@@ -48,6 +50,7 @@ class Metrics:
     turns: int = 0
     lost_reason: LostReason | None = None
     effort: Effort = Effort.FULL
+    lag_ms: Percentiles = Percentiles(math.nan, math.nan)
 
 
 class MetricsRecorder:
@@ -59,6 +62,7 @@ class MetricsRecorder:
         self._latency_ms = RollingPercentiles()
         self._latencies = LatencyHistogram()
         self._step_ms = RollingPercentiles()
+        self._lag_ms = RollingPercentiles()
         self._spread_ms = RollingPercentiles()
         self._published = 0
         self._turns = 0
@@ -83,6 +87,7 @@ class MetricsRecorder:
             self._latency_ms.add(latency_ms)
             self._latencies.add(latency_ms)
             self._step_ms.add(step_ns / per_ms)
+            self._lag_ms.add(body.smoothing_lag_ns / per_ms)
             self._spread_ms.add(frames.spread_ns / per_ms)
             self._published += 1
             self._tracking, self._tracker = body.tracking, body.tracker
@@ -111,7 +116,7 @@ class MetricsRecorder:
             spread, published = self._spread_ms.samples(), self._published
             tracking, tracker, turns = self._tracking, self._tracker, self._turns
             latencies, lost_reason = self._latencies.counts(), self._lost_reason
-            effort = self._effort
+            effort, lag = self._effort, self._lag_ms.samples()
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -130,4 +135,5 @@ class MetricsRecorder:
             turns=turns,
             lost_reason=lost_reason,
             effort=effort,
+            lag_ms=percentiles(lag),
         )

@@ -70,6 +70,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
         "sets_made": metrics.sets_made,
         "sets_dropped": metrics.sets_dropped,
         "latency_ms": asdict(metrics.latency_ms),
+        "lag_ms": asdict(metrics.lag_ms),
         "step_ms": asdict(metrics.step_ms),
         "spread_ms": asdict(metrics.spread_ms),
         "cameras": [

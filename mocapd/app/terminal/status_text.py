@@ -58,6 +58,8 @@ def _rate(report: StatusReport) -> str:
     text = f"{report.rate_hz:.1f} Hz"
     if report.latency_median_ms is not None and report.latency_p95_ms is not None:
         text += f", latency {report.latency_median_ms:.0f} ms (p95 {report.latency_p95_ms:.0f})"
+    if report.lag_median_ms:
+        text += f" and {report.lag_median_ms:.0f} ms of smoothing"
     return f"{text}, {report.published} frames, {report.dropped} dropped"
 
 
