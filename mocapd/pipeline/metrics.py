@@ -1,6 +1,5 @@
 """How the pipeline does, for the status line and the health message."""
 
-import math
 import threading
 from dataclasses import dataclass, field
 
@@ -50,7 +49,7 @@ class Metrics:
     turns: int = 0
     lost_reason: LostReason | None = None
     effort: Effort = Effort.FULL
-    lag_ms: Percentiles = Percentiles(math.nan, math.nan)
+    lag_ms: Percentiles = field(default_factory=lambda: percentiles(()))
 
 
 class MetricsRecorder:

@@ -68,10 +68,10 @@ class CameraView:
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
 
-    def learn_background(self, agrees: bool) -> None:
+    def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
         seen of the background is learned nearer to them."""
-        self.background.learn(self.picture, self.body)
+        self.background.learn(self.picture, self.body, ticks)
         if agrees and self.near is not None:
             x0, y0, x1, y1 = self.near
             body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
@@ -256,9 +256,9 @@ class CameraViews:
                     dst=camera.body,
                 )
 
-    def learn(self, state: MotionState | None, views: Sequence[View]) -> None:
+    def learn(self, state: MotionState | None, views: Sequence[View], ticks: int = 1) -> None:
         """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
-        nobody is marked; not while somebody who may be a part of it is not found yet."""
+        nobody is marked; not while somebody who may be a part of it is not found yet. ticks: of 1/30 s, that passed."""
         shows = {view.index: view for view in views}
 
         def learn(i: int) -> None:
@@ -267,7 +267,7 @@ class CameraViews:
                 self._learn(i, state, view.dt_s, view.roi, view.ids)
             camera = self.each[i]
             if not camera.may_hold_body:
-                camera.learn_background(agrees=state is not None)
+                camera.learn_background(state is not None, ticks)
 
         self._each(learn, self.present)
 

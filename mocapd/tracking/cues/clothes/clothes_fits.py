@@ -29,6 +29,7 @@ from mocapd.tracking.hypotheses.other_poses import OtherPoses
 from mocapd.tracking.hypotheses.seen_pose import WHOLE
 from mocapd.tracking.hypotheses.seen_tries import Anew
 from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Floats, Frame, FrameSet, Rig
@@ -83,13 +84,13 @@ class ClothesFits:
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
         self.work = OptionalWork()
 
-    def looks_round(self, turn: int) -> bool:
+    def looks_round(self, ticks: Ticks) -> bool:
         """Whether all of the pictures are compared with the background in this frame, and not only about the body."""
-        return turn % (self.params.uncovered_turns * self.work.uncovered) == 0
+        return ticks.due(self.params.uncovered_s * self.work.uncovered)
 
-    def _searches(self, turn: int) -> bool:
+    def _searches(self, ticks: Ticks) -> bool:
         """Whether other poses are tried in this frame."""
-        return turn % self.work.other_poses == 0
+        return ticks.due(self.work.other_poses * TICK_S)
 
     @property
     def fitter(self) -> Fitter:
@@ -143,7 +144,7 @@ class ClothesFits:
         seen: Observed,
         dt_s: float,
         frames: FrameSet,
-        turn: int,
+        ticks: Ticks,
         with_depth: bool,
         probe: Probe,
     ) -> ClothesFound | None:
@@ -162,7 +163,7 @@ class ClothesFits:
             )
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
-            return (*self.terms.measured(fitter, drawn, shown, frames, turn), *seen.joints)
+            return (*self.terms.measured(fitter, drawn, shown, frames, ticks.turn), *seen.joints)
 
         terms = terms_of(predicted, views)
         probe("clothes.distances")
@@ -172,7 +173,7 @@ class ClothesFits:
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.improve(
-            self.wardrobe.dressed, fit, views, dt_s, frames, turn, self._searches(turn), terms, seen.joints,
+            self.wardrobe.dressed, fit, views, dt_s, frames, ticks, self._searches(ticks), terms, seen.joints,
             Anew(self.cameras.classified, terms_of), probe,
         )  # fmt: skip
         return self._found(fit, known.motion, dt_s, views, changed)
@@ -184,7 +185,7 @@ class ClothesFits:
         seen: Observed | None,
         dt_s: float,
         frames: FrameSet,
-        turn: int,
+        ticks: Ticks,
         probe: Probe,
     ) -> ClothesFound | None:
         """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
@@ -201,17 +202,17 @@ class ClothesFits:
         held = self._held(dt_s)
         if not cameras.know_appearance:
             return self._outlined(
-                start, None if is_new else known.motion, dt_s, held, iterations, turn
+                start, None if is_new else known.motion, dt_s, held, iterations, ticks
             )
         if seen is None:
-            views, rays = cameras.prepared(start, self.looks_round(turn), unwatched)
+            views, rays = cameras.prepared(start, self.looks_round(ticks), unwatched)
             seen = Observed(start, views, self.terms.joints.term(self.model, rays))
         if not seen.views:
             return None
         fitter = self.fitter
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[PoseTerm, ...]:
-            measured = self.terms.measured(fitter, drawn, shown, frames, turn, _BELOW)
+            measured = self.terms.measured(fitter, drawn, shown, frames, ticks.turn, _BELOW)
             return (*measured, *seen.joints)
 
         terms = terms_of(seen.drawn, seen.views)
@@ -222,13 +223,13 @@ class ClothesFits:
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.other_legs(
-            self.wardrobe.dressed, fit, seen.views, dt_s, turn, self._searches(turn), terms, seen.joints,
+            self.wardrobe.dressed, fit, seen.views, dt_s, ticks, self._searches(ticks), terms, seen.joints,
             Anew(cameras.classified, terms_of), held,
         )  # fmt: skip
         probe("clothes.legs")
         return self._found(fit, None if is_new else known.motion, dt_s, views, changed)
 
-    def begin(self, there: MotionState, frames: FrameSet, turn: int) -> ClothesFound | None:
+    def begin(self, there: MotionState, frames: FrameSet, ticks: Ticks) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
         background."""
         cameras = self.cameras
@@ -243,7 +244,7 @@ class ClothesFits:
             return None
         fit = fitter.fit(
             there, views, BEGUN_S, self.params.fit.iterations, learn_shape=False,
-            terms=self.terms.measured(fitter, there, views, frames, turn),
+            terms=self.terms.measured(fitter, there, views, frames, ticks.turn),
         )  # fmt: skip
         return self._found(fit, None, BEGUN_S, views, ())
 
@@ -254,12 +255,12 @@ class ClothesFits:
         dt_s: float,
         held: Floats,
         iterations: int,
-        turn: int,
+        ticks: Ticks,
     ) -> ClothesFound | None:
         """Somebody whose look is not known yet, by what stands before the background; it is learned then."""
         p, cameras = self.params, self.cameras
         cameras.mark_body(start)
-        cameras.renew_before(self.looks_round(turn))
+        cameras.renew_before(self.looks_round(ticks))
         views = cameras.silhouettes(start)
         if not views:
             return None

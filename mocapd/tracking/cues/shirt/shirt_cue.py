@@ -25,10 +25,13 @@ from mocapd.tracking.cues.stereo.texture_distance import texture_distances
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose, upper_of
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Bytes, Floats, FrameSet, Rig
 from mocapd.vision.room_background import RoomBackground
+
+_LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,12 +93,12 @@ class ShirtCue:
         """Forget light and background."""
         self.segmenters.reset()
         self._next_search_ns = 0
-        self._turn = 0
+        self._ticks = Ticks(1, 1, 1)
 
-    def take(self, pictures: Pictures) -> None:
-        """Take the work pictures of a frame set."""
-        self._turn += 1
-        self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present})
+    def take(self, pictures: Pictures, ticks: Ticks) -> None:
+        """Take the work pictures of a frame set, and the ticks that passed with it."""
+        self._ticks = ticks
+        self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present}, ticks.count)
 
     # --- with a body ---
 
@@ -137,7 +140,7 @@ class ShirtCue:
         probe("shirt.fit")
         before = fit
         jumped: tuple[str, ...] = ()
-        if self._turn % self.work.other_poses == 0:
+        if self._ticks.due(self.work.other_poses * TICK_S):
             fit, jumped = self._arms.improve(fit, views, dt_s, turn, learning, terms)
         probe("shirt.arms")
         if not self._is_seen(fit):
@@ -263,8 +266,11 @@ class ShirtCue:
 
     def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
         """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
-        if found is not None and self._turn % self.work.looks:
+        every = 1 if found is None else self.work.looks
+        if not self._ticks.due(every * TICK_S):
             return
+        ticks = min(max(every, self._ticks.count), _LONGEST_TICKS)
         if found is not None:
-            self.segmenters.learn_with(found.motion, found.fit, list(found.views), found.redraw)
-        self.segmenters.learn_background(present, nobody=nobody)
+            views, dt_s = list(found.views), ticks * TICK_S
+            self.segmenters.learn_with(found.motion, found.fit, views, found.redraw, dt_s)
+        self.segmenters.learn_background(present, nobody, ticks)
