@@ -22,12 +22,12 @@ class Effort(Enum):
 class OptionalWork:
     """How much of its optional work a tracker does; the dearest comes first.
 
-    other_poses: one in so many frames tries other poses of arms and legs that the pictures do not confirm, and a body that
-    faces the other way; network, depths, looks: between two uses of the network of joints, of stereo depths, and between
-    two frames that teach the look of the clothes or the light on the shirt, so many times the usual time passes; uncovered:
-    the same between two searches for ghosts in the background; legs: below a trunk that the shirt carries, legs and head are
-    fitted in one of so many frames, and go on as they moved in the others; fewer_iterations: of the solver; fine: at most
-    so many of its iterations look at all pixels.
+    other_poses: once in so many ticks (see `ticks.py`) a frame tries other poses of arms and legs that the pictures do not
+    confirm, and a body that faces the other way; network, depths, looks: between two uses of the network of joints, of
+    stereo depths, and between two frames that teach the look of the clothes or the light on the shirt, so many times the
+    usual time passes; uncovered: the same between two searches for ghosts in the background; legs: below a trunk that the
+    shirt carries, legs and head are fitted in one of so many frames, and go on as they moved in the others;
+    fewer_iterations: of the solver; fine: at most so many of its iterations look at all pixels.
     """
 
     other_poses: int = 1
