@@ -48,7 +48,7 @@ def test_a_machine_that_is_quick_enough_does_all_of_the_work() -> None:
     assert found == []
 
 
-def test_a_machine_half_as_fast_settles_on_one_effort_within_two_seconds() -> None:
+def test_a_machine_half_as_fast_settles_on_one_effort_within_four_seconds() -> None:
     slow = {FULL: 0.050, SAVING: 0.036, LEAST: 0.027}
     found, worst_s = changes(machine(slow), 60.0)
     assert [effort for _, effort in found] == [SAVING, LEAST]
@@ -113,3 +113,9 @@ def test_quicker_cameras_need_quicker_steps() -> None:
     step = machine({FULL: 0.022, SAVING: 0.014, LEAST: 0.010})
     assert changes(step, 30.0, 1.0 / 30.0)[0] == []
     assert [effort for _, effort in changes(step, 30.0, 1.0 / 60.0)[0]] == [SAVING]
+
+
+def test_where_the_least_effort_leaves_room_more_is_tried_once_in_a_minute() -> None:
+    found, _ = changes(machine({FULL: 0.050, SAVING: 0.036, LEAST: 0.017}), 60.0)
+    assert [effort for _, effort in found] == [SAVING, LEAST, SAVING, LEAST]
+    assert found[-1][0] < 12.0
