@@ -118,9 +118,9 @@ class BodyState:
     """A person at one instant. Lost: `pose` and `joints_m` are None and every confidence is 0.
 
     joints_m (J,3) [m, world]; confidence (J,) in 0..1, near 0 for a joint without evidence;
-    `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: how much smoothing delays the pose of a
-    person who moves, about; uncertainty_m (J,): one standard deviation of each joint's place, the root mean square
-    over the world's axes [m], inf where nothing is known of it; left out: the tracker tells none.
+    `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: how much the tracker's filter and smoothing
+    delay the pose of a person who moves, about; uncertainty_m (J,): one standard deviation of each joint's place, the root
+    mean square over the world's axes [m], inf where nothing is known of it; left out: the tracker tells none.
     """
 
     t_ns: int

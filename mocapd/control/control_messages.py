@@ -90,8 +90,9 @@ class Trouble(msgspec.Struct, frozen=True):
 
 class StatusReport(msgspec.Struct, frozen=True):
     """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
+    lag_median_ms: how much older than that the pose of somebody who moves is, by the tracker's filter and smoothing;
     published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
-    tracked though somebody moves, and what they can do; mostly empty."""
+    tracked though somebody moves, and what they can do; mostly empty; effort: see messages.Health."""
 
     version: str
     pid: int
@@ -112,3 +113,5 @@ class StatusReport(msgspec.Struct, frozen=True):
     last_trouble: Trouble | None = None
     lost_reason: str = ""
     schema: str = STATUS
+    effort: str = "full"
+    lag_median_ms: float | None = None

@@ -50,6 +50,8 @@ def status_report(service: Service, last_trouble: Trouble | None) -> StatusRepor
         calibration=_calibration(session),
         last_trouble=last_trouble,
         lost_reason=lost_reason_text(metrics.lost_reason),
+        effort=metrics.effort.value,
+        lag_median_ms=_measured(metrics.lag_ms.median),
     )
 
 

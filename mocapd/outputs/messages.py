@@ -48,6 +48,12 @@ class Health(CountingMessage, frozen=True):
         str, Meta(description="one line for people: what is wrong with it as a whole; mostly empty")
     ] = ""
     schema: Annotated[str, Meta(description=f"always `{HEALTH}`")] = HEALTH
+    effort: Annotated[
+        str,
+        Meta(
+            description="how much of its work the tracker does: `full`, `saving` or `least` on a machine that is too slow"
+        ),
+    ] = "full"
 
 
 class CameraStatus(CountingMessage, frozen=True):

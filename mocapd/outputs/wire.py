@@ -97,7 +97,8 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     smoothing_lag_ns: Annotated[
         Nanoseconds,
         Meta(
-            description="how much smoothing delays a person who moves, about: the pose is as old as that more [ns]"
+            description="how much the tracker's filter and smoothing delay a person who moves, about: the pose is as old as "
+            "that more [ns]"
         ),
     ] = 0
     predicted_ns: Annotated[

@@ -76,6 +76,12 @@ class FrameCollector:
             return newest
 
     @property
+    def sets(self) -> int:
+        """How many frame sets were made so far."""
+        with self._changed:
+            return self._sets
+
+    @property
     def idle(self) -> bool:
         """Whether nothing is ready to be fetched just now."""
         with self._changed:

@@ -9,10 +9,11 @@ from mocapd.clock import monotonic_ns, seconds
 from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.body_hub import BodySample, TakesBodies
 from mocapd.pipeline.collector import FrameCollector
+from mocapd.pipeline.effort_control import EffortControl
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.tracking.base import Track, Tracker
+from mocapd.tracking.base import EffortTracker, Track, Tracker
 from mocapd.tracking.doubt import doubted
 from mocapd.types import FrameSet
 
@@ -22,7 +23,8 @@ LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should 
 
 
 class PipelineLoop:
-    """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape.
+    """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape. A tracker that can leave
+    out work does so where it is too slow for its frame sets.
 
     `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; with an
     empty frame set what `absence` tells while no frames come, which it says when given. `off_m`: by how much the cameras'
@@ -53,6 +55,7 @@ class PipelineLoop:
         self._stopping = threading.Event()
         self._began_ns: int | None = None  # the step that runs
         self._recorder = MetricsRecorder()
+        self._effort = EffortControl()
         # A daemon thread: a kernel that hangs must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
 
@@ -104,6 +107,7 @@ class PipelineLoop:
             self._recorder.turned()
 
     def _one(self, frames: FrameSet) -> None:
+        number = self._collector.sets
         self._began_ns = start_ns = monotonic_ns()
         track = self._tracker.step(frames, self._shape)
         step_ns, self._began_ns = monotonic_ns() - start_ns, None
@@ -114,7 +118,19 @@ class PipelineLoop:
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
-        self._recorder.published(frames, body, step_ns, monotonic_ns(), track.lost_reason)
+        now_ns = monotonic_ns()
+        self._recorder.published(frames, body, step_ns, now_ns, track.lost_reason)
+        self._spare(frames, number, now_ns - start_ns, now_ns)
+
+    def _spare(self, frames: FrameSet, number: int, busy_ns: int, now_ns: int) -> None:
+        """Choose the effort for the next frame set, after the number-th took busy_ns."""
+        if not isinstance(self._tracker, EffortTracker):
+            return
+        before = self._effort.effort
+        now = self._effort.tracked(frames.t_ns, number, busy_ns, now_ns)
+        if now is not before:
+            self._tracker.set_effort(now)
+            self._recorder.effort_changed(now)
 
     def _none(self, absence: Absence) -> None:
         """No frames came for a while."""

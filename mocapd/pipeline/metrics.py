@@ -8,6 +8,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
 
@@ -26,11 +27,12 @@ class Metrics:
     """A snapshot. Percentiles are over the last 300 frame sets (10 s at 30 Hz).
 
     rate_hz: bodies of frames published per second over the last 2 s; latency_ms: capture (the set's
-    `t_ns`) to after the last output; step_ms: the tracker alone; spread_ms: of the frames within a set;
+    `t_ns`) to after the last output; lag_ms: how much older a pose of somebody who moves is than that, see
+    BodyState.smoothing_lag_ns (0 of nobody); step_ms: the tracker alone; spread_ms: of the frames within a set;
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
     was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
     since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
-    has come round, with frames or without.
+    has come round, with frames or without; effort: how much of its work the tracker does.
     """
 
     rate_hz: float
@@ -46,6 +48,8 @@ class Metrics:
     latency_counts: LatencyCounts = field(default_factory=LatencyCounts)
     turns: int = 0
     lost_reason: LostReason | None = None
+    effort: Effort = Effort.FULL
+    lag_ms: Percentiles = field(default_factory=lambda: percentiles(()))
 
 
 class MetricsRecorder:
@@ -57,12 +61,14 @@ class MetricsRecorder:
         self._latency_ms = RollingPercentiles()
         self._latencies = LatencyHistogram()
         self._step_ms = RollingPercentiles()
+        self._lag_ms = RollingPercentiles()
         self._spread_ms = RollingPercentiles()
         self._published = 0
         self._turns = 0
         self._tracking = Tracking.LOST
         self._tracker = ""
         self._lost_reason: LostReason | None = None
+        self._effort = Effort.FULL
 
     def published(
         self,
@@ -80,6 +86,7 @@ class MetricsRecorder:
             self._latency_ms.add(latency_ms)
             self._latencies.add(latency_ms)
             self._step_ms.add(step_ns / per_ms)
+            self._lag_ms.add(body.smoothing_lag_ns / per_ms)
             self._spread_ms.add(frames.spread_ns / per_ms)
             self._published += 1
             self._tracking, self._tracker = body.tracking, body.tracker
@@ -89,6 +96,11 @@ class MetricsRecorder:
         """A body went out that is of no frames."""
         with self._lock:
             self._tracking, self._lost_reason = body.tracking, None
+
+    def effort_changed(self, effort: Effort) -> None:
+        """The tracker does so much of its work from now on."""
+        with self._lock:
+            self._effort = effort
 
     def turned(self) -> None:
         """The pipeline's thread has come round."""
@@ -103,6 +115,7 @@ class MetricsRecorder:
             spread, published = self._spread_ms.samples(), self._published
             tracking, tracker, turns = self._tracking, self._tracker, self._turns
             latencies, lost_reason = self._latencies.counts(), self._lost_reason
+            effort, lag = self._effort, self._lag_ms.samples()
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -120,4 +133,6 @@ class MetricsRecorder:
             latency_counts=latencies,
             turns=turns,
             lost_reason=lost_reason,
+            effort=effort,
+            lag_ms=percentiles(lag),
         )

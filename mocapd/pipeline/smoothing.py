@@ -47,7 +47,8 @@ PRESETS: Mapping[str, SmoothingPreset | None] = MappingProxyType(
 
 
 class Smoother:
-    """Smooths the bodies of one person in order of time; `lost` and gaps in time start it afresh.
+    """Smooths the bodies of one person in order of time; `lost` and gaps in time start it afresh. Its lag adds to that of
+    the tracker's own filter.
 
     `skeleton` may be replaced between steps, when the tracker has refined its proportions.
     """
@@ -89,4 +90,5 @@ class Smoother:
         self._t_ns = body.t_ns
         pose = Pose(root.step(body.pose.root_m, dt_s), bones.step(body.pose.quats_xyzw, dt_s))
         joints_m = joint_positions(self.skeleton, pose)
-        return replace(body, pose=pose, joints_m=joints_m, smoothing_lag_ns=self._lag_ns)
+        lag_ns = body.smoothing_lag_ns + self._lag_ns
+        return replace(body, pose=pose, joints_m=joints_m, smoothing_lag_ns=lag_ns)

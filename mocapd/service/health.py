@@ -2,6 +2,8 @@
 
 import math
 import os
+from collections.abc import Mapping
+from types import MappingProxyType
 
 import mocapd
 from mocapd.calibrate.bump.bump_watch import Mounting
@@ -10,7 +12,22 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
 from mocapd.session.camera_inputs import CameraInput
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
+
+# by effort: what is wrong, and what can be done about it
+EFFORT_TROUBLE: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        Effort.SAVING.value: (
+            "saving effort: this machine is too slow for this frame rate, so poses are less exact",
+            "close other programs, or lower fps_hz of the cameras",
+        ),
+        Effort.LEAST.value: (
+            "least effort: this machine is much too slow for this frame rate, so poses are clearly less exact",
+            "close other programs, lower fps_hz of the cameras, or use a faster machine",
+        ),
+    }
+)
 
 
 def health_message(
@@ -39,13 +56,20 @@ def health_message(
             OutputHealth(name, s.sent, s.refused, s.listeners, s.detail)
             for name, s in outputs.items()
         ),
-        detail=detail or lost_reason_text(metrics.lost_reason),
+        detail=detail or lost_reason_text(metrics.lost_reason) or effort_text(metrics.effort.value),
+        effort=metrics.effort.value,
     )
 
 
 def lost_reason_text(reason: LostReason | None) -> str:
     """One line for people; empty for none."""
     return "" if reason is None else f"{reason.what} -- {reason.fix}"
+
+
+def effort_text(effort: str) -> str:
+    """One line for people; empty for the full effort."""
+    trouble = EFFORT_TROUBLE.get(effort)
+    return "" if trouble is None else " -- ".join(trouble)
 
 
 def camera_message(

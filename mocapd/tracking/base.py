@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Bytes, FrameSet, Tracking
 
@@ -67,6 +68,15 @@ class RoomLearner(Tracker, Protocol):
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """Before the first step: what stays as it is in these frame sets of one recording is the room. `reset` forgets
         it."""
+        ...
+
+
+@runtime_checkable
+class EffortTracker(Tracker, Protocol):
+    """A tracker that can leave out work where a machine is too slow; see `tracking.effort`."""
+
+    def set_effort(self, effort: Effort) -> None:
+        """From the next step on; `full` at first. `reset` leaves it as it is."""
         ...
 
 

@@ -17,9 +17,11 @@ from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
+from mocapd.tracking.effort import WORK, Effort
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.published_body import CueFindings, published_body
+from mocapd.tracking.ticks import TickClock
 from mocapd.tracking.track_state import Proportions, TrackState, at_rest
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
 from mocapd.tracking.trunk_and_legs import joined, with_still_legs, with_upper
@@ -79,7 +81,13 @@ class BodyTracker:
         self._tracking.reset(None if self._near is None else self._near.t_ns)
         self._known: TrackState | None = None
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
-        self._turn = self._begun_ns = 0
+        self._begun_ns, self._ticks = 0, TickClock()
+
+    def set_effort(self, effort: Effort) -> None:
+        """See EffortTracker."""
+        for cue in (self._shirt, self._clothes):
+            if cue is not None:
+                cue.work = WORK[effort]
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """See `RoomLearner`. Raises ConfigError as `step` does, and where no cue looks at clothes."""
@@ -92,7 +100,7 @@ class BodyTracker:
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
-        self._turn += 1
+        self._ticks.pass_to(frames.t_ns)
         present = self._look(frames)
         self.probe("picture")
         wearer = Proportions(*known_of(shape, full_body()), shape.taught_s)
@@ -126,16 +134,8 @@ class BodyTracker:
                 self._model, motion, self._coasts_s(now, frames.t_ns), self.params.damping
             )
         track = published_body(
-            now,
-            motion,
-            found,
-            self._shirt,
-            self._clothes,
-            self._filter,
-            frames.t_ns,
-            tracking,
-            shape,
-        )
+            now, motion, found, self._shirt, self._clothes, self._filter, frames.t_ns, tracking, shape
+        )  # fmt: skip
         self.probe("publish")
         return track
 
@@ -145,9 +145,9 @@ class BodyTracker:
         """Each seeing camera's own time after the frame set's [s], by index."""
         present = self._pictures.look(frames)
         if self._clothes is not None:
-            self._clothes.take(self._pictures, frames.t_ns)
+            self._clothes.take(self._pictures, frames.t_ns, self._ticks.now)
         if self._shirt is not None:
-            self._shirt.take(self._pictures)
+            self._shirt.take(self._pictures, self._ticks.now)
         return present
 
     def _recent(self, t_ns: int) -> TrackState | None:
@@ -174,7 +174,7 @@ class BodyTracker:
                 dt_s,
                 present,
                 frames,
-                self._turn,
+                self._ticks.now.turn,
                 self._shirt_trust.believed,
                 self.probe,
             )
@@ -259,7 +259,7 @@ class BodyTracker:
                 local = local_from_global(self._skeleton, near.pose.quats_xyzw)
                 there = at_rest(self._model, near.pose.root_m.copy(), local, wearer)
                 trunk = (
-                    self._shirt.begin(there, wearer.taught_s, present, self._turn)
+                    self._shirt.begin(there, wearer.taught_s, present, self._ticks.now.turn)
                     if self._shirt
                     else None
                 )
@@ -268,7 +268,7 @@ class BodyTracker:
                     return self._begun(there, trunk, whole, frames)
             self._tracking.reset()
         if self._watch is not None:
-            trunk = self._watch.search(wearer, present, frames.t_ns, self._turn)
+            trunk = self._watch.search(wearer, present, frames.t_ns, self._ticks.now.turn)
             self.probe("shirt.detect")
             if trunk is not None:
                 return self._begun(self._watch.standing(trunk, wearer), trunk, None, frames)

@@ -4,6 +4,11 @@ A limb that the pictures hardly confirm is often wrong, and what is wrong moves 
 right to the next. What is well confirmed is published nearly as it was found. A bone that keeps turning is expected to go on,
 so that what is held back of each step does not leave it behind (an alpha-beta filter: Kalata 1984, The tracking index).
 Where the cues that carry a body change, or an arm was found elsewhere, the difference goes away at a bounded speed.
+
+A bone that turns steadily is published behind where it is found, since less than all of its speed is expected to go on. With
+the share f of the way that it follows, the share l of a new speed that it learns and the share g that it keeps to the next
+frame, which is dt away, it is behind by dt (1/f - 1) (1 - g) / (1 - g + g l): the filter's lag. The difference that goes
+away after a change of cues moves along with the body, and adds no lag.
 """
 
 from collections.abc import Collection
@@ -80,7 +85,8 @@ class PoseFilterParams:
 @dataclass(frozen=True, slots=True, eq=False)
 class _Filtered:
     """A pose as published at t_ns, of a body carried by `carrier`; smooth: without the offset; trust (J,): in each bone's
-    direction, 0..1; since_ns: when the body was first found; turning_rad_s (J,3), moving_m_s (3,): as it goes on."""
+    direction, 0..1; since_ns: when the body was first found; turning_rad_s (J,3), moving_m_s (3,): as it goes on; lag_s: see
+    `PoseFilter.lag_s`."""
 
     t_ns: int
     carrier: str
@@ -90,6 +96,7 @@ class _Filtered:
     since_ns: int
     turning_rad_s: Floats = field(default_factory=partial(np.zeros, (N_JOINTS, 3)))
     moving_m_s: Floats = field(default_factory=partial(np.zeros, 3))
+    lag_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,6 +138,12 @@ class PoseFilter:
         self._way_m: Floats | None = (
             None  # of each joint (J,3), since the frame before, while that is asked
         )
+
+    @property
+    def lag_s(self) -> float:
+        """How far a body that moves steadily is published behind where it was found, in the last step [s]: the mean over
+        the bones, each by the trust in it. 0 while poses are published as found."""
+        return 0.0 if self._last is None else self._last.lag_s
 
     def step(
         self,
@@ -242,7 +255,14 @@ class PoseFilter:
         if legs_since_ns is not None and t_ns - legs_since_ns < nanoseconds(p.settles_s):
             quats[LOWER_BONES], turning[LOWER_BONES] = found.quats_xyzw[LOWER_BONES], 0.0
         pose = Pose(root_m, quats)
-        return _Filtered(t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving)
+        lag_s = _lag_s(gap_s, follows, learned, following[6] ** ticks, trust)
+        return _Filtered(t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s)
+
+
+def _lag_s(gap_s: float, follows: Floats, learned: Floats, kept: Floats, trust: Floats) -> float:
+    """See the module; follows, learned, kept (J,): f, l and g of each bone."""
+    lags_s = gap_s * (1.0 / follows - 1.0) * (1.0 - kept) / (1.0 - kept + kept * learned)
+    return float(np.average(lags_s, weights=trust + 1e-6))
 
 
 def _offset_of(

@@ -9,7 +9,7 @@ from mocapd.body.bones import NAMES
 from mocapd.body.pose_space import full_body
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
-from mocapd.clock import seconds
+from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.motion_state import MotionState
@@ -87,6 +87,7 @@ def published_body(
         joints_m=joints_m,
         confidence=confidence,
         cameras=state.cameras if away_s == 0.0 else (),
+        smoothing_lag_ns=nanoseconds(pose_filter.lag_s),
         uncertainty_m=np.hypot(grown(uncertainty_m, away_s), behind_m),
     )
     carried_by = state.trunk if state.by_shirt else state.whole

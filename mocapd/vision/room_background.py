@@ -109,15 +109,17 @@ class RoomBackground:
         self.lights += 1
         return np.asarray(np.clip((now + 1.0) / (before + 1.0), 0.1, 10.0), np.float64)
 
-    def learn(self, picture: Bytes, body: Bytes) -> None:
-        """Follow the background where `body` (h,w) is 0."""
+    def learn(self, picture: Bytes, body: Bytes, ticks: int = 1) -> None:
+        """Follow the background where `body` (h,w) is 0; ticks: of 1/30 s since it did before. While it is new every look
+        counts alike."""
         if self.is_new:
             phases: Sequence[int] = range(_PHASES)
+            self._looks += 1
         else:
-            phases = (self._looks % _PHASES,)
+            phases = [(self._looks + k) % _PHASES for k in range(min(ticks, _PHASES))]
+            self._looks += len(phases)
         for phase in phases:
             learn_background(picture, body, self.mean, self.age, self._params.rate, phase, _PHASES)
-        self._looks += 1
 
     def learn_unknown(self, picture: Bytes, body: Bytes, within: tuple[int, int, int, int]) -> None:
         """Learn what is not known yet within x0, y0, x1, y1 of a picture (h,w,3), where `body`, of that region, is 0: what

@@ -8,7 +8,7 @@ import numpy as np
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.geometry.camera_model import centre, rays
-from mocapd.service.health import lost_reason_text
+from mocapd.service.health import effort_text, lost_reason_text
 from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
@@ -64,11 +64,13 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
         "tracker": metrics.tracker,
         "tracking": metrics.tracking.value,
         "lost_reason": lost_reason_text(metrics.lost_reason),
+        "effort": effort_text(metrics.effort.value),
         "rate_hz": metrics.rate_hz,
         "published": metrics.published,
         "sets_made": metrics.sets_made,
         "sets_dropped": metrics.sets_dropped,
         "latency_ms": asdict(metrics.latency_ms),
+        "lag_ms": asdict(metrics.lag_ms),
         "step_ms": asdict(metrics.step_ms),
         "spread_ms": asdict(metrics.spread_ms),
         "cameras": [

@@ -18,6 +18,7 @@ from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.pipeline.latency_histogram import BOUNDS_MS, LatencyCounts
 from mocapd.service.fitness import FITNESSES, delivers, fitness_of
 from mocapd.service.service import Snapshot
+from mocapd.tracking.effort import Effort
 
 MEDIA_TYPE = CONTENT_TYPE_LATEST
 
@@ -59,6 +60,12 @@ def _families(snapshot: Snapshot) -> Families:
         "Sets of frames displaced by newer ones while the tracker was busy",
         metrics.sets_dropped,
     )
+    effort = GaugeMetricFamily(
+        "mocapd_effort", "1 for how much of its work the tracker does", labels=["effort"]
+    )
+    for level in Effort:
+        effort.add_metric([level.value], float(level is metrics.effort))
+    yield effort
     yield GaugeMetricFamily(
         "mocapd_publish_rate_hertz", "Skeleton frames a second, lately", metrics.rate_hz
     )

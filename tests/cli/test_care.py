@@ -141,6 +141,13 @@ def test_who_is_not_taken_for_a_person_is_not_called_nobody() -> None:
     assert "nobody in view" in "\n".join(status_lines(report(state="nobody"), 0.0))
 
 
+def test_less_effort_is_said_with_what_can_be_done() -> None:
+    lines = [one for one in status_lines(report(effort="least"), 0.0) if one.startswith("effort")]
+    assert "least effort: this machine is much too slow" in lines[0]
+    assert "close other programs" in lines[0]
+    assert not any(one.startswith("effort") for one in status_lines(report(), 0.0))
+
+
 def test_what_others_have_named_is_told_in_one_line() -> None:
     """Of a camera node's reason, or of a webcam's serial number, a terminal is to obey nothing."""
     odd = msgspec.structs.replace(CAMERA, detail="\x1b]0;owned\x07\nstate  tracking")

@@ -14,7 +14,8 @@ from mocapd.body.skeleton import joint_positions
 from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.trackers.registry import TRACKERS, Resources, build
-from mocapd.tracking.base import Track, unprobed
+from mocapd.tracking.base import EffortTracker, Track, unprobed
+from mocapd.tracking.effort import Effort
 from mocapd.types import BodyState, FrameSet, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
 from tests.tracking.stepping import Stepping
@@ -208,6 +209,26 @@ def test_the_same_frames_after_reset_give_the_same_output(
 ) -> None:
     for one, other in zip(tracked.tracks, run(case.tracker, case.person), strict=True):
         assert_same(one.body, other.body)
+
+
+def test_with_the_least_effort_a_person_is_tracked_the_same_each_time(
+    case: TrackerCase, tracked: Tracked
+) -> None:
+    tracker = case.tracker.tracker
+    if not isinstance(tracker, EffortTracker):
+        pytest.skip("it leaves nothing out")
+    tracker.set_effort(Effort.LEAST)
+    runs = []
+    for _ in range(2):
+        case.tracker.reset()
+        runs.append(run(case.tracker, case.person))
+    tracker.set_effort(Effort.FULL)
+    for one, other in zip(*runs, strict=True):
+        assert_same(one.body, other.body)
+    assert runs[0][-1].body.tracking is Tracking.LIVE
+    case.tracker.reset()
+    for again, before in zip(run(case.tracker, case.person), tracked.tracks, strict=True):
+        assert_same(again.body, before.body)
 
 
 def test_what_was_handed_out_does_not_change_afterwards(tracked: Tracked) -> None:

@@ -223,3 +223,7 @@ def test_configuration_and_daemons() -> None:
     assert [one.verdict for one in check_daemons(())] == [OK]
     both = check_daemons((report(), report(state="blind")))
     assert [one.verdict for one in both] == [OK, BAD]
+    (slow,) = check_daemons((report(effort="saving"),))
+    assert slow.verdict is WARN
+    assert "saving effort: this machine is too slow" in slow.what
+    assert "fps_hz" in slow.fix

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from contextlib import ExitStack
 
+import msgspec
 import pytest
 
 from mocapd.app.terminal.watch_all import as_dict, as_text, watch_all
@@ -85,6 +86,9 @@ def test_a_line_says_what_is_wrong() -> None:
     for part in ("30.0 Hz", "auto live", "21 ms (p95 30)", "1 of 2 cameras", "silent for"):
         assert part in line
     assert "right lost: was unplugged" in line
+    assert "effort" not in line
+    slow = msgspec.structs.replace(health("pc"), effort="saving")
+    assert "saving effort" in as_text(InstanceState("pc", True, slow, cameras))
     assert json.loads(json.dumps(as_dict(known)))["health"]["tracker"] == "auto"
 
 

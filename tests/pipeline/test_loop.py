@@ -2,6 +2,7 @@
 
 import gc
 import threading
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -16,6 +17,7 @@ from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.canned.tracker import CannedTracker
 from mocapd.tracking.base import Probe, Track, Tracker, lost_body, unprobed
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
@@ -53,6 +55,25 @@ class WaitingTracker(CannedTracker):
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         self.entered.release()
         self.let_go.acquire()
+        return super().step(frames, shape)
+
+
+class SlowTracker(CannedTracker):
+    """At the full effort it takes as long as three frame sets need to come; otherwise it is quick."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.effort, self.lowered = Effort.FULL, threading.Event()
+        self.sets: Callable[[], int] = lambda: 0
+
+    def set_effort(self, effort: Effort) -> None:
+        self.effort = effort
+        self.lowered.set()
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        before = self.sets()
+        while self.effort is Effort.FULL and self.sets() < before + 3:
+            time.sleep(0.001)
         return super().step(frames, shape)
 
 
@@ -157,6 +178,21 @@ def test_while_a_step_takes_long_the_newest_waits_and_what_is_older_is_dropped()
     assert seqs == [{0}, {200}]
     assert run.loop.metrics().sets_dropped == 199
     assert run.loop.stop(20.0)
+
+
+def test_a_tracker_that_is_too_slow_is_stepped_with_less_effort_which_metrics_tell() -> None:
+    tracker = SlowTracker()
+    run = Run(tracker)
+    tracker.sets = lambda: run.collector.sets
+    assert run.loop.metrics().effort is Effort.FULL
+    run.loop.start()
+    until_s = time.monotonic() + 120.0
+    while not tracker.lowered.wait(0.002):
+        run.feed()
+        assert time.monotonic() < until_s
+    run.feed_until_out(len(run.out) + 2)
+    assert run.loop.stop(20.0)
+    assert run.loop.metrics().effort is tracker.effort is Effort.SAVING
 
 
 def test_metrics_before_the_first_frame_are_there_and_empty() -> None:

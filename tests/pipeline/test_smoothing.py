@@ -78,6 +78,14 @@ def test_only_pose_and_joints_change() -> None:
     assert np.array_equal(after.confidence, before.confidence)
 
 
+@pytest.mark.parametrize("preset", list(PRESETS))
+def test_its_lag_adds_to_that_of_the_trackers_filter(preset: str) -> None:
+    smoother, chosen = Smoother(preset, SKELETON), PRESETS[preset]
+    after = smoother.step(replace(body_at(0), smoothing_lag_ns=7_000_000))
+    own_s = 0.0 if chosen is None else chosen.lag_s
+    assert after.smoothing_lag_ns == 7_000_000 + round(1e9 * own_s)
+
+
 @pytest.mark.parametrize("interruption", ["lost", "gap", "backwards"])
 def test_nothing_of_the_past_survives_an_interruption(interruption: str) -> None:
     smoother = Smoother("smooth", SKELETON)

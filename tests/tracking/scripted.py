@@ -19,11 +19,11 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
-from mocapd.tracking.cues.clothes.regions import region_labels
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.lost_reason import LostReason
@@ -104,7 +104,7 @@ class _Scripted:
 
     def __init__(self, script: Sequence[Sight], model: BodyModel) -> None:
         self.script, self.model = script, model
-        self.fitter = Fitter(model, region_labels(model), (), [], FitParams())
+        self.fitter = Fitter(model, shirt_labels(model), (), [], FitParams())
         self.frames = FrameSet(0, {})  # those of the present step
 
     def reset(self) -> None:

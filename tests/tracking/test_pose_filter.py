@@ -251,3 +251,30 @@ def test_bones_one_by_one_go_as_the_formula_says(seed: int) -> None:
     follow_bones(found, last, *how, turning, out, *shares)
     assert out == pytest.approx(filtered, abs=1e-9)
     assert turning == pytest.approx(now, abs=1e-7)
+
+
+@RATES
+@pytest.mark.parametrize(
+    ("carrier", "confidence"), [("clothes", 1.0), ("clothes", 0.6), ("shirt+clothes", 1.0)]
+)
+def test_the_lag_is_how_far_steady_motion_is_published_behind(
+    hz: float, carrier: str, confidence: float
+) -> None:
+    """Of a body whose bones all turn at one speed."""
+    one, speed_rad_s = Stepped(hz, carrier), 0.5
+    for _ in range(round(4.0 * hz)):
+        turn = rotations.exp(np.array([0.0, speed_rad_s * one.now_s, 0.0]))
+        found = Pose(np.zeros(3), rotations.canonical(np.tile(turn, (N_JOINTS, 1))))
+        published = one.step(found, confidence * SURE)
+    behind_s = rotations.angle_rad(found.quats_xyzw, published.quats_xyzw) / speed_rad_s
+    assert one.filter.lag_s == pytest.approx(behind_s.mean(), abs=1e-5)
+    assert 0.001 < one.filter.lag_s < 0.05
+    if carrier != "clothes":  # trunk and arms are published as found
+        assert behind_s[[ARM, FOREARM, INDEX["chest"]]].max() < 1e-6
+
+
+def test_what_is_published_as_found_has_no_lag() -> None:
+    one = Stepped()
+    assert one.filter.lag_s == 0.0
+    one.step(turned(0.1))
+    assert one.filter.lag_s == 0.0

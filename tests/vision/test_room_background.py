@@ -205,3 +205,16 @@ def test_what_is_known_is_not_learned_so_near_to_somebody() -> None:
     for _ in range(30):
         background.learn_unknown(np.full((H, W, 3), 250, np.uint8), NOBODY, (0, 0, W, H))
     assert (background.before(np.full((H, W, 3), 250, np.uint8)) == BEFORE).all()
+
+
+@pytest.mark.parametrize("ticks", [2, 4])
+def test_fewer_pictures_a_second_teach_the_background_as_fast(ticks: int) -> None:
+    """A wall that was painted, at 30 Hz and at a half or a quarter of that."""
+    quick, slow = learned(), learned()
+    painted = np.full((H, W, 3), 140, np.uint8)
+    for tick in range(40):
+        quick.learn(painted, NOBODY)
+        if tick % ticks == ticks - 1:
+            slow.learn(painted, NOBODY, ticks)
+    np.testing.assert_array_equal(slow.mean, quick.mean)
+    assert np.abs(quick.mean - learned().mean).max() > 5.0

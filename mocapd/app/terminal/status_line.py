@@ -10,6 +10,7 @@ from rich.text import Text
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.outputs.base import SinkStatus
 from mocapd.service.service import Snapshot
+from mocapd.tracking.effort import Effort
 
 
 def status_text(snapshot: Snapshot) -> str:
@@ -22,6 +23,8 @@ def status_text(snapshot: Snapshot) -> str:
     parts += [m.lost_reason.what] if m.lost_reason is not None else []
     parts.append(" ".join(_camera(status) for status in snapshot.cameras.values()))
     parts += [f"{name}: {_listeners(status)}" for name, status in snapshot.outputs.items()]
+    if m.effort is not Effort.FULL:
+        parts.append(f"{m.effort.value} effort: this machine is too slow")
     if m.sets_dropped:
         parts.append(f"{m.sets_dropped} dropped")
     return " | ".join(parts)

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 from mocapd.control.control_messages import CameraStatusReport, OutputReport, StatusReport
 from mocapd.errors import one_line
+from mocapd.service.health import effort_text
 
 _STATES = {
     "tracking": "tracking",
@@ -25,6 +26,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
         ),
         ("state", f"{_state(report)} ({report.tracker}, {report.tracking})"),
         ("rate", _rate(report)),
+        *((("effort", effort),) if (effort := effort_text(report.effort)) else ()),
         ("calibration", _calibration(report, now_unix_s)),
         *((f"camera {one.id}", _camera(one)) for one in report.cameras),
         *((f"output {one.name}", _output(one)) for one in report.outputs),
@@ -56,6 +58,8 @@ def _rate(report: StatusReport) -> str:
     text = f"{report.rate_hz:.1f} Hz"
     if report.latency_median_ms is not None and report.latency_p95_ms is not None:
         text += f", latency {report.latency_median_ms:.0f} ms (p95 {report.latency_p95_ms:.0f})"
+    if report.lag_median_ms:
+        text += f" and {report.lag_median_ms:.0f} ms of smoothing"
     return f"{text}, {report.published} frames, {report.dropped} dropped"
 
 

@@ -12,6 +12,7 @@ from mocapd.doctor.facts import (
     UserFacts,
 )
 from mocapd.doctor.finding import Finding, bad, ok, warn
+from mocapd.service.health import EFFORT_TROUBLE
 
 FEWEST_CORES = 2
 # Drivers whose `powersave` follows the load within milliseconds.
@@ -33,6 +34,9 @@ def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
         told = f"{one.instance} (pid {one.pid}) is running"
         if one.state == "blind":
             yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
+        elif one.effort in EFFORT_TROUBLE:
+            what, fix = EFFORT_TROUBLE[one.effort]
+            yield warn("daemon", f"{told}: {what}", fix)
         else:
             yield ok("daemon", told)
 

@@ -40,8 +40,9 @@ _ALL_CERTAIN = np.ones(10, np.int64)
 _GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
 _OLD_LIGHT = np.float32(0.25)  # share of what was counted that is left in another light
-_SKIN_EVERY = 3  # looks
-_WHITE_BALANCE_EVERY = 4  # looks; between them the learned means alone follow the light
+_SKIN_EVERY = 3  # ticks
+_WHITE_BALANCE_EVERY = 4  # ticks; between them the learned means alone follow the light
+_FORGET_EVERY = 8  # ticks
 _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
 
@@ -57,7 +58,7 @@ class Memory:
     skin: Floats = field(default_factory=lambda: np.zeros(4))  # see `bare_skin.statistics`
     skin_affine: Singles = field(default_factory=lambda: bare_skin.NOWHERE)
     usual: float = 0.0  # share of the rendered shirt that is usually classified
-    looks: int = 0
+    ticks: int = 0  # of 1/30 s, that passed
     lights: int = 0  # see `RoomBackground`
 
 
@@ -126,10 +127,10 @@ class CameraSegmenter:
         crop = pixels[: h * self.image_scale, : w * self.image_scale]
         self.take(np.asarray(cv2.resize(crop, (w, h), interpolation=cv2.INTER_AREA), np.uint8))
 
-    def take(self, picture: Bytes) -> None:
-        """Take a work picture (h,w,3)."""
+    def take(self, picture: Bytes, ticks: int = 1) -> None:
+        """Take a work picture (h,w,3), so many ticks after the last."""
         self.picture = picture
-        self.memory.looks += 1
+        self.memory.ticks += ticks
         if self.background.lights != self.memory.lights:
             # colours that were counted in the old light say nothing
             self.memory.lights = self.background.lights
@@ -235,15 +236,15 @@ class CameraSegmenter:
     ) -> None:
         """Follow the light from the id map of the final pose (paper section 5.2, step 5).
 
-        sure: the pose agrees well enough to tell shirt from other things. face: where it is,
-        if it is seen.
+        dt_s: since pictures before this one taught it, at 30 Hz a tick. sure: the pose agrees well enough to tell shirt from
+        other things. face: where it is, if it is seen.
         """
         p, memory = self.params, self.memory
         sums = np.zeros((10, 4))
         colour_statistics(self.picture, roi[0], roi[1], final, ids, True, sums)
         learned = looks.learn(memory.appearance, sums, dt_s, p.colour_memory_s)
         W = learned.W
-        if memory.looks % _WHITE_BALANCE_EVERY == 0:
+        if self._is_due(_WHITE_BALANCE_EVERY, dt_s):
             W = looks.white_balance(learned, self.model.mean)
         memory.appearance = ShirtAppearance(W, learned.sums)
         if sure:
@@ -254,12 +255,14 @@ class CameraSegmenter:
             )  # fmt: skip
         if sure and face is not None:
             seen = bare_skin.statistics(self.picture, final, roi[:2], face, W)
-            memory.skin = bare_skin.learned(memory.skin, seen, _SKIN_EVERY * dt_s, p.skin_memory_s)
+            memory.skin = bare_skin.learned(
+                memory.skin, seen, max(_SKIN_EVERY * TICK_S, dt_s), p.skin_memory_s
+            )
             memory.skin_affine = bare_skin.whitening(
                 memory.skin, p.cloth_sd, p.noise_sd, p.shading_sd
             )
-        if memory.looks % 8 == 0:
-            keep = np.float32(np.exp(-8 * dt_s / p.count_memory_s))
+        if self._is_due(_FORGET_EVERY, dt_s):
+            keep = np.float32(np.exp(-max(_FORGET_EVERY * TICK_S, dt_s) / p.count_memory_s))
             memory.shirt_count *= keep
             memory.other_count *= keep
 
@@ -275,10 +278,14 @@ class CameraSegmenter:
         )  # fmt: skip
         return bare_skin.hand_sized(out)
 
-    @property
-    def is_due_for_skin(self) -> bool:
-        """Whether a face is to be looked at in this frame."""
-        return self.memory.looks % _SKIN_EVERY == 0
+    def is_due_for_skin(self, dt_s: float) -> bool:
+        """Whether a face is to be looked at in this frame; dt_s: see `learn`."""
+        return self._is_due(_SKIN_EVERY, dt_s)
+
+    def _is_due(self, every: int, dt_s: float) -> bool:
+        """Whether a multiple of so many ticks passed within dt_s."""
+        now = self.memory.ticks
+        return now // every > (now - max(1, round(dt_s / TICK_S))) // every
 
     def mark_body(self, final: Ids | None, roi: Roi) -> None:
         """Where the body is now, so that it is not learned as background; None: nobody is known."""
@@ -288,11 +295,11 @@ class CameraSegmenter:
             solid = (final > 0).astype(np.uint8)
             self.memory.body[y0:y1, x0:x1] = cv2.dilate(solid, _NEAR)
 
-    def learn_background(self) -> None:
-        """Follow the background beside the body, unless whoever owns it does."""
+    def learn_background(self, ticks: int) -> None:
+        """Follow the background beside the body, unless whoever owns it does; ticks: see `RoomBackground.learn`."""
         if self._owns_background:
             self.background.follow_light(self.picture, self.memory.body)
-            self.background.learn(self.picture, self.memory.body)
+            self.background.learn(self.picture, self.memory.body, ticks)
 
     # --- without a pose ---
 

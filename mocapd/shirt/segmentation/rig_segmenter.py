@@ -50,10 +50,10 @@ class RigSegmenter:
         for segmenter in self.each:
             segmenter.reset()
 
-    def take(self, pictures: Mapping[int, Bytes]) -> None:
-        """Take work pictures (h,w,3), by camera."""
+    def take(self, pictures: Mapping[int, Bytes], ticks: int = 1) -> None:
+        """Take work pictures (h,w,3), by camera, so many ticks of 1/30 s after the last ones."""
         for i, picture in pictures.items():
-            self.each[i].take(picture)
+            self.each[i].take(picture, ticks)
 
     def views(
         self, state: MotionState, present: dict[int, float], uncertain: tuple[str, ...] = ()
@@ -77,8 +77,15 @@ class RigSegmenter:
 
         return [one for one in self._each(view, present) if one is not None]
 
-    def learn_with(self, state: MotionState, fit: Fit, views: list[View], redraw: bool) -> None:
-        """Follow the light, and where the body is, from a pose and its fit.
+    def learn_with(
+        self,
+        state: MotionState,
+        fit: Fit,
+        views: list[View],
+        redraw: bool,
+        dt_s: float = TICK_S,
+    ) -> None:
+        """Follow the light, and where the body is, from a pose and its fit; dt_s: since pictures before these taught it.
 
         Without `redraw`, the last drawing of the fit will do: it differs by a fraction of a pixel.
         """
@@ -92,26 +99,26 @@ class RigSegmenter:
                 final = drawing.last(view.roi)[0]
             segmenter.mark_body(final, view.roi)
             face = None
-            if sure and segmenter.is_due_for_skin:
+            if sure and segmenter.is_due_for_skin(dt_s):
                 face = face_disc(
                     segmenter.camera,
                     drawing.posed,
                     self._fitter.model.stature_m,
                     segmenter.image_scale,
                 )
-            segmenter.learn(final, view.ids, view.pixel_weight, view.roi, TICK_S, sure, face)
+            segmenter.learn(final, view.ids, view.pixel_weight, view.roi, dt_s, sure, face)
 
         # in turn, as the steps before and after: two threads take longer (docs/decisions/joint-heatmaps.md)
         in_turn(learn, views)
 
-    def learn_background(self, present: dict[int, float], nobody: bool) -> None:
-        """Follow the background, in all of the picture when nobody is known."""
+    def learn_background(self, present: dict[int, float], nobody: bool, ticks: int = 1) -> None:
+        """Follow the background, in all of the picture when nobody is known; ticks: see `RoomBackground.learn`."""
 
         def learn(i: int) -> None:
             segmenter = self.each[i]
             if nobody:
                 segmenter.mark_body(None, (0, 0, 0, 0))
-            segmenter.learn_background()
+            segmenter.learn_background(ticks)
 
         in_turn(learn, present)
 

@@ -29,6 +29,7 @@ from mocapd.tracking.hypotheses.seen_pose import WHOLE, seen_pose
 from mocapd.tracking.hypotheses.seen_tries import Anew, Judged, tried_as_seen
 from mocapd.tracking.hypotheses.turn_watch import TurnWatch
 from mocapd.tracking.hypotheses.turned import MIRRORED, UNDER_LIMBS, turned_round
+from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats, FrameSet
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -75,7 +76,8 @@ class OtherPoses:
         views: Sequence[View],
         dt_s: float,
         frames: FrameSet,
-        turn: int,
+        ticks: Ticks,
+        searches: bool,
         terms: Terms,
         seen: Sequence[JointTerm],
         anew: Anew,
@@ -83,31 +85,34 @@ class OtherPoses:
     ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """The fit, or a better one, its views, and the parts of the body that changed over.
 
-        turn: a running number; terms: of the fit; seen: those of them that saw joints; anew: for other poses.
+        ticks: that passed; searches: whether others are tried than where joints were seen; terms: of the fit; seen: those
+        of them that saw joints; anew: for other poses.
         """
         found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, None)
         fit, views, terms = found.fit, found.views, found.terms
         probe("seen")
+        if not searches:
+            return fit, list(views), found.changed
         is_long = found.tried or any(is_uncertain(one, fit, self._params.limbs) for one in SIDES)
-        fit, arms = dressed.arms.improve(fit, views, dt_s, turn, terms)
+        fit, arms = dressed.arms.improve(fit, views, dt_s, ticks.turn, terms)
         changed = [*found.changed, *(f"{side}_arm" for side in arms)]
         probe("arms")
-        self._facing.look(dressed.fitter, fit.state, views, frames, turn)
+        self._facing.look(dressed.fitter, fit.state, views, frames, ticks)
         if self._facing.is_turned:
             self._facing.reset()
             round_ = self._turned(dressed.fitter, fit, views, anew)
             if round_ is not None:
                 fit = round_
                 changed.append(WHOLE)
-        elif self._turning.is_due(turn, is_long):
+        elif self._turning.is_due(ticks, is_long):
             other = self._fitted_turned(dressed.fitter, fit, views, anew, UNDER_LIMBS)
             if self._turning.is_turned(fit, other):
                 self._turning.reset()
                 fit = other
                 changed.append(WHOLE)
-            self._turning.looked(turn)
+            self._turning.looked(ticks)
         probe("face")
-        fit, legs = self._searched_legs(dressed, fit, views, dt_s, turn, terms, None)
+        fit, legs = self._searched_legs(dressed, fit, views, dt_s, ticks, terms, None)
         probe("legs")
         return fit, list(views), (*changed, *legs)
 
@@ -117,7 +122,8 @@ class OtherPoses:
         fit: Fit,
         views: Sequence[View],
         dt_s: float,
-        turn: int,
+        ticks: Ticks,
+        searches: bool,
         terms: Terms,
         seen: Sequence[JointTerm],
         anew: Anew,
@@ -125,8 +131,10 @@ class OtherPoses:
     ) -> tuple[Fit, list[View], tuple[str, ...]]:
         """As `improve`, of the legs alone; motion: of every fit, where an upper body leads."""
         found = self._as_seen(dressed.fitter, Judged(fit, views, terms), dt_s, seen, anew, motion)
+        if not searches:
+            return found.fit, list(found.views), found.changed
         fit, legs = self._searched_legs(
-            dressed, found.fit, found.views, dt_s, turn, found.terms, motion
+            dressed, found.fit, found.views, dt_s, ticks, found.terms, motion
         )
         return fit, list(found.views), (*found.changed, *legs)
 
@@ -150,14 +158,14 @@ class OtherPoses:
         fit: Fit,
         views: Sequence[View],
         dt_s: float,
-        turn: int,
+        ticks: Ticks,
         terms: Terms,
         motion: Floats | None,
     ) -> tuple[Fit, tuple[str, ...]]:
         """The fit, or one with other legs, and those that changed over."""
-        fit, legs = dressed.legs.improve(fit, views, dt_s, turn, terms, motion)
+        fit, legs = dressed.legs.improve(fit, views, dt_s, ticks.turn, terms, motion)
         hips_too = motion is None
-        apart = self._legs_apart(dressed.fitter, fit, views, dt_s, turn, terms, hips_too)
+        apart = self._legs_apart(dressed.fitter, fit, views, dt_s, ticks, terms, hips_too)
         return apart, tuple(f"{side}_leg" for side in (legs if apart is fit else SIDES))
 
     def _legs_apart(
@@ -166,14 +174,14 @@ class OtherPoses:
         fit: Fit,
         views: Sequence[View],
         dt_s: float,
-        turn: int,
+        ticks: Ticks,
         terms: Terms,
         hips_too: bool,
     ) -> Fit:
         """The fit, or that with the legs exchanged: both look alike, and crossed ones are unusual. hips_too: or with the hips
         turned as the chest is, as those of somebody who turned back may be left behind."""
         p = self._params
-        if turn % p.crossed_turns:
+        if not ticks.due(p.crossed_s):
             return fit
         joints_m, globals_xyzw = fitter.joints(fit.state)
         twisted = hips_too and abs(twist_rad(globals_xyzw)) > p.twisted_rad

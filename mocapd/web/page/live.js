@@ -93,8 +93,10 @@ export class Live {
     this.state(
       ...tracking(figures),
       `tracker ${figures.tracker || "–"}, ${number(figures.rate_hz)} poses a second, ` +
-        `${number(latency.median)} ms from light to output, step ${number(figures.step_ms.median)} ms, ` +
-        `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped`,
+        `${number(latency.median)} ms from light to output and ` +
+        `${number(figures.lag_ms.median)} ms of smoothing, step ${number(figures.step_ms.median)} ms, ` +
+        `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped` +
+        (figures.effort ? `; ${figures.effort}` : ""),
     );
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);

@@ -9,6 +9,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
+from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Tracking
 
@@ -61,6 +62,11 @@ def test_a_lost_camera_and_dropped_frame_sets_are_told() -> None:
     text = status_text(Snapshot(replace(METRICS, sets_dropped=7), {"left": lost}, {}))
     assert "left lost" in text
     assert text.endswith("7 dropped")
+
+
+def test_less_effort_is_said_with_its_reason() -> None:
+    text = status_text(Snapshot(replace(METRICS, effort=Effort.SAVING), {"left": CAMERA}, {}))
+    assert text.endswith("| saving effort: this machine is too slow")
 
 
 def test_a_camera_whose_pictures_are_wrong_is_marked() -> None:

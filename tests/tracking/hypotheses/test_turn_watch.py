@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.fit.fit_result import Fit
 from mocapd.tracking.hypotheses.turn_watch import TurnWatch, TurnWatchParams
+from mocapd.tracking.ticks import Ticks
 from tests.fit.synthetic import standing
 
 PARAMS = TurnWatchParams()
@@ -24,8 +25,9 @@ def looks(long_turns: Collection[int]) -> list[int]:
     """At which turns it looks, of 60."""
     watch, out = TurnWatch(PARAMS), []
     for turn in range(60):
-        if watch.is_due(turn, turn in long_turns):
-            watch.looked(turn)
+        ticks = Ticks(turn, turn, turn)
+        if watch.is_due(ticks, turn in long_turns):
+            watch.looked(ticks)
             out.append(turn)
     return out
 
@@ -38,7 +40,7 @@ def test_a_frame_that_takes_long_anyhow_is_left_alone_for_a_while() -> None:
     assert looks(range(20, 24)) == [11, 25, 35, 45, 55]
     every = looks(range(60))
     assert 3 <= len(every) < 5
-    assert max(np.diff(every)) <= PARAMS.latest + 1
+    assert max(np.diff(every)) <= 30 * PARAMS.latest_s + 1
 
 
 def test_once_is_chance_and_again_and_again_is_not() -> None:

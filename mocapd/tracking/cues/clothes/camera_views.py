@@ -69,10 +69,10 @@ class CameraView:
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
 
-    def learn_background(self, agrees: bool) -> None:
+    def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
         seen of the background is learned nearer to them."""
-        self.background.learn(self.picture, self.body)
+        self.background.learn(self.picture, self.body, ticks)
         if agrees and self.near is not None:
             x0, y0, x1, y1 = self.near
             body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
@@ -154,12 +154,11 @@ class CameraViews:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
         self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
 
-    def renew_before(self, turn: int) -> None:
-        """Renew what stands before each background, now and then everywhere, where something may have been uncovered."""
-        self._each(lambda i: self._renew_before(i, turn), self.present)
+    def renew_before(self, looks_round: bool) -> None:
+        """Renew what stands before each background; looks_round: everywhere, where something may have been uncovered."""
+        self._each(lambda i: self._renew_before(i, looks_round), self.present)
 
-    def _renew_before(self, i: int, turn: int) -> None:
-        looks_round = turn % self._params.uncovered_turns == 0
+    def _renew_before(self, i: int, looks_round: bool) -> None:
         self.each[i].stand_before(everywhere=looks_round)
         if looks_round:
             self._take_uncovered(i)
@@ -178,14 +177,14 @@ class CameraViews:
         camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
 
     def prepared(
-        self, state: MotionState, turn: int, also: Callable[[int], T]
+        self, state: MotionState, looks_round: bool, also: Callable[[int], T]
     ) -> tuple[list[View], list[T]]:
         """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
         each camera all in one go, as threads that wait for each other after every step gain nothing."""
 
         def prepare(i: int) -> tuple[View | None, T]:
             self._mark(i, state)
-            self._renew_before(i, turn)
+            self._renew_before(i, looks_round)
             return self._classified(i, state, marked=True), also(i)
 
         done = self._each(prepare, self.present)
@@ -258,9 +257,9 @@ class CameraViews:
                     dst=camera.body,
                 )
 
-    def learn(self, state: MotionState | None, views: Sequence[View]) -> None:
+    def learn(self, state: MotionState | None, views: Sequence[View], ticks: int = 1) -> None:
         """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
-        nobody is marked; not while somebody who may be a part of it is not found yet."""
+        nobody is marked; not while somebody who may be a part of it is not found yet. ticks: of 1/30 s, that passed."""
         shows = {view.index: view for view in views}
 
         def learn(i: int) -> None:
@@ -269,7 +268,7 @@ class CameraViews:
                 self._learn(i, state, view.dt_s, view.roi, view.ids)
             camera = self.each[i]
             if not camera.may_hold_body:
-                camera.learn_background(agrees=state is not None)
+                camera.learn_background(state is not None, ticks)
 
         self._each(learn, self.present)
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
@@ -15,12 +16,16 @@ from mocapd.tracking.base import Probe, no_time_passes
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFits, ClothesFound, Observed
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
+from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import Proportions, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+_DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
 
 
 class ClothesCue:
@@ -52,20 +57,29 @@ class ClothesCue:
         """Of the wearer's present look."""
         return self._fits.fitter
 
+    @property
+    def work(self) -> OptionalWork:
+        """What optional work is done."""
+        return self._fits.work
+
+    @work.setter
+    def work(self, work: OptionalWork) -> None:
+        self._fits.work = work
+
     def reset(self) -> None:
         """Forget background and look."""
         self._fits.reset()
         self._find.reset()
-        self._turn = 0
+        self._ticks = Ticks(1, 1, 1)
 
     def rehearse(self) -> None:
         """See `ClothesFits`."""
         self._fits.rehearse()
         self.reset()
 
-    def take(self, pictures: Pictures, t_ns: int) -> None:
-        """Take the work pictures of a frame set."""
-        self._turn += 1
+    def take(self, pictures: Pictures, t_ns: int, ticks: Ticks) -> None:
+        """Take the work pictures of a frame set, and the ticks that passed with it."""
+        self._ticks = ticks
         self._find.times.came(t_ns)
         self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
 
@@ -92,24 +106,30 @@ class ClothesCue:
         p = self.params
         if self.cameras.are_new or not self.cameras.know_appearance:
             return None
+        if carried and self._rests_legs:
+            return None
         if carried:
             is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
                 p.guided_joint_after_s
             )
-            looks = self._turn % p.guided_joint_turns == 1 and not is_new
+            looks = (
+                self._ticks.due(p.guided_joints_s * self._fits.work.network, TICK_S) and not is_new
+            )
         else:
-            looks = not self._measures_depths
+            looks = self._ticks.alternates(2 * self._fits.work.network, _JOINTS)
         joints, fitter = self._fits.terms.joints, self.fitter
         watch = joints.watch(fitter, predicted, self.cameras) if looks else unwatched
         rays: list[JointRays | None]
-        views, rays = self.cameras.prepared(predicted, self._turn, watch)
+        views, rays = self.cameras.prepared(predicted, self._fits.looks_round(self._ticks), watch)
         return Observed(predicted, views, joints.term(self.model, rays))
 
     def whole(
         self, known: TrackState, seen: Observed, dt_s: float, frames: FrameSet, probe: Probe
     ) -> ClothesFound | None:
         """The whole body, dt_s after it was known; None where too little of it is seen."""
-        return self._fits.whole(known, seen, dt_s, frames, self._turn, self._measures_depths, probe)
+        return self._fits.whole(
+            known, seen, dt_s, frames, self._ticks, self._measures_depths, probe
+        )
 
     def below(
         self,
@@ -122,12 +142,20 @@ class ClothesCue:
     ) -> ClothesFound | None:
         """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
         self._find.give_up()
-        return self._fits.below(known, start, seen, dt_s, frames, self._turn, probe)
+        if seen is None and self._rests_legs and known.whole is not None:
+            return ClothesFound(known.whole, start, (), ())
+        return self._fits.below(known, start, seen, dt_s, frames, self._ticks, probe)
 
     @property
     def _measures_depths(self) -> bool:
-        """Whether this frame does, where cameras look from one side; the others look for joints, and learn."""
-        return self._turn % self.params.depth_turns == 0
+        """Whether this frame does, where cameras look from one side; others look for joints, and learn."""
+        return self._ticks.alternates(2 * self._fits.work.depths, _DEPTHS)
+
+    @property
+    def _rests_legs(self) -> bool:
+        """Whether legs and head below a trunk that the shirt carries go on as they moved."""
+        legs = self._fits.work.legs
+        return legs > 1 and not self._ticks.alternates(legs, 0)
 
     # --- from nothing ---
 
@@ -145,7 +173,7 @@ class ClothesCue:
 
     def begin(self, there: MotionState, frames: FrameSet) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline."""
-        return self._fits.begin(there, frames, self._turn)
+        return self._fits.begin(there, frames, self._ticks)
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
         """Why nobody is found, where that can be told."""
@@ -155,8 +183,10 @@ class ClothesCue:
 
     def learn(self, found: ClothesFound | None, nobody: bool, carried: bool) -> None:
         """The look of a body that agrees well, and the background beside it, or everywhere where nobody is known."""
-        p, cameras = self.params, self.cameras
-        if nobody and self._turn % p.absorb_turns:
+        p, cameras, looks = self.params, self.cameras, self._fits.work.looks
+        if self._ticks.count == 0:
+            return  # more frames do not teach faster
+        if nobody and not self._ticks.due(p.absorb_s):
             cameras.mark_unknown()  # what stays for long is furniture that was moved
         elif nobody:
             cameras.mark_body(None)
@@ -164,8 +194,14 @@ class ClothesCue:
         views: Sequence[View] = ()
         if found is not None and carried:
             # with two cameras: the look is learned in one of them, in two of four frames
-            views = found.views[self._turn % 4 :: 4]
-        elif found is not None and not self._measures_depths:
+            views = [
+                view
+                for k, view in enumerate(found.views)
+                if self._ticks.due(p.guided_look_s * looks, k * TICK_S)
+            ]
+        elif found is not None and self._ticks.alternates(2 * looks, _JOINTS):
             # depths and arms that are searched for make their frames long enough
             views = found.views
-        cameras.learn(found.motion if found is not None and agrees else None, views)
+        cameras.learn(
+            found.motion if found is not None and agrees else None, views, self._ticks.count
+        )

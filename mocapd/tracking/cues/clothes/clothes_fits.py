@@ -26,10 +26,12 @@ from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
 from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.cues.stereo.depth_views import with_depths
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
 from mocapd.tracking.hypotheses.seen_pose import WHOLE
 from mocapd.tracking.hypotheses.seen_tries import Anew
 from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Floats, Frame, FrameSet, Rig
@@ -82,6 +84,15 @@ class ClothesFits:
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
+        self.work = OptionalWork()
+
+    def looks_round(self, ticks: Ticks) -> bool:
+        """Whether all of the pictures are compared with the background in this frame, and not only about the body."""
+        return ticks.due(self.params.uncovered_s * self.work.uncovered)
+
+    def _searches(self, ticks: Ticks) -> bool:
+        """Whether other poses are tried in this frame."""
+        return ticks.due(self.work.other_poses * TICK_S)
 
     @property
     def fitter(self) -> Fitter:
@@ -135,7 +146,7 @@ class ClothesFits:
         seen: Observed,
         dt_s: float,
         frames: FrameSet,
-        turn: int,
+        ticks: Ticks,
         with_depth: bool,
         probe: Probe,
     ) -> ClothesFound | None:
@@ -154,16 +165,17 @@ class ClothesFits:
             )
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
-            return (*self.terms.measured(fitter, drawn, shown, frames, turn), *seen.joints)
+            return (*self.terms.measured(fitter, drawn, shown, frames, ticks.turn), *seen.joints)
 
         terms = terms_of(predicted, views)
         probe("clothes.distances")
         fit = fitter.fit(
-            predicted, views, dt_s, p.fit.iterations, rendered=True, motion=motion, terms=terms
+            predicted, views, dt_s, p.fit.iterations - self.work.fewer_iterations, rendered=True,
+            fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.improve(
-            self.wardrobe.dressed, fit, views, dt_s, frames, turn, terms, seen.joints,
+            self.wardrobe.dressed, fit, views, dt_s, frames, ticks, self._searches(ticks), terms, seen.joints,
             Anew(self.cameras.classified, terms_of), probe,
         )  # fmt: skip
         return self._found(fit, known.motion, dt_s, views, changed)
@@ -175,7 +187,7 @@ class ClothesFits:
         seen: Observed | None,
         dt_s: float,
         frames: FrameSet,
-        turn: int,
+        ticks: Ticks,
         probe: Probe,
     ) -> ClothesFound | None:
         """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
@@ -185,22 +197,24 @@ class ClothesFits:
             cameras.seed_background()
         # legs that were not seen before have a way to go
         is_new = known.whole is None
-        iterations = p.start.iterations if is_new else p.guided_iterations
+        iterations = (
+            p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
+        )
         dt_s = BEGUN_S if is_new else dt_s
         held = self._held(known, dt_s)
         if not cameras.know_appearance:
             return self._outlined(
-                start, None if is_new else known.motion, dt_s, held, iterations, turn
+                start, None if is_new else known.motion, dt_s, held, iterations, ticks
             )
         if seen is None:
-            views, rays = cameras.prepared(start, turn, unwatched)
+            views, rays = cameras.prepared(start, self.looks_round(ticks), unwatched)
             seen = Observed(start, views, self.terms.joints.term(self.model, rays))
         if not seen.views:
             return None
         fitter = self.fitter
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
-            measured = self.terms.measured(fitter, drawn, shown, frames, turn, _BELOW)
+            measured = self.terms.measured(fitter, drawn, shown, frames, ticks.turn, _BELOW)
             return (*measured, *seen.joints)
 
         terms = terms_of(seen.drawn, seen.views)
@@ -211,13 +225,13 @@ class ClothesFits:
         )  # fmt: skip
         probe("clothes.fit")
         fit, views, changed = self._others.other_legs(
-            self.wardrobe.dressed, fit, seen.views, dt_s, turn, terms, seen.joints,
+            self.wardrobe.dressed, fit, seen.views, dt_s, ticks, self._searches(ticks), terms, seen.joints,
             Anew(cameras.classified, terms_of), held,
         )  # fmt: skip
         probe("clothes.legs")
         return self._found(fit, None if is_new else known.motion, dt_s, views, changed)
 
-    def begin(self, there: MotionState, frames: FrameSet, turn: int) -> ClothesFound | None:
+    def begin(self, there: MotionState, frames: FrameSet, ticks: Ticks) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
         background."""
         cameras = self.cameras
@@ -232,7 +246,7 @@ class ClothesFits:
             return None
         fit = fitter.fit(
             there, views, BEGUN_S, self.params.fit.iterations,
-            terms=self.terms.measured(fitter, there, views, frames, turn),
+            terms=self.terms.measured(fitter, there, views, frames, ticks.turn),
         )  # fmt: skip
         return self._found(fit, None, BEGUN_S, views, ())
 
@@ -243,12 +257,12 @@ class ClothesFits:
         dt_s: float,
         held: Floats,
         iterations: int,
-        turn: int,
+        ticks: Ticks,
     ) -> ClothesFound | None:
         """Somebody whose look is not known yet, by what stands before the background; it is learned then."""
         p, cameras = self.params, self.cameras
         cameras.mark_body(start)
-        cameras.renew_before(turn)
+        cameras.renew_before(self.looks_round(ticks))
         views = cameras.silhouettes(start)
         if not views:
             return None

@@ -117,12 +117,13 @@ class ClothesParams:
         default_factory=lambda: MeasuringParams(points=10, leg_points=24)
     )
 
-    depth_turns: int = 2  # from one look for depths to the next
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
     beside_px: int = 15  # about the body nothing is learned as background
     close_px: int = 3  # but what was never known as such, beyond that
-    uncovered_turns: int = 10  # from one look for what was uncovered to the next
-    absorb_turns: int = 13  # of so many looks one learns what stands before the background, too, while nobody is known
+    uncovered_s: float = 10 / 30  # from one look for what was uncovered to the next
+    absorb_s: float = (
+        13 / 30
+    )  # so often what stands before the background is learned, too, while nobody is known
     soft: float = (
         60.0 / 255.0
     )  # weight of a drawn pixel where something else stands before the background
@@ -130,7 +131,7 @@ class ClothesParams:
     # motion from frame to frame
     velocity: VelocityParams = field(default_factory=VelocityParams)
 
-    crossed_turns: int = 3  # from one look at crossed legs to the next
+    crossed_s: float = 3 / 30  # from one look at crossed legs to the next
     crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment
     twisted_rad: float = 0.7  # of the chest against the hips, above which these may be left behind
     crossed_iterations: int = 4
@@ -153,7 +154,10 @@ class ClothesParams:
 
     # with the upper body known from another tracker
     guided_iterations: int = 3
-    guided_joint_turns: int = 3  # from one look for joints to the next
+    guided_joints_s: float = 3 / 30  # from one look for joints to the next
+    guided_look_s: float = (
+        4 / 30
+    )  # from one frame that teaches the look of the clothes to one camera to the next
     guided_joint_after_s: float = 1.0  # since the legs were found
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03

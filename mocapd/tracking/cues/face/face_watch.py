@@ -12,11 +12,13 @@ import numpy as np
 
 from mocapd.body.head_proportions import FACE_WIDTH, MIDDLE
 from mocapd.body.skeleton import INDEX
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre, project, to_camera
+from mocapd.tracking.ticks import Ticks
 from mocapd.types import Camera, Floats, FrameSet
 from mocapd.vision.face.face_detection import faces_near
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
@@ -29,7 +31,7 @@ _FORWARD = np.array([0.0, 0.0, 1.0])
 class FaceWatchParams:
     """When a face is looked for, and what it tells."""
 
-    every: int = 2  # turns from one look to the next; each at another camera
+    every_s: float = 2 / 30  # from one look to the next; each at another camera
     away_rad: float = 2.4  # from a camera, that a chest faces: an ear seen from 2.1 is taken for a face now and then
     windows: int = 2  # that agree on a face
     rate: float = 0.5  # of looks at frontal faces that find them
@@ -62,13 +64,19 @@ class FaceWatch:
         faces_near(self._cascade, blank, 32.0, 32.0, 28.0, 8.0, self._params.windows)
 
     def look(
-        self, fitter: Fitter, state: MotionState, views: Sequence[View], frames: FrameSet, turn: int
+        self,
+        fitter: Fitter,
+        state: MotionState,
+        views: Sequence[View],
+        frames: FrameSet,
+        ticks: Ticks,
     ) -> None:
-        """Look for the face of a body in one of the views; turn: a running number."""
+        """Look for the face of a body in one of the views, if that is due; ticks: that passed with the frame set."""
         p = self._params
-        if turn % p.every or not views:
+        if not views or not ticks.due(p.every_s):
             return
-        camera = fitter.drawings[views[turn // p.every % len(views)].index].camera
+        looks = int(ticks.last * TICK_S / p.every_s + 1e-6)
+        camera = fitter.drawings[views[looks % len(views)].index].camera
         joints, globals_ = fitter.joints(state)
         head, chest = INDEX["head"], INDEX["upperChest"]
         middle = joints[head] + rotations.rotate(globals_[head], MIDDLE * self._stature_m)

@@ -24,12 +24,16 @@ from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt import shirt_search as detection
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose, upper_of
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Bytes, Floats, FrameSet, Rig
 from mocapd.vision.room_background import RoomBackground
+
+_LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,6 +79,7 @@ class ShirtCue:
         )
         self._columns = {side: self.model.space.columns(f"{side}_arm") for side in SIDES}
         self._arms = ArmSearch(self.fitter, p.limbs)
+        self.work = OptionalWork()
         self.reset()
 
     def rehearse(self) -> None:
@@ -90,10 +95,12 @@ class ShirtCue:
         """Forget light and background."""
         self.segmenters.reset()
         self._next_search_ns = 0
+        self._ticks = Ticks(1, 1, 1)
 
-    def take(self, pictures: Pictures) -> None:
-        """Take the work pictures of a frame set."""
-        self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present})
+    def take(self, pictures: Pictures, ticks: Ticks) -> None:
+        """Take the work pictures of a frame set, and the ticks that passed with it."""
+        self._ticks = ticks
+        self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present}, ticks.count)
 
     # --- with a body ---
 
@@ -129,11 +136,14 @@ class ShirtCue:
         )
         terms = texture_distances(fitter, start, views, frames, turn, p.distances)
         fit = fitter.fit(
-            start, views, dt_s, p.fit.iterations, learning, rendered=True, motion=motion, terms=terms
+            start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
+            fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("shirt.fit")
         before = fit
-        fit, jumped = self._arms.improve(fit, views, dt_s, turn, terms, learning)
+        jumped: tuple[str, ...] = ()
+        if self._ticks.due(self.work.other_poses * TICK_S):
+            fit, jumped = self._arms.improve(fit, views, dt_s, turn, terms, learning)
         probe("shirt.arms")
         if not self._is_seen(fit):
             return None
@@ -258,6 +268,11 @@ class ShirtCue:
 
     def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
         """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
+        every = 1 if found is None else self.work.looks
+        if not self._ticks.due(every * TICK_S):
+            return
+        ticks = min(max(every, self._ticks.count), _LONGEST_TICKS)
         if found is not None:
-            self.segmenters.learn_with(found.motion, found.fit, list(found.views), found.redraw)
-        self.segmenters.learn_background(present, nobody=nobody)
+            views, dt_s = list(found.views), ticks * TICK_S
+            self.segmenters.learn_with(found.motion, found.fit, views, found.redraw, dt_s)
+        self.segmenters.learn_background(present, nobody, ticks)
