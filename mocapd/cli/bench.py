@@ -1,12 +1,12 @@
 """`mocapd bench`"""
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.child_process import child_command
 from mocapd.cli.options import (
     ConfigOption,
     SetOption,
@@ -116,8 +116,8 @@ def _watching() -> "Watching":
 
 def _daemon_command(capture: str, config: Path | None, settings: list[str] | None) -> list[str]:
     """`mocapd run` as this command was called."""
-    words = [sys.executable, "-m", "mocapd.cli.main", "run", "--capture", capture]
+    words = ["run", "--capture", capture]
     words += ["--config", str(config)] if config else []
     for setting in settings or ():
         words += ["--set", setting]
-    return words
+    return child_command("from mocapd.cli.main import main; main()", *words)

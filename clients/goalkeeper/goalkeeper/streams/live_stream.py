@@ -45,8 +45,8 @@ class LiveStream:
             if self._closed.is_set():
                 client.close()
                 return
-            self._trouble = ""
             self._client = client
+            self._trouble = ""
             return
 
     def poll(self, now_s: float) -> list[Sighting]:
@@ -66,11 +66,18 @@ class LiveStream:
         self._trouble, self._heard_s = "", now_s
         return [Sighting(_captured_s(body, now_s), pose_of_frame(body.frame))]
 
+    @property
+    def has_heard(self) -> bool:
+        """Whether a frame came, or something that is none."""
+        return self._heard_s is not None
+
     def state(self) -> StreamState:
         """Whether frames come."""
         if self._trouble or self._client is None:
             return StreamState(self._trouble)
-        if self._heard_s is None or self._now_s - self._heard_s > _SILENT_S:
+        if self._heard_s is None:
+            return StreamState("mocapd is there: waiting for its first frame")
+        if self._now_s - self._heard_s > _SILENT_S:
             return StreamState("the stream has stopped: is mocapd still running?")
         return StreamState()
 
