@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
-from mocapd.errors import ConfigError
+from mocapd.errors import UsageError
 
 
 def add_to(app: typer.Typer) -> None:
@@ -43,9 +43,7 @@ def export(
     from mocapd.outputs.mcap.recording_reader import RecordingReader
 
     if to not in FORMATS:
-        raise ConfigError(
-            f"there is no format {to[:40]!r}", "--to", f"one of: {', '.join(FORMATS)}"
-        )
+        raise UsageError(f"there is no format {to[:40]!r}", "--to", f"one of: {', '.join(FORMATS)}")
     set_up_logs(effective_config(config, settings).config.log_level)
     path = out if out is not None else file.with_suffix(f".{to}")
     target = export_file(to, path, force, inputs=(file,))

@@ -19,7 +19,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.cli.send_test import send_test_command
 from mocapd.clock import nanoseconds
-from mocapd.errors import ConfigError, UnavailableError
+from mocapd.errors import UnavailableError, UsageError
 from mocapd.outputs import output_table, wire
 from mocapd.outputs.aim import resolved
 from mocapd.outputs.base import SinkStatus
@@ -169,7 +169,7 @@ def test_an_output_that_is_new_in_the_table_can_be_tried(
 
 
 def test_what_cannot_be_is_a_named_error(code_of: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ConfigError, match=r"no output 'vcm'.*one of: .*vrchat"):
+    with pytest.raises(UsageError, match=r"no output 'vcm'.*one of: .*vrchat"):
         code_of(output="vcm")
 
     def unknown(*_: object, **__: object) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from mocapd.errors import CannotCreateError
 from mocapd_analysis.comparison import compared
 from mocapd_analysis.csv_tables import frames_csv, measures_csv
 from mocapd_analysis.main import app
@@ -109,6 +110,11 @@ def test_thinning_a_line_loses_no_top() -> None:
 def test_the_command_writes_all_files_and_says_which(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(track(tmp_path / "monday.npz"))])
     assert result.exit_code == 0, result.output
-    names = {"monday.html", "monday.csv", "monday_frames.csv"}
+    names = {"monday.html", "monday_measures.csv", "monday_frames.csv"}
     assert names <= {path.name for path in tmp_path.iterdir()}
     assert all(name in result.output for name in names)
+    written = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    again = CliRunner().invoke(app, ["report", str(tmp_path / "monday.npz")])
+    assert isinstance(again.exception, CannotCreateError)  # which ends the program with 73
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == written
+    assert not (tmp_path / "monday.csv").exists()  # the name of an export

@@ -64,7 +64,7 @@ def open_stream(options: Namespace) -> PoseStream:
         return DemoStream(platformdirs.user_cache_path("mocapd-goalkeeper"))
     if options.recording is not None:
         return ShiftedStream(RecordedStream(options.recording, options.person))
-    return LiveStream(Link(options.endpoint, options.instance, options.person))
+    return LiveStream(Link(options.endpoint, options.instance, options.person, typed_options=True))
 
 
 def open_shooter(options: Namespace) -> Shooter:

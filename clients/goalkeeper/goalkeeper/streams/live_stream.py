@@ -1,6 +1,7 @@
 """The stream of a daemon that runs, and what can go wrong with it: none there, silent, of another version."""
 
 import threading
+from dataclasses import replace
 
 from goalkeeper.streams.sighting import Sighting, StreamState, pose_of_frame
 from mocapd.client import Body, Client, Link
@@ -27,15 +28,7 @@ class LiveStream:
 
     def _connect(self) -> None:
         """Until there is a daemon, or nobody wants one."""
-        link = Link(
-            self._link.endpoint,
-            self._link.instance,
-            self._link.person,
-            _ATTEMPT_S,
-            self._link.tls_root_ca,
-            self._link.user,
-            self._link.password,
-        )
+        link = replace(self._link, connect_timeout_s=_ATTEMPT_S)
         while not self._closed.is_set():
             try:
                 client = Client(link)
