@@ -100,7 +100,7 @@ def test_without_a_foot_that_stands_nothing_shows_the_floor() -> None:
     with pytest.raises(UsageError, match="--feet floor: no foot is seen standing"):
         feet_on_floor(_standing(np.zeros(60), confidence=0.0))
     with pytest.raises(UsageError, match="no foot is seen standing"):
-        feet_on_floor(_standing(np.arange(60) * 0.05))
+        feet_on_floor(_standing(np.linspace(0.0, 3.0, 60)))
 
 
 def test_z_up_is_the_same_motion_turned(tmp_path: Path) -> None:
