@@ -15,7 +15,7 @@ def add_to(app: typer.Typer) -> None:
 
 def send_test_command(
     output: Annotated[
-        str, typer.Option("--output", help="Which output: zenoh, osc, vmc or vrchat.")
+        str, typer.Option("--output", help="Which output: zenoh, osc, vmc, vrchat or vmt.")
     ],
     host: Annotated[
         str | None,

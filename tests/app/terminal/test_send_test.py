@@ -80,7 +80,7 @@ def listening() -> Iterator[socket.socket]:
         yield one
 
 
-@pytest.mark.parametrize(("output", "seconds"), [("osc", 1.2), ("vrchat", 0.2)])
+@pytest.mark.parametrize(("output", "seconds"), [("osc", 1.2), ("vrchat", 0.2), ("vmt", 0.2)])
 def test_a_listener_gets_it_and_the_code_is_0(
     code_of: Command,
     output: str,
@@ -113,7 +113,7 @@ def test_an_avatar_gets_its_own_bones_from_a_sender_that_is_calibrated(
     assert arm[1:4] == pytest.approx(avatar.in_unity()["leftLowerArm"].at, abs=1e-6)
 
 
-@pytest.mark.parametrize("output", ["zenoh", "osc", "vrchat"])
+@pytest.mark.parametrize("output", ["zenoh", "osc", "vrchat", "vmt"])
 def test_where_nobody_listens_it_says_so_and_the_code_is_1(
     code_of: Command, output: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
