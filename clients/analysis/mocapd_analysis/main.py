@@ -38,6 +38,11 @@ def report(
         typer.Option("--out", help="The report to write [default: beside the first FILE, .html]"),
     ] = None,
     person: PersonOption = 0,
+    name: Annotated[str, typer.Option("--name", help="Who was recorded, for its head.")] = "",
+    date: Annotated[
+        str, typer.Option("--date", help="When, for its head [default: as the recordings say]")
+    ] = "",
+    notes: Annotated[str, typer.Option("--notes", help="What you note, for its head.")] = "",
     force: Annotated[bool, typer.Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
     """Write the report: FILE.html with its plots inside, FILE_measures.csv of all measures, FILE_frames.csv of every frame.
@@ -47,11 +52,12 @@ def report(
     from mocapd_analysis.csv_tables import frames_csv, measures_csv
     from mocapd_analysis.report import report_html
     from mocapd_analysis.report_files import FRAMES_CSV, MEASURES_CSV, REPORT_HTML, write_all
+    from mocapd_analysis.report_head import ReportHead
 
     sessions = _measured(files, person)
     path = out if out is not None else files[0].with_suffix(".html")
     texts = [
-        (path, REPORT_HTML, report_html(sessions)),
+        (path, REPORT_HTML, report_html(sessions, ReportHead(name, date, notes))),
         (path.with_name(f"{path.stem}_measures.csv"), MEASURES_CSV, measures_csv(sessions)),
     ]
     for number, found in enumerate(sessions):
