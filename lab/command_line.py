@@ -20,7 +20,10 @@ TrackerOption = Annotated[
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object.")]
 OutOption = Annotated[
-    Path | None, typer.Option("--out", help="Write the page and its plots into this folder.")
+    Path | None,
+    typer.Option(
+        "--out", help="Write the page and its plots into this folder, in place of earlier ones."
+    ),
 ]
 JointsOption = Annotated[Joints, typer.Option("--joints", help="Which joints are scored.")]
 

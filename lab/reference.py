@@ -25,8 +25,8 @@ _COMMANDS = """\
 
 Written by `python -m lab.reference docs`; do not edit by hand.
 
-Data goes to stdout, logs go to stderr. A file that a command writes replaces an earlier file of its kind. It replaces
-any other file only with `--force`. Exit codes are in the manual page (`mocapd man`).
+Data goes to stdout, logs go to stderr. A command replaces a file that is there only with `--force`. Exit codes are
+in the manual page (`mocapd man`).
 """
 _CONFIGURATION = """\
 # Configuration

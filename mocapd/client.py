@@ -117,6 +117,7 @@ class Link:
     tls_root_ca: PEM file, for a `tls/` endpoint
     user, password: for a daemon with a password file
     certificate, private_key: PEM files of this program, for a daemon with `zenoh.tls_require_client`
+    typed_options: the user gives endpoint and instance as options of a command line, so errors name them `--endpoint`
     """
 
     endpoint: str = ENDPOINT
@@ -128,6 +129,7 @@ class Link:
     password: str = ""
     certificate: str = ""
     private_key: str = ""
+    typed_options: bool = False
 
     @property
     def key(self) -> str:
@@ -337,7 +339,7 @@ def _attempt(link: Link) -> zenoh.Session:
     except zenoh.ZError as error:
         raise UnavailableError(
             f"no mocapd at {link.endpoint}",
-            fix="start `mocapd run` or pass endpoint="
+            fix=f"start `mocapd run` or pass {_option(link, 'endpoint')}"
             # a refused login looks like silence to Zenoh
             + ("; check tls_root_ca, user and password too" if _has_secrets(link) else ""),
         ) from error
@@ -347,8 +349,13 @@ def _attempt(link: Link) -> zenoh.Session:
     with session:
         raise UnavailableError(
             f"no mocapd at {link.endpoint}: a Zenoh node answers, but without {token}",
-            fix="start `mocapd run` (zenoh.connect joins that node) or pass endpoint= or instance=",
+            fix="start `mocapd run` (zenoh.connect joins that node) or pass "
+            f"{_option(link, 'endpoint')} or {_option(link, 'instance')}",
         )
+
+
+def _option(link: Link, name: str) -> str:
+    return f"--{name}" if link.typed_options else f"{name}="
 
 
 def _has_secrets(link: Link) -> bool:

@@ -1,6 +1,8 @@
 """Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
 
 import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
@@ -43,6 +45,21 @@ class ConfigError(MocapdError):
     """A configuration or calibration value is wrong (78 EX_CONFIG)."""
 
     exit_code = 78
+
+
+class UsageError(MocapdError):
+    """An option or argument of a command is wrong, lacks another or contradicts one (2)."""
+
+    exit_code = 2
+
+
+@contextmanager
+def usage_errors() -> Iterator[None]:
+    """For values that the command line alone gives: a ConfigError of the block is raised as a UsageError."""
+    try:
+        yield
+    except ConfigError as error:
+        raise UsageError(error.what, error.where, error.fix) from None
 
 
 class NewerFileError(ConfigError):

@@ -1,4 +1,4 @@
-"""A file that a command writes for its user: what is there already is not replaced unless it is of the same kind."""
+"""A file that a command writes for its user: what is there already is replaced with `--force` only."""
 
 import os
 import tempfile
@@ -27,12 +27,6 @@ def kind_by_magic(name: str, *magic: bytes) -> FileKind:
     return FileKind(name, lambda head: head.startswith(magic))
 
 
-def kind_by_first_line(name: str, text: str) -> FileKind:
-    """The kind of texts that have the first line of this one."""
-    line = text.encode().partition(b"\n")[0][: _HEAD_BYTES - 1]
-    return FileKind(name, lambda head: head.startswith(line))
-
-
 PDF = kind_by_magic("a PDF", b"%PDF-")
 PNG = kind_by_magic("a PNG picture", b"\x89PNG\r\n\x1a\n")
 
@@ -41,15 +35,16 @@ PNG = kind_by_magic("a PNG picture", b"\x89PNG\r\n\x1a\n")
 class OutputFile:
     """Where a command writes one file, and what it may replace there.
 
-    kind: None where even an earlier file of this kind stays, as it cannot be made again; force: replace whatever file
-    is there, but none of another kind in a folder that the command reads; inputs: what the command reads, which is never
-    replaced. An empty file is of every kind.
+    kind: what is written; force: replace the file that is there, but none of another kind in a folder that the command
+    reads; inputs: what the command reads, which is never replaced; option: that names the file, empty for an argument. An
+    empty file is of every kind.
     """
 
     path: Path
-    kind: FileKind | None
+    kind: FileKind
     force: bool = False
     inputs: Sequence[Path] = ()
+    option: str = "--out"
 
     def check(self) -> None:
         """For before a long run: raises CannotCreateError when the file could not be written now."""
@@ -76,7 +71,7 @@ class OutputFile:
     def check_replaceable(self) -> None:
         """Raises CannotCreateError for what is there and must stay."""
         path = str(self.path)
-        elsewhere = "choose another name" + (" with --out" if self.kind is not None else "")
+        elsewhere = "choose another name" + (f" with {self.option}" if self.option else "")
         if is_absent(self.path):
             return
         if any(_are_same(source, self.path) for source in self.inputs):
@@ -90,21 +85,23 @@ class OutputFile:
             raise CannotCreateError(
                 f"is there already, and {error.what}", path, elsewhere
             ) from None
-        if self.kind is not None and (not head or self.kind.begins_so(head)):
-            return
-        if self.force and not in_input:
+        is_kind = not head or self.kind.begins_so(head)
+        is_spared = in_input and not is_kind
+        if self.force and not is_spared:
             return
         raise CannotCreateError(
-            "is there already" + (f", and is not {self.kind.name}" if self.kind else ""),
+            "is there already" + ("" if is_kind else f", and is not {self.kind.name}"),
             path,
-            elsewhere if in_input else f"{elsewhere}, or replace it with --force",
+            elsewhere if is_spared else f"{elsewhere}, or replace it with --force",
         )
 
     def _cannot(self, error: OSError) -> CannotCreateError:
         return CannotCreateError(
             f"cannot be written ({error.strerror})",
             str(self.path),
-            mend_of(error, "choose another place with --out"),
+            mend_of(
+                error, "choose another place" + (f" with {self.option}" if self.option else "")
+            ),
         )
 
 

@@ -1,4 +1,4 @@
-"""A file that a command writes replaces an earlier one of its kind, and nothing else."""
+"""A file that a command writes replaces none that is there without --force, and never one that the command reads."""
 
 import os
 from pathlib import Path
@@ -9,12 +9,11 @@ from mocapd.calibrate.extrinsics.rig_writing import RIG
 from mocapd.calibration.calibration_writing import CALIBRATION_KIND
 from mocapd.errors import CannotCreateError
 from mocapd.exports.formats import KINDS
-from mocapd.output_file import PDF, PNG, FileKind, OutputFile, kind_by_first_line
+from mocapd.output_file import PDF, PNG, FileKind, OutputFile
 from mocapd.session.offline import track_file
 
 MCAP = b"\x89MCAP0\r\n\x00"
 TRACK = track_file(Path("a")).kind
-assert TRACK is not None
 # what a command writes, and how a file of it begins
 BEGINNINGS: dict[FileKind, bytes] = {
     PDF: b"%PDF-1.4\n",
@@ -27,7 +26,6 @@ BEGINNINGS: dict[FileKind, bytes] = {
     KINDS["csv"]: b"time_s,gap,hips_x\n",
     KINDS["trc"]: b"PathFileType\t4\t(X/Y/Z)\ta.trc\n",
     KINDS["c3d"]: b"\x02\x50" + bytes(20),
-    kind_by_first_line("this page", "# How well\n\n..."): b"# How well\n\nelse",
 }
 # what must stay, whatever is written
 FOREIGN = (
@@ -47,37 +45,30 @@ def write(out: OutputFile, data: bytes = b"new") -> None:
 
 
 @pytest.mark.parametrize("kind", BEGINNINGS, ids=lambda kind: kind.name)
-def test_only_a_file_of_the_same_kind_is_replaced(tmp_path: Path, kind: FileKind) -> None:
+def test_no_file_is_replaced_without_force(tmp_path: Path, kind: FileKind) -> None:
     path = tmp_path / "out"
-    for head in (*FOREIGN, *(head for other, head in BEGINNINGS.items() if other is not kind)):
+    for head in (b"", *FOREIGN, *BEGINNINGS.values()):
         path.write_bytes(head)
-        with pytest.raises(CannotCreateError, match="is there already") as caught:
+        is_kind = not head or head == BEGINNINGS[kind]
+        match = r"is there already -- .*--force" if is_kind else "is there already, and is not a"
+        with pytest.raises(CannotCreateError, match=match) as caught:
             write(OutputFile(path, kind))
-        assert "--force" in caught.value.fix
+        assert caught.value.fix == "choose another name with --out, or replace it with --force"
         with pytest.raises(CannotCreateError, match="is there already"):
             OutputFile(path, kind).check()
         assert path.read_bytes() == head
-    for head in (b"", BEGINNINGS[kind]):
-        path.write_bytes(head)
-        OutputFile(path, kind).check()
-        write(OutputFile(path, kind))
+        OutputFile(path, kind, force=True).check()
+        write(OutputFile(path, kind, force=True))
         assert path.read_bytes() == b"new"
     assert os.listdir(tmp_path) == ["out"]  # noqa: PTH208 (names, hidden ones too)
 
 
-def test_what_cannot_be_made_again_is_never_replaced_without_force(tmp_path: Path) -> None:
+def test_a_file_that_an_argument_names_is_refused_without_naming_an_option(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     path.write_bytes(MCAP)
-    with pytest.raises(CannotCreateError, match="is there already"):
-        OutputFile(path, None).check()
-    OutputFile(path, None, force=True).check()
-
-
-def test_force_replaces_any_file(tmp_path: Path) -> None:
-    path = tmp_path / "notes.txt"
-    path.write_text("mine")
-    write(OutputFile(path, PDF, force=True))
-    assert path.read_bytes() == b"new"
+    with pytest.raises(CannotCreateError, match="-- choose another name, or replace it") as caught:
+        OutputFile(path, PDF, option="").check()
+    assert "--out" not in str(caught.value)
 
 
 @pytest.mark.parametrize("force", [False, True])
@@ -98,6 +89,8 @@ def test_force_spares_what_lies_in_a_folder_that_is_read(tmp_path: Path) -> None
     with pytest.raises(CannotCreateError, match="is there already"):
         write(OutputFile(capture / "cam0.mp4", PDF, force=True, inputs=(capture,)))
     write(OutputFile(capture / "new.pdf", PDF, inputs=(capture,)))
+    (capture / "new.pdf").write_bytes(b"%PDF-1.4")
+    write(OutputFile(capture / "new.pdf", PDF, force=True, inputs=(capture,)))
 
 
 @pytest.mark.parametrize("force", [False, True])

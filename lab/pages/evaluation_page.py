@@ -87,12 +87,15 @@ def page(findings: EvaluationResults, command: str) -> str:
 def write_page(directory: Path, findings: EvaluationResults, command: str) -> list[Path]:
     """Write the page and its plots; the paths. Raises CannotCreateError."""
     path = directory / score_page.PAGE
-    write_out(path, page(findings, command))
-    written = [path, score_page.write_plot(directory, findings.results, findings.joints)]
+    write_out(path, page(findings, command), force=True)
+    written = [
+        path,
+        score_page.write_plot(directory, findings.results, findings.joints, force=True),
+    ]
     if BASELINE in findings.comparison:
         written.append(directory / SHOULDER_PLOT)
-        save(shoulder_plot(shoulder_angles(findings.comparison)), written[-1])
+        save(shoulder_plot(shoulder_angles(findings.comparison)), written[-1], force=True)
     if findings.rocs:
         written.append(directory / ROC_PLOT)
-        save(roc_plot(findings.rocs), written[-1])
+        save(roc_plot(findings.rocs), written[-1], force=True)
     return written

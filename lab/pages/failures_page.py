@@ -157,13 +157,17 @@ def write_page(
         limit_cm=100.0 * CLEAR_LIMIT_M,
         wanted_s=WANTED_S,
     )
-    write_out(path, text)
+    write_out(path, text, force=True)
     panels: dict[str, list[tuple[str, Floats, Floats]]] = {}
     clear_s = {}
     for one in found:
         panels.setdefault(one.scene, []).append((one.rig, one.times_s, 100.0 * one.errors_m))
         clear_s[one.scene] = one.clear_s
-    save(recovery_plot(panels, clear_s, WANTED_S, 100.0 * CLEAR_LIMIT_M), directory / PLOT)
+    save(
+        recovery_plot(panels, clear_s, WANTED_S, 100.0 * CLEAR_LIMIT_M),
+        directory / PLOT,
+        force=True,
+    )
     return [path, directory / PLOT]
 
 

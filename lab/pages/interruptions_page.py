@@ -118,8 +118,8 @@ def write_page(
         command=command, plot=PLOT, figures=figures_table(of), changes=changes_table(of), errors=errors_table(of),
         approach_s=APPROACH_S,
     )  # fmt: skip
-    write_out(path, text)
-    save(cues_plot(of, LIMIT_CM, spans), directory / PLOT)
+    write_out(path, text, force=True)
+    save(cues_plot(of, LIMIT_CM, spans), directory / PLOT, force=True)
     return [path, directory / PLOT]
 
 

@@ -1,12 +1,12 @@
 """`mocapd bench`"""
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.child_process import child_command
 from mocapd.cli.options import (
     ConfigOption,
     SetOption,
@@ -14,7 +14,7 @@ from mocapd.cli.options import (
     effective_config,
     refuse_variant,
 )
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, UsageError
 
 if TYPE_CHECKING:
     from mocapd.evaluate.bench.bench_live import Watching
@@ -71,9 +71,9 @@ def bench_command(
         return
     effective = effective_config(config, settings, tracker__name=tracker).config
     if live and not is_simulated(capture):
-        raise ConfigError(f"--live with {capture}", "command line", "give sim:SCENARIO")
+        raise UsageError(f"--live with {capture}", "command line", "give sim:SCENARIO")
     if watched and not live:
-        raise ConfigError("--watched without --live", "command line", "add --live")
+        raise UsageError("--watched without --live", "command line", "add --live")
     if live and not zenoh_section(effective.outputs).enabled:
         raise ConfigError("--live without Zenoh", "zenoh.enabled", "the subscriber needs it")
     prepare_libraries(effective.cache_dir)
@@ -116,8 +116,8 @@ def _watching() -> "Watching":
 
 def _daemon_command(capture: str, config: Path | None, settings: list[str] | None) -> list[str]:
     """`mocapd run` as this command was called."""
-    words = [sys.executable, "-m", "mocapd.cli.main", "run", "--capture", capture]
+    words = ["run", "--capture", capture]
     words += ["--config", str(config)] if config else []
     for setting in settings or ():
         words += ["--set", setting]
-    return words
+    return child_command("from mocapd.cli.main import main; main()", *words)

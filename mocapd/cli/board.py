@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapd.cli.options import ForceOption
+from mocapd.errors import usage_errors
 
 
 def add_to(app: typer.Typer) -> None:
@@ -53,11 +54,12 @@ def board(
     from mocapd.printing.board_pdf import board_pdf, flags_of
     from mocapd.printing.pdf_document import write_pdf
 
-    columns, rows = counts_of(board_size)
-    made = fitted_board(
-        paper, columns, rows, dictionary,
-        inverted=inverted, two_sided=two_sided, square_m=square, marker_m=marker,
-    )  # fmt: skip
+    with usage_errors():
+        columns, rows = counts_of(board_size)
+        made = fitted_board(
+            paper, columns, rows, dictionary,
+            inverted=inverted, two_sided=two_sided, square_m=square, marker_m=marker,
+        )  # fmt: skip
     write_pdf(out, board_pdf(made, paper), force)
     print(flags_of(made))
     told = f"{out}: print it at 100 % and glue it flat onto something stiff"

@@ -119,9 +119,9 @@ def calibrate(
     from mocapd.app.setup.setup_run import PageOptions, calibrate_page
 
     if out is not None or strokes is not None or floor_frame is not None or as_json or force:
-        from mocapd.errors import ConfigError
+        from mocapd.errors import UsageError
 
-        raise ConfigError(
+        raise UsageError(
             "--out, --strokes, --floor-frame, --force and --json are for --from-folder",
             "command line",
             "leave them out, or add --from-folder DIR",

@@ -26,7 +26,6 @@ from mocapd.cli.service import as_service, install_service
 
 app = typer.Typer(
     name="mocapd",
-    help="Webcams in, a body pose out, over Zenoh and OSC.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

@@ -17,7 +17,7 @@ from mocapd.cli.options import (
     effective_config,
     refuse_variant,
 )
-from mocapd.errors import ConfigError
+from mocapd.errors import UsageError
 from mocapd.extras import require_extra
 
 
@@ -70,9 +70,7 @@ def evaluate_captures(
     _refuse_moved("--interruptions", "lab.interruptions", interruptions)
     _refuse_moved("--prediction", "lab.prediction", prediction)
     if not captures:
-        raise ConfigError(
-            "no capture is given", "mocapd eval", "name a folder that has a truth.npz"
-        )
+        raise UsageError("no capture is given", "mocapd eval", "name a folder that has a truth.npz")
     if out is not None:
         require_extra("plots", "mocapd eval --out")
     effective = effective_config(config, settings, tracker__name=tracker).config
@@ -88,6 +86,8 @@ def evaluate_captures(
     from mocapd.evaluate.report import score_json, score_table
     from mocapd.session.tracker_setup import cached, ready_tracker
 
+    if out is not None:
+        score_page.check_page(out, force)
     with ProgressBars() as progress:
         cases = [open_case(folder, compare=True) for folder in captures]
         resources = cached(effective.cache_dir, progress)
@@ -112,9 +112,9 @@ def evaluate_captures(
 
 
 def _refuse_moved(option: str, module: str, value: str | bool | None) -> None:
-    """Raises ConfigError for an option of the first release that a command of the checkout has now."""
+    """Raises UsageError for an option of the first release that a command of the checkout has now."""
     if value:
-        raise ConfigError(
+        raise UsageError(
             f"{option} is no option of `mocapd eval` any more",
             "command line",
             f"in a checkout of mocapd's source run `python -m {module} --help`",

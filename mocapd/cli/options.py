@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.errors import ConfigError, MocapdError
+from mocapd.errors import MocapdError, UsageError
 
 if TYPE_CHECKING:
     from mocapd.config.effective import Effective
@@ -34,7 +34,7 @@ CaptureOption = Annotated[
 ]
 ForceOption = Annotated[
     bool,
-    typer.Option("--force", help="Replace what is there, also a file of another kind."),
+    typer.Option("--force", help="Replace a file that is there."),
 ]
 
 VrmOption = Annotated[
@@ -49,11 +49,11 @@ VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
 
 
 def refuse_variant(variant: str | None) -> None:
-    """Raises ConfigError for the option of earlier versions."""
+    """Raises UsageError for the option of earlier versions."""
     from mocapd.config.removed_keys import REMOVED
 
     if variant is not None:
-        raise ConfigError(
+        raise UsageError(
             "there is no --variant any more", "command line", REMOVED["tracker.variant"]
         )
 
@@ -91,7 +91,7 @@ def config_to_look_after(
     config: Path | None, settings: list[str] | None
 ) -> "tuple[Effective, MocapdError | None]":
     """The configuration, for commands that look after a daemon whatever has become of it since: where it cannot be
-    used, what is built in with these flags, and why. Raises ConfigError for wrong flags."""
+    used, what is built in with these flags, and why. Raises ConfigError or UsageError for wrong flags."""
     from mocapd.config.effective import load_config
 
     try:
@@ -101,12 +101,12 @@ def config_to_look_after(
 
 
 def _given(settings: list[str] | None) -> dict[str, str]:
-    """The flags --set by their keys. Raises ConfigError."""
+    """The flags --set by their keys. Raises UsageError."""
     given: dict[str, str] = {}
     for text in settings or ():
         key, equals, value = text.partition("=")
         if not equals:
-            raise ConfigError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
+            raise UsageError(f"--set {_brief(text)}", "command line", "write --set KEY=VALUE")
         given[key.strip()] = value.strip()
     return given
 
@@ -114,7 +114,7 @@ def _given(settings: list[str] | None) -> dict[str, str]:
 def _camera(text: str) -> tuple[str, str]:
     name, equals, source = text.partition("=")
     if not equals or not name or not source:
-        raise ConfigError(f"--camera {_brief(text)}", "command line", "write --camera ID=SOURCE")
+        raise UsageError(f"--camera {_brief(text)}", "command line", "write --camera ID=SOURCE")
     return name, source
 
 

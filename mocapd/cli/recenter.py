@@ -13,7 +13,8 @@ def add_to(app: typer.Typer) -> None:
 def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
     """Make the way the person faces now forward, in the running daemon.
 
-    Stand, and look straight ahead, in VR at what shall be ahead there. VRChat then turns the body to the headset.
+    Stand, and look straight ahead, in VR at what shall be ahead there. VRChat then turns the body to the headset, and in
+    SteamVR (vmt) it faces as the play area does.
 
     Example: mocapd recenter
     """
@@ -25,5 +26,8 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
         f"forward is {abs(told.yaw_deg):.0f} degrees to the {side} of the room's +Z;"
         f" told to: {', '.join(told.outputs) or 'no output'}"
     )
-    if "vrchat" not in told.outputs:
-        typer.echo("mocapd: VRChat is not sent to: set vrchat.enabled = true", err=True)
+    if not {"vrchat", "vmt"} & {*told.outputs}:
+        typer.echo(
+            "mocapd: neither VRChat nor SteamVR is sent to: set vrchat.enabled = true or vmt.enabled = true",
+            err=True,
+        )

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
-from mocapd.errors import ConfigError
+from mocapd.errors import UsageError
 
 
 def add_to(app: typer.Typer) -> None:
@@ -15,7 +15,7 @@ def add_to(app: typer.Typer) -> None:
 
 def send_test_command(
     output: Annotated[
-        str, typer.Option("--output", help="Which output: zenoh, osc, vmc or vrchat.")
+        str, typer.Option("--output", help="Which output: zenoh, osc, vmc, vrchat or vmt.")
     ],
     host: Annotated[
         str | None,
@@ -43,7 +43,7 @@ def send_test_command(
     from mocapd.outputs.output_table import OUTPUTS
 
     if output not in OUTPUTS:
-        raise ConfigError(
+        raise UsageError(
             f"there is no output {output[:100]!r}", "--output", f"one of: {', '.join(OUTPUTS)}"
         )
     effective = effective_config(config, settings, None, None, **vrm_flags(vrm)).config

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapd.cli.options import ForceOption
+from mocapd.errors import usage_errors
 
 
 def add_to(app: typer.Typer) -> None:
@@ -37,5 +38,7 @@ def shirt(
     from mocapd.printing.pdf_document import write_pdf
     from mocapd.printing.shirt_pdf import shirt_pdf
 
-    write_pdf(out, shirt_pdf(size, paper, layout), force)
+    with usage_errors():
+        content = shirt_pdf(size, paper, layout)
+    write_pdf(out, content, force)
     typer.echo(f"{out}: print it at 100 %; how to sew it is on its first page", err=True)

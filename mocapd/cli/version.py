@@ -1,4 +1,6 @@
-"""`mocapd version`"""
+"""`mocapd version`, and `mocapd --version`."""
+
+from typing import Annotated
 
 import typer
 
@@ -6,7 +8,8 @@ import mocapd
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Make it a command, and an option of the program."""
+    app.callback()(options)
     app.command("version")(version)
 
 
@@ -16,3 +19,20 @@ def version() -> None:
     Example: mocapd version
     """
     print(mocapd.__version__)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        version()
+        raise typer.Exit
+
+
+def options(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version.", callback=_print_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """Webcams in, a body pose out, over Zenoh and OSC."""

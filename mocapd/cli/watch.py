@@ -92,6 +92,7 @@ def link_of(
         # both or none: Zenoh asks for the key of a certificate
         certificate=zenoh.tls_certificate if zenoh.tls_private_key else "",
         private_key=zenoh.tls_private_key if zenoh.tls_certificate else "",
+        typed_options=True,
     )
 
 

@@ -10,6 +10,7 @@ import inspect
 import re
 import types
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -21,6 +22,7 @@ from mocapd.boundary.parsing import convert
 from mocapd.boundary.urls import without_password
 from mocapd.errors import ConfigError, MalformedError
 
+COMMAND_LINE = "command line"  # the place of a value that an option gave
 _MOST_SECTIONS = 100  # of one list; a calibration has at most 100 cameras
 _LONGEST_SHOWN = 200  # characters of a value in an error
 
@@ -125,7 +127,8 @@ def converted(annotation: Any, value: Any, path: str, where: Callable[[str], str
         raise ConfigError(
             f"{path} = {shown(value)[:_LONGEST_SHOWN]} does not do",
             where(path),
-            f"give {path} {described(annotation)}",
+            f"give {path} {described(annotation)}"
+            + _list_example(annotation, value, path, where(path)),
         ) from None
 
 
@@ -206,6 +209,25 @@ def described(annotation: Any) -> str:
     words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
     words[Path] = "the path of a file or folder"
     return words.get(bare, str(bare)) + _limits(meta)
+
+
+def _list_example(annotation: Any, value: Any, path: str, where: str) -> str:
+    """For a list: how it is written there, with the given value where that is an item of it, or several with commas."""
+    args = get_args(_bare(annotation))
+    if get_origin(_bare(annotation)) is not tuple:
+        return ""
+    count = 2 if args[-1] is Ellipsis else len(args)
+    example: Any = [{str: "one", float: 0.5, bool: True}.get(_bare(args[0]), 1)] * count
+    if isinstance(value, str | int | float):
+        parts = [part.strip() for part in str(value).strip("[]").split(",")]
+        for items in (parts, [int(part) if part.isdecimal() else part for part in parts]):
+            with suppress(MalformedError):
+                example = convert(items, annotation)
+    written = shown(example)[:_LONGEST_SHOWN]
+    # quoted, or a shell would take the quotes off
+    return (
+        f", such as --set '{path}={written}'" if where == COMMAND_LINE else f", such as {written}"
+    )
 
 
 def _limits(meta: Meta) -> str:

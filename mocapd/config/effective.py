@@ -14,7 +14,16 @@ from typing import Any
 import platformdirs
 
 from mocapd.boundary.files import is_absent, user_path
-from mocapd.config.config_keys import Key, build, converted, keys_of, leaves, shown, unknown_key
+from mocapd.config.config_keys import (
+    COMMAND_LINE,
+    Key,
+    build,
+    converted,
+    keys_of,
+    leaves,
+    shown,
+    unknown_key,
+)
 from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection, Config
 from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
@@ -139,8 +148,8 @@ def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
     found: Found = {}
     for path, text in flags.items():
         if path not in known:
-            raise _unknown(path, known, "command line")
-        found[path] = _from_text(known[path], text, "command line")
+            raise _unknown(path, known, COMMAND_LINE)
+        found[path] = _from_text(known[path], text, COMMAND_LINE)
     return found
 
 

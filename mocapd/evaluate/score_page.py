@@ -6,7 +6,8 @@ from pathlib import Path
 from mocapd.evaluate.capture_eval import CaptureResult
 from mocapd.evaluate.reliability import reliability
 from mocapd.evaluate.report import reliability_table, score_table
-from mocapd.evaluate.write_out import write_out
+from mocapd.evaluate.write_out import PAGE_KIND, write_out
+from mocapd.output_file import PNG, OutputFile
 
 PAGE = "evaluation.md"
 RELIABILITY_PLOT = "images/eval_confidence.png"
@@ -54,6 +55,12 @@ def page(results: Sequence[CaptureResult], tracker: str, joints: str, command: s
     return _HEAD.format(
         command=command, tracker=tracker, scores=scores, joints=joints
     ) + _RELIABILITY.format(table=confidences, plot=RELIABILITY_PLOT)
+
+
+def check_page(directory: Path, force: bool) -> None:
+    """For before a long run: raises CannotCreateError for a file that is there and must stay."""
+    for name, kind in ((PAGE, PAGE_KIND), (RELIABILITY_PLOT, PNG)):
+        OutputFile(directory / name, kind, force).check_replaceable()
 
 
 def write_page(

@@ -3,12 +3,14 @@
 from pathlib import Path
 
 from mocapd.errors import CannotCreateError, mend_of
-from mocapd.output_file import PNG, OutputFile, kind_by_first_line
+from mocapd.output_file import PNG, FileKind, OutputFile
+
+PAGE_KIND = FileKind("a page", lambda head: head.startswith(b"# "))
 
 
 def write_out(path: Path, data: str | bytes, force: bool = False) -> None:
-    """A page, in place of an earlier one with its title, or a PNG. Raises CannotCreateError."""
-    kind = PNG if isinstance(data, bytes) else kind_by_first_line("this page", data)
+    """A page or a PNG. Raises CannotCreateError."""
+    kind = PNG if isinstance(data, bytes) else PAGE_KIND
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:

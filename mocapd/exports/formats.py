@@ -13,17 +13,21 @@ from mocapd.exports.csv_table.csv_writer import csv_text, frames_in_csv
 from mocapd.exports.glb.glb_writer import frames_in_glb, most_glb_frames, write_glb
 from mocapd.exports.sampled_motion import MOST_FRAMES, SampledMotion, too_long
 from mocapd.exports.trc.trc_writer import frames_in_trc, trc_text
+from mocapd.exports.vrma.vrma_writer import write_vrma
 from mocapd.output_file import FileKind, OutputFile, kind_by_magic
 
 
 @dataclass(frozen=True, slots=True)
 class ExportFormat:
     """One format. write: the motion, where to, the name that the file will have; frames_in: how many frames a file
-    that was written holds; most_frames: how many it can hold, by the number of joints."""
+    that was written holds; most_frames: how many it can hold, by the number of joints; takes_z_up: the format itself has
+    no axis that is up, or can say which; keeps_all_joints: it needs joints that nobody saw, and leaves them unmoved."""
 
     write: Callable[[SampledMotion, Path, str], None]
     frames_in: Callable[[Path], int]
     most_frames: Callable[[int], int]
+    takes_z_up: bool = True
+    keeps_all_joints: bool = False
 
 
 def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
@@ -32,6 +36,10 @@ def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
 
 def _glb(motion: SampledMotion, path: Path, _name: str) -> None:
     write_glb(motion, path)
+
+
+def _vrma(motion: SampledMotion, path: Path, _name: str) -> None:
+    write_vrma(motion, path)
 
 
 def _csv(motion: SampledMotion, path: Path, _name: str) -> None:
@@ -53,7 +61,10 @@ def _unlimited(_joints: int) -> int:
 FORMATS: Mapping[str, ExportFormat] = MappingProxyType(
     {
         "bvh": ExportFormat(_bvh, frames_in_bvh, _unlimited),
-        "glb": ExportFormat(_glb, frames_in_glb, most_glb_frames),
+        "glb": ExportFormat(_glb, frames_in_glb, most_glb_frames, takes_z_up=False),
+        "vrma": ExportFormat(
+            _vrma, frames_in_glb, most_glb_frames, takes_z_up=False, keeps_all_joints=True
+        ),
         "csv": ExportFormat(_csv, frames_in_csv, _unlimited),
         "trc": ExportFormat(_trc, frames_in_trc, _unlimited),
         "c3d": ExportFormat(_c3d, frames_in_c3d, lambda _joints: MOST_C3D_FRAMES),
@@ -64,6 +75,7 @@ KINDS: Mapping[str, FileKind] = MappingProxyType(
     {
         "bvh": kind_by_magic("a BVH file", b"HIERARCHY"),
         "glb": kind_by_magic("a GLB file", b"glTF"),
+        "vrma": kind_by_magic("a VRMA file", b"glTF"),
         "csv": kind_by_magic("a CSV file of mocapd", b"time_s,gap,"),
         "trc": kind_by_magic("a TRC file", b"PathFileType\t"),
         "c3d": kind_by_magic("a C3D file", b"\x02\x50"),

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -23,7 +24,8 @@ class SampledMotion:
 
     skeleton: names, parents and T-pose of the recording; joints_m (F,J,3) [m]; global_xyzw (F,J,4): relative to the
     T-pose; confidence (F,J) 0..1; gap (F,): nobody was tracked: the pose is carried over from before to after;
-    uncertainty_m (F,J): one standard deviation of each joint's place [m], inf where it is unknown.
+    uncertainty_m (F,J): one standard deviation of each joint's place [m], inf where it is unknown; up: the axis that
+    points up, y but for z_up; unmoved: joints whose motion is not exported, by formats that need them all the same.
     """
 
     rate_hz: float
@@ -33,6 +35,8 @@ class SampledMotion:
     confidence: Floats
     gap: Bytes
     uncertainty_m: Floats
+    up: Literal["y", "z"] = "y"
+    unmoved: frozenset[str] = frozenset()
 
     @property
     def times_s(self) -> Floats:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 from mocapd.boundary.numbers import finite_number
 from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds, seconds
-from mocapd.errors import ConfigError, MalformedError
+from mocapd.errors import MalformedError, UsageError
 
 _MOST_WAITING = 1024  # things on their way
 
@@ -35,7 +35,7 @@ _LIMITS = {"offset_s": 1e6, "drift_ppm": 1e3, "jitter_ms": 1e3, "loss": 1.0}
 
 
 def parse_imperfections(text: str) -> Imperfections:
-    """`offset_s=3,drift_ppm=50`. Raises ConfigError."""
+    """`offset_s=3,drift_ppm=50`. Raises UsageError."""
     names = [one.name for one in fields(Imperfections)]
     given: dict[str, float] = {}
     for part in filter(None, text.split(",")):
@@ -47,7 +47,7 @@ def parse_imperfections(text: str) -> Imperfections:
         except (ValueError, MalformedError):
             name = ""
         if name not in names:
-            raise ConfigError(
+            raise UsageError(
                 f"{part[:80]!r} is not understood",
                 "--imperfect",
                 f"write NAME=NUMBER of {', '.join(names)}",

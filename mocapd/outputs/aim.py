@@ -5,17 +5,17 @@ import socket
 from dataclasses import fields, replace
 from typing import Any
 
-from mocapd.errors import ConfigError, UnavailableError
+from mocapd.errors import UnavailableError, UsageError
 
 
 def aimed_by_destination(section: Any, host: str | None, port: int | None) -> Any:
     """For sections that say where they send in `destination` or `destinations`, as `address:port`: that alone. What is
-    not given stays as it is there, or as it is when nothing is configured. Raises ConfigError for any other section.
+    not given stays as it is there, or as it is when nothing is configured. Raises UsageError for any other section.
     """
     names = {field.name for field in fields(section)}
     key = next((one for one in ("destination", "destinations") if one in names), None)
     if key is None:
-        raise ConfigError(
+        raise UsageError(
             "this output cannot be sent elsewhere from the command line",
             "--host, --port",
             "use --set and its own keys",

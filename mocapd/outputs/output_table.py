@@ -14,6 +14,7 @@ from mocapd.outputs.prediction.predicted_sink import PredictedSink
 from mocapd.outputs.prediction.prediction_params import PredictionParams
 from mocapd.outputs.threaded import ThreadedSink
 from mocapd.outputs.vmc import vmc_params
+from mocapd.outputs.vmt import vmt_sink
 from mocapd.outputs.vrchat import vrchat_sink
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
@@ -64,6 +65,16 @@ class VRChatSection(vrchat_sink.Params):
     """See vrchat_sink.Params.
 
     enabled: send trackers of the body to VRChat
+    """
+
+    enabled: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class VmtSection(vmt_sink.Params):
+    """See vmt_sink.Params.
+
+    enabled: send trackers of the body to SteamVR, by the driver VMT (Virtual Motion Tracker)
     """
 
     enabled: bool = False
@@ -130,6 +141,10 @@ def _vrchat(section: VRChatSection, _instance: str) -> Sink:
     return vrchat_sink.VRChatSink(section)
 
 
+def _vmt(section: VmtSection, _instance: str) -> Sink:
+    return vmt_sink.VmtSink(section)
+
+
 OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
     {
         # Drops what a subscriber does not take. Measured, 3.1 kB frames: median 0.08 ms to one that reads,
@@ -150,6 +165,8 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
             unsafe=vrchat_sink.warnings,
             limit_hz=_own_rate,
         ),
+        # The same socket, and one bundle of a constant size.
+        "vmt": OutputEntry(VmtSection, _vmt, blocks=False),
     }
 )
 

@@ -97,7 +97,7 @@ def test_an_unknown_tracker(track: Track) -> None:
 
 def test_the_option_of_earlier_versions_names_what_to_write_now(track: Track) -> None:
     outcome = track("--tracker", "shirt", "--variant", "paper")
-    assert_one_line(outcome, 78, "--variant", "wang2011")
+    assert_one_line(outcome, 2, "--variant", "wang2011")
 
 
 def test_several_cameras_without_a_rig(clean_env: dict[str, str], capture: Path) -> None:

@@ -99,7 +99,7 @@ def test_a_configuration_that_was_broken_since_hides_no_running_daemon(
     assert "the next start or reload will not do" in done.err
     assert "smoothing.preset" in done.err
     assert say("reload", "--config", str(file)).code == 0  # it reads its own
-    assert say("status", "--set", "instance").code == 78
+    assert say("status", "--set", "instance").code == 2
 
 
 def test_a_reload_says_what_waits_and_a_refusal_names_the_key(

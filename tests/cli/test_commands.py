@@ -36,6 +36,44 @@ def test_the_help_names_every_command(clean_env: dict[str, str]) -> None:
 
 def test_version(clean_env: dict[str, str]) -> None:
     assert mocapd(clean_env, "version").out == f"{package.__version__}\n"
+    option = mocapd_here(clean_env, "--version")
+    assert (option.code, option.out) == (0, f"{package.__version__}\n")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("dance",),
+        ("run", "--set", "instance"),
+        ("run", "--camera", "left"),
+        ("run", "--no-such-option"),
+        ("export", "a.mcap", "--to", "fbx"),
+        ("replay", "a.mcap", "--output", "smoke"),
+        ("send-test", "--output", "smoke"),
+        ("send-test", "--output", "zenoh", "--host", "127.0.0.1", "--port", "70000"),
+        ("bench", "--watched"),
+        ("eval",),
+        ("track", "capture", "--variant", "paper"),
+        ("calibrate", "--step", "dance"),
+        ("calibrate", "--json"),
+        ("calibrate", "--from-folder", "boards"),
+        ("camera-node", "--camera", "a=/dev/video9", "--imperfect", "soap=3"),
+        ("install-service", "--root", "a", "--user"),
+        ("as-service", "--rig", "a b", "status"),
+        ("board", "--board-size", "five"),
+        ("shirt", "--size", "XXXL"),
+    ],
+    ids=" ".join,
+)
+def test_a_wrong_command_line_ends_with_2_and_writes_nothing(
+    clean_env: dict[str, str], tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    here = tmp_path / "here"
+    here.mkdir()
+    outcome = mocapd_here(clean_env, *words, cwd=here)
+    assert (outcome.code, outcome.out) == (2, ""), outcome.err
+    assert "Traceback" not in outcome.err
+    assert list(here.iterdir()) == []
 
 
 def test_check_config_tells_every_key_and_its_origin(clean_env: dict[str, str]) -> None:

@@ -179,6 +179,32 @@ def test_an_error_names_place_value_and_mend(
     assert fix in error.fix
 
 
+@pytest.mark.parametrize(
+    ("flag", "text", "example"),
+    [
+        ("osc.destinations", "1", """--set 'osc.destinations=["1"]'"""),
+        (
+            "osc.destinations",
+            "[127.0.0.1:9000, 127.0.0.1:9001]",  # as a shell leaves ["...", "..."]
+            """--set 'osc.destinations=["127.0.0.1:9000", "127.0.0.1:9001"]'""",
+        ),
+        ("node.size_px", "640, 480", "--set 'node.size_px=[640, 480]'"),
+        ("node.size_px", "large", "--set 'node.size_px=[1, 1]'"),
+    ],
+)
+def test_the_error_of_a_list_has_an_example_as_it_is_typed(
+    flag: str, text: str, example: str
+) -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config({flag: text}, env={}, candidates=())
+    assert caught.value.fix.endswith(f", such as {example}")
+
+
+def test_the_error_of_a_list_in_a_file_has_an_example(file: Path) -> None:
+    error = error_of(file, "[osc]\ndestinations = '127.0.0.1:9000'\n")
+    assert error.fix.endswith('a list, each of it text, such as ["127.0.0.1:9000"]')
+
+
 def test_an_unknown_variable_is_an_error_with_the_nearest_name() -> None:
     with pytest.raises(ConfigError) as caught:
         load_config(env={"MOCAPD_ZENOH_PROT": "1"}, candidates=())

@@ -123,5 +123,5 @@ def test_it_prints_tables(clean_env: dict[str, str], tmp_path: Path) -> None:
 
 def test_a_recording_cannot_be_a_webcam(clean_env: dict[str, str], tmp_path: Path) -> None:
     outcome = mocapd(clean_env, "bench", "--live", "--capture", tmp_path)
-    assert outcome.code == 78
+    assert outcome.code == 2
     assert "sim:SCENARIO" in outcome.err

@@ -98,7 +98,7 @@ def test_an_option_that_moved_to_the_checkout_is_answered_with_its_command(
     words: tuple[str, ...], module: str, clean_env: dict[str, str]
 ) -> None:
     outcome = mocapd_here(clean_env, "eval", "capture", *words)
-    assert outcome.code == 78
+    assert outcome.code == 2
     assert words[0] in outcome.err
     assert f"python -m {module}" in outcome.err
     assert outcome.err.count("\n") == 1

@@ -139,4 +139,4 @@ def test_the_command(tmp_path: Path, clean_env: dict[str, str]) -> None:
     assert done.code == 0
     assert "30 frames at 60 Hz" in done.err
     assert (tmp_path / "a.glb").read_bytes()[:4] == b"glTF"
-    assert mocapd(clean_env, "export", path, "--to", "fbx").code == 78
+    assert mocapd(clean_env, "export", path, "--to", "fbx").code == 2

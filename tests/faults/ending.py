@@ -65,7 +65,7 @@ class Ender:
         """With every output, the page, and the tracker that most run."""
         words = ("--capture", f"sim:{self.room}")
         # every output, also where nobody takes anything
-        more = ("vmc.enabled=true", "vrchat.enabled=true", "osc.enabled=true")
+        more = ("vmc.enabled=true", "vrchat.enabled=true", "vmt.enabled=true", "osc.enabled=true")
         settings = [word for one in more for word in ("--set", one)]
         return FaultyDaemon(self.folder, (*words, *settings))
 

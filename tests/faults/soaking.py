@@ -29,7 +29,12 @@ def run(extent: Extent) -> Came:
         # rendering an hour's frames takes minutes
         scene = _fast_scene(Path(folder)) if extent.share >= 1.0 else extent.room
         words = ("--capture", f"sim:{scene}", "--tracker", "auto")
-        outputs = ("vmc.enabled=true", "vrchat.enabled=true", "osc.enabled=true")
+        outputs = (
+            "vmc.enabled=true",
+            "vrchat.enabled=true",
+            "vmt.enabled=true",
+            "osc.enabled=true",
+        )
         settings = [word for one in outputs for word in ("--set", one)]
         with faulty_daemon(Path(folder), *words, *settings) as daemon:
             daemon.until(lambda: daemon.bodies and daemon.pictures, "body and picture")

@@ -18,6 +18,8 @@ from mocapd.outputs.osc.osc_sink import OscSink
 from mocapd.outputs.osc.osc_sink import Params as OscParams
 from mocapd.outputs.vmc.vmc_params import Params as VmcParams
 from mocapd.outputs.vmc.vmc_sink import VmcSink
+from mocapd.outputs.vmt.vmt_sink import Params as VmtParams
+from mocapd.outputs.vmt.vmt_sink import VmtSink
 from mocapd.outputs.vrchat.vrchat_sink import Params as VrchatParams
 from mocapd.outputs.vrchat.vrchat_sink import VRChatSink
 from mocapd.outputs.wire import SCHEMA, SkeletonFrame
@@ -69,6 +71,7 @@ def frames(place: Place) -> Attempt:
         OscSink(OscParams(destinations=(place_to,))),
         VmcSink(VmcParams(destinations=(place_to,))),
         VRChatSink(VrchatParams(destination=place_to)),
+        VmtSink(VmtParams(destination=place_to, anchor="headset")),
         _Checked(),
     )
     for sink in sinks:

@@ -187,6 +187,12 @@ def test_nothing_there_is_one_clear_line(timeout_s: float) -> None:
         next(client.stream(endpoint, connect_timeout_s=timeout_s))
 
 
+def test_options_are_named_as_they_are_typed() -> None:
+    link = client.Link(f"tcp/127.0.0.1:{free_port()}", connect_timeout_s=0.0, typed_options=True)
+    with pytest.raises(UnavailableError, match=r"start `mocapd run` or pass --endpoint$"):
+        client.Client(link)
+
+
 def test_a_zenoh_router_without_mocapd_is_told_from_nothing() -> None:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     router = zenoh.Config()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mocapd.errors import InputError, MocapdError, UnavailableError
+from mocapd.errors import MocapdError, UnavailableError, UsageError
 
 if TYPE_CHECKING:  # numpy, scipy and matplotlib: `--help` needs none of them
     from mocapd_analysis.measures import Measures
@@ -38,23 +38,27 @@ def report(
         typer.Option("--out", help="The report to write [default: beside the first FILE, .html]"),
     ] = None,
     person: PersonOption = 0,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace what is there, also a file of another kind.")
-    ] = False,
+    name: Annotated[str, typer.Option("--name", help="Who was recorded, for its head.")] = "",
+    date: Annotated[
+        str, typer.Option("--date", help="When, for its head [default: as the recordings say]")
+    ] = "",
+    notes: Annotated[str, typer.Option("--notes", help="What you note, for its head.")] = "",
+    force: Annotated[bool, typer.Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
-    """Write the report: FILE.html with its plots inside, FILE.csv of all measures, FILE_frames.csv of every frame.
+    """Write the report: FILE.html with its plots inside, FILE_measures.csv of all measures, FILE_frames.csv of every frame.
 
     Example: mocapd-analysis report monday.mcap friday.mcap --out week.html
     """
     from mocapd_analysis.csv_tables import frames_csv, measures_csv
     from mocapd_analysis.report import report_html
     from mocapd_analysis.report_files import FRAMES_CSV, MEASURES_CSV, REPORT_HTML, write_all
+    from mocapd_analysis.report_head import ReportHead
 
     sessions = _measured(files, person)
     path = out if out is not None else files[0].with_suffix(".html")
     texts = [
-        (path, REPORT_HTML, report_html(sessions)),
-        (path.with_suffix(".csv"), MEASURES_CSV, measures_csv(sessions)),
+        (path, REPORT_HTML, report_html(sessions, ReportHead(name, date, notes))),
+        (path.with_name(f"{path.stem}_measures.csv"), MEASURES_CSV, measures_csv(sessions)),
     ]
     for number, found in enumerate(sessions):
         letter = f"_{'ab'[number]}" if len(sessions) > 1 else ""
@@ -153,7 +157,7 @@ def _measured(files: list[Path], person: int) -> "list[Measures]":
     from mocapd_analysis.session_files import read_session
 
     if len(files) > 2:
-        raise InputError(f"{len(files)} sessions are too many", fix="give one, or two to compare")
+        raise UsageError(f"{len(files)} sessions are too many", fix="give one, or two to compare")
     return [measure(read_session(path, person)) for path in files]
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from mocapd.types import Floats
 from mocapd_analysis.differentiator import SPEED, derivatives
 from mocapd_analysis.joint_angles import SIDES, angles_of
-from mocapd_analysis.joint_speeds import JointSpeeds, Peak, highest, path_length_m, speeds_of
+from mocapd_analysis.joint_speeds import JointSpeeds, Peak, highest, speeds_of
 from mocapd_analysis.reach import Reach, reaches_of
 from mocapd_analysis.repetitions import Repetitions, repetitions_of
-from mocapd_analysis.session import Session
+from mocapd_analysis.session import Flags, Session
 from mocapd_analysis.swings import Swing, swings_of
 from mocapd_analysis.symmetry import SidePair, Together, together
 
@@ -21,9 +21,11 @@ LEAST_SEEN = 0.05  # share of the frames; a joint that is seen less is left out
 
 @dataclass(frozen=True, slots=True)
 class JointSummary:
-    """seen: share of frames with evidence, 0..1; the rest over those frames."""
+    """seen: share of frames with evidence, 0..1; the rest over those frames, from from_s to to_s [s]."""
 
     seen: float
+    from_s: float
+    to_s: float
     peak_speed: Peak
     mean_speed_m_s: float
     peak_acceleration: Peak
@@ -32,8 +34,13 @@ class JointSummary:
 
 @dataclass(frozen=True, slots=True)
 class AngleSummary:
-    """Of one angle [degrees]; peak_rate: the fastest that it changes [degrees/s], either way."""
+    """Of one angle [degrees], known from from_s to to_s [s].
 
+    peak_rate: the fastest that it changes [degrees/s], either way.
+    """
+
+    from_s: float
+    to_s: float
     least_deg: float
     most_deg: float
     mean_deg: float
@@ -78,7 +85,7 @@ def measure(session: Session) -> Measures:
     joints = {
         name: summary
         for at, name in enumerate(session.joint_names)
-        if (summary := _joint_summary(session, speeds, at, name)).seen >= LEAST_SEEN
+        if (summary := _joint_summary(session, speeds, at)).seen >= LEAST_SEEN
     }
     angles_deg, rates_deg_s, angles = _angles(session)
     swings = [
@@ -100,16 +107,25 @@ def measure(session: Session) -> Measures:
     return _with_sides_and_repetitions(found)
 
 
-def _joint_summary(session: Session, speeds: JointSpeeds, at: int, name: str) -> JointSummary:
+def _joint_summary(session: Session, speeds: JointSpeeds, at: int) -> JointSummary:
     seen = speeds.seen[:, at]
     speed = speeds.speed_m_s[:, at]
     return JointSummary(
         float(seen.mean()),
+        *_span_s(session, seen),
         highest(session.times_s, speed, seen),
         float(speed[seen].mean()) if seen.any() else float("nan"),
         highest(session.times_s, speeds.acceleration_m_s2[:, at], seen),
-        path_length_m(session, name),
+        float(speeds.way_m[at]),
     )
+
+
+def _span_s(session: Session, told: Flags) -> tuple[float, float]:
+    """The first and the last time of these frames (F,) [s]; NaN without one."""
+    at = np.flatnonzero(told)
+    if len(at) == 0:
+        return float("nan"), float("nan")
+    return float(session.times_s[at[0]]), float(session.times_s[at[-1]])
 
 
 def _angles(
@@ -133,6 +149,7 @@ def _angles(
             continue
         smooth[name], rates[name] = values, slopes
         summaries[name] = AngleSummary(
+            *_span_s(session, told),
             float(np.nanquantile(values, 0.005)),
             float(np.nanquantile(values, 0.995)),
             float(np.nanmean(values)),

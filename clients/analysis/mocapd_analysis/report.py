@@ -11,17 +11,20 @@ from matplotlib.figure import Figure
 from mocapd_analysis import plots
 from mocapd_analysis.comparison import compared
 from mocapd_analysis.measures import Measures
+from mocapd_analysis.report_head import ReportHead, head_html
+from mocapd_analysis.swings import LEAST_DURATION_S, LEAST_SPEED_M_S, LEAST_WAY_M, Place
 
 # Nothing is fetched, and nothing runs: a report may be sent to anybody.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 _SHOWN_SWINGS = 12
+NO_HEAD = ReportHead()
 
 
-def report_html(sessions: Sequence[Measures]) -> str:
+def report_html(sessions: Sequence[Measures], head: ReportHead = NO_HEAD) -> str:
     """Of one session, or of two side by side."""
     names = " and ".join(found.session.name for found in sessions)
     style = resources.files("mocapd_analysis").joinpath("report_style.css").read_text()
-    body = [f"<h1>{_text(names)}</h1>"]
+    body = [f"<h1>{_text(names)}</h1>", head_html(head, sessions)]
     if len(sessions) > 1:
         body += _comparison(sessions)
     for number, found in enumerate(sessions):
@@ -41,7 +44,9 @@ _FOOTER = (
     "<footer>Speeds are derivatives of local polynomials of degree 6 over 0.27 s, accelerations of degree 4 "
     "(Savitzky and Golay). Of clips of real motion, sampled at 30 Hz with the noise of a tracker, half of all "
     "peak speeds come out within about 2 %, nine of ten within about 7 %; see <code>mocapd-analysis accuracy</code>. "
-    "Shaded times: nobody was tracked; no figure goes across them. Wrist: the joint that the hand hangs on.</footer>"
+    "Shaded times: nobody was tracked; no figure goes across them. From, to: the first and the last moment that a "
+    "figure is of; x is the room's left, y up, z ahead. A figure without them is of the whole session. "
+    "Wrist: the joint that the hand hangs on.</footer>"
 )
 
 
@@ -116,14 +121,18 @@ def _cards(found: Measures) -> str:
 
 def _swing_table(found: Measures) -> str:
     if not found.swings:
-        return "<p>No swing: no wrist was faster than 1.5 m/s, or none was seen.</p>"
+        return (
+            f"<p>No swing: no wrist was faster than {LEAST_SPEED_M_S:g} m/s over {100 * LEAST_WAY_M:.0f} cm and "
+            f"{LEAST_DURATION_S:g} s, or none was seen.</p>"
+        )
     fastest = sorted(found.swings, key=lambda swing: -swing.peak_m_s)[:_SHOWN_SWINGS]
     more = len(found.swings) - len(fastest)
     return _table(
-        ("swing", "at [s]", "peak [m/s]", "above half of it for [s]", "way meanwhile [m]"),
+        ("swing", "at [s]", "peak [m/s]", "above half of it from [s]", "to [s]", "for [s]", "way meanwhile [m]",
+         "from x, y, z [m]", "to x, y, z [m]"),
         (
-            (swing.side, f"{swing.at_s:.2f}", f"{swing.peak_m_s:.2f}", f"{swing.end_s - swing.start_s:.2f}",
-             f"{swing.way_m:.2f}")
+            (swing.side, f"{swing.at_s:.2f}", f"{swing.peak_m_s:.2f}", f"{swing.start_s:.2f}", f"{swing.end_s:.2f}",
+             f"{swing.end_s - swing.start_s:.2f}", f"{swing.way_m:.2f}", _place(swing.start_m), _place(swing.end_m))
             for swing in fastest
         ),
     ) + (f"<p>and {more} slower ones.</p>" if more else "")  # fmt: skip
@@ -131,10 +140,12 @@ def _swing_table(found: Measures) -> str:
 
 def _joint_table(found: Measures) -> str:
     return _table(
-        ("joint", "peak speed [m/s]", "at [s]", "mean speed [m/s]", "peak acceleration [m/s²]", "way [m]", "seen [%]"),
+        ("joint", "peak speed [m/s]", "at [s]", "mean speed [m/s]", "peak acceleration [m/s²]", "way [m]", "seen [%]",
+         "from [s]", "to [s]"),
         (
             (name, _number(one.peak_speed.value), _number(one.peak_speed.at_s), _number(one.mean_speed_m_s),
-             _number(one.peak_acceleration.value, 0), _number(one.way_m, 1), _number(100 * one.seen, 0))
+             _number(one.peak_acceleration.value, 0), _number(one.way_m, 1), _number(100 * one.seen, 0),
+             _number(one.from_s), _number(one.to_s))
             for name, one in found.joints.items()
         ),
     )  # fmt: skip
@@ -142,10 +153,11 @@ def _joint_table(found: Measures) -> str:
 
 def _angle_table(found: Measures) -> str:
     return _table(
-        ("angle", "least [°]", "most [°]", "range [°]", "mean [°]", "fastest [°/s]", "at [s]"),
+        ("angle", "least [°]", "most [°]", "range [°]", "mean [°]", "fastest [°/s]", "at [s]", "from [s]", "to [s]"),
         (
             (name, _number(one.least_deg, 0), _number(one.most_deg, 0), _number(one.range_deg, 0),
-             _number(one.mean_deg, 0), _number(one.peak_rate.value, 0), _number(one.peak_rate.at_s))
+             _number(one.mean_deg, 0), _number(one.peak_rate.value, 0), _number(one.peak_rate.at_s),
+             _number(one.from_s), _number(one.to_s))
             for name, one in found.angles.items()
         ),
     )  # fmt: skip
@@ -244,6 +256,10 @@ def _number(value: float, digits: int = 2, signed: bool = False) -> str:
     if not math.isfinite(value):
         return "–"
     return f"{value:{'+' if signed else ''}.{digits}f}"
+
+
+def _place(at_m: Place) -> str:
+    return ", ".join(f"{value:.2f}" for value in at_m)
 
 
 def _text(words: str) -> str:

@@ -23,7 +23,8 @@ class Session:
     """F frames of J joints in the world of mocapd (right-handed, +Y up, metres); F is one at least.
 
     times_s (F,): since the first frame, increasing [s]; joints_m (F,J,3) [m]; confidence (F,J) 0..1; notes: what
-    was wrong with the recording, a line each for people.
+    was wrong with the recording, a line each for people; recorded_unix_s: the first frame's time [Unix, s], where the
+    file says it.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Session:
     joints_m: Floats
     confidence: Floats
     notes: tuple[str, ...] = ()
+    recorded_unix_s: float | None = None
 
     def joint(self, name: str) -> int:
         """The place of a joint; KeyError where this session has none of that name."""

@@ -152,7 +152,7 @@ def _of_frames(
     joints = [list(frame.joints.values()) for frame in same]
     start_ns = same[0].capture_unix_ns
     try:
-        return checked_session(
+        session = checked_session(
             path.stem,
             names,
             np.array([frame.capture_unix_ns - start_ns for frame in same]) * 1e-9,
@@ -162,6 +162,7 @@ def _of_frames(
         )
     except InputError as error:
         raise InputError(error.what, str(path), error.fix) from None
+    return replace(session, recorded_unix_s=start_ns * 1e-9)
 
 
 def _read_track(path: Path) -> Session:

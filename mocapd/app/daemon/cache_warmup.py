@@ -1,6 +1,5 @@
 """The first start in processes of their own: compiling and building takes memory that only its end gives back."""
 
-import ctypes
 import hashlib
 import logging
 import multiprocessing
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import mocapd
 from mocapd.boundary.files import read_text
+from mocapd.child_process import end_with_parent
 from mocapd.errors import InputError, MocapdError
 from mocapd.whole_file import whole_file
 
@@ -31,7 +31,6 @@ _DATABASE = " database"  # alone, without the tracker's code compiled
 _COMPILING = "compiling the tracker (once on this machine, some minutes on a slow one)"
 FIRST_AFTER_S = 1.0  # what takes less, such as being refused, is not worth a line [s]
 _LOOK_S = 0.2  # how often whoever waits can be interrupted [s]
-_PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 _log = logging.getLogger(__name__)
 
@@ -163,20 +162,15 @@ def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]])
 
 
 def _work(work: Callable[["Config"], None], config: "Config") -> None:
-    _end_with_parent()
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    assert parent.pid is not None
+    end_with_parent(parent.pid, signal.SIGKILL)
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     try:
         work(config)
     except MocapdError:
-        os._exit(1)
-
-
-def _end_with_parent() -> None:
-    """Also where the parent is killed, and has no time to end its children."""
-    parent = os.getppid()
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it was too fast
         os._exit(1)
 
 

@@ -16,7 +16,7 @@ from mocapd.app.install.places import (
     of_user,
 )
 from mocapd.boundary.secret_files import SERVICE_GROUPS
-from mocapd.errors import ConfigError, PermissionDeniedError
+from mocapd.errors import ConfigError, PermissionDeniedError, UsageError
 
 _WANTS = "*.wants/mocapd*.service"  # of an enabled unit
 
@@ -48,7 +48,7 @@ class InstallStep:
 
 
 def install(target: InstallTarget, euid: int | None = None) -> list[InstallStep]:
-    """Put everything in place. Raises ConfigError, PermissionDeniedError or CannotCreateError."""
+    """Put everything in place. Raises ConfigError, UsageError, PermissionDeniedError or CannotCreateError."""
     _require_sense(target, os.geteuid() if euid is None else euid)
     python = target.python or interpreter.own()
     if target.root is None and not target.user:
@@ -152,19 +152,19 @@ def _way(path: Path) -> tuple[str, str]:
 
 def _require_sense(target: InstallTarget, euid: int) -> None:
     if target.user and target.root is not None:
-        raise ConfigError(
+        raise UsageError(
             "--user and --root contradict each other",
             "command line",
             "a package (--root) has the unit for all users among its files",
         )
     if target.python is not None and target.root is None:
-        raise ConfigError(
+        raise UsageError(
             "--python is for packages, with --root",
             "command line",
             "run install-service by the mocapd that the service shall start",
         )
     if target.user and euid == 0 and os.environ.get("SUDO_USER"):
-        raise ConfigError(
+        raise UsageError(
             "under sudo, --user would make it root's own service",
             "command line",
             "run it as yourself, without sudo",

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import psutil
 
-from mocapd.errors import ConfigError, PermissionDeniedError, UnavailableError
+from mocapd.errors import PermissionDeniedError, UnavailableError, UsageError
 
 _OF_CALLER = ("TERM", "NO_COLOR", "COLUMNS", "PATH")  # its terminal, and where root's tools are
 # Of the service's own environment, which it may have changed since its start, no more than this: root's tools are started
@@ -33,9 +33,9 @@ class Call:
 
 
 def unit_of(rig: str) -> str:
-    """The service, or that of this rig. Raises ConfigError."""
+    """The service, or that of this rig. Raises UsageError."""
     if rig and not _RIG.fullmatch(rig):
-        raise ConfigError(f"{rig!r} is no rig's name", "--rig", "as in mocapd@NAME")
+        raise UsageError(f"{rig!r} is no rig's name", "--rig", "as in mocapd@NAME")
     return f"mocapd@{rig}.service" if rig else "mocapd.service"
 
 
@@ -79,7 +79,7 @@ def call_like(pid: int, words: Sequence[str], env: Mapping[str, str] | None = No
 
 
 def become(rig: str, words: Sequence[str]) -> NoReturn:
-    """Go on as that. Raises PermissionDeniedError for anybody but root, UnavailableError, ConfigError."""
+    """Go on as that. Raises PermissionDeniedError for anybody but root, UnavailableError."""
     unit = unit_of(rig)
     if os.geteuid() != 0:
         raise PermissionDeniedError(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from mocapd.errors import ConfigError
+from mocapd.errors import UsageError, usage_errors
 
 if TYPE_CHECKING:
     from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration
@@ -106,28 +106,30 @@ def _unpainted(names: set[str]) -> tuple[str, ...]:
 
 
 def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
-    """The file to write and the board. Raises ConfigError naming every option that is missing."""
+    """The file to write and the board. Raises UsageError naming every option that is missing."""
     from mocapd.calibration.board_spec import BoardKind, BoardSpec, board_size
 
     wanted = {"--out": options.out, "--board-size": options.size, "--square": options.square_m}
     missing = [name for name, value in wanted.items() if value is None]
     if options.out is None or options.size is None or options.square_m is None:
-        raise ConfigError(
+        raise UsageError(
             f"--from-folder needs {' and '.join(missing)} too",
             "command line",
             "add what is missing",
         )
     if options.board not in tuple(BoardKind):
-        raise ConfigError(f"--board {options.board}", "command line", "charuco or chessboard")
+        raise UsageError(f"--board {options.board}", "command line", "charuco or chessboard")
     if options.strokes is not None and options.out.suffix != ".toml":
-        raise ConfigError(
+        raise UsageError(
             "--strokes with a rig file", "command line", "colours go into --out NAME.toml only"
         )
-    columns, rows = board_size(options.size)
-    return options.out, BoardSpec(
-        BoardKind(options.board), columns, rows, options.square_m, options.marker_m,
-        options.dictionary, options.inverted, options.legacy, options.two_sided,
-    )  # fmt: skip
+    with usage_errors():
+        columns, rows = board_size(options.size)
+        spec = BoardSpec(
+            BoardKind(options.board), columns, rows, options.square_m, options.marker_m,
+            options.dictionary, options.inverted, options.legacy, options.two_sided,
+        )  # fmt: skip
+    return options.out, spec
 
 
 def _as_dict(found: "FolderCalibration") -> dict[str, object]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -139,7 +139,7 @@ def _step(name: str | None) -> "StepName | None":
     if name is None:
         return None
     if name not in tuple(StepName):
-        raise ConfigError(f"--step {name}", "command line", f"one of: {', '.join(StepName)}")
+        raise UsageError(f"--step {name}", "command line", f"one of: {', '.join(StepName)}")
     return StepName(name)
 
 

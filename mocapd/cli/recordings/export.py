@@ -1,12 +1,17 @@
 """`mocapd export`"""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
-from mocapd.errors import ConfigError
+
+ExportTo = StrEnum("ExportTo", ["bvh", "glb", "vrma", "csv", "trc", "c3d"])
+Up = StrEnum("Up", ["y", "z"])
+Feet = StrEnum("Feet", ["tracked", "floor"])
+Legs = StrEnum("Legs", ["seen", "all"])
 
 
 def add_to(app: typer.Typer) -> None:
@@ -16,16 +21,31 @@ def add_to(app: typer.Typer) -> None:
 
 def export(
     file: Annotated[Path, typer.Argument(help="A recording of `mocapd record`.")],
-    to: Annotated[str, typer.Option("--to", help="bvh, glb, csv, trc or c3d.")],
+    to: Annotated[ExportTo, typer.Option("--to", help="The format.")],
     out: Annotated[
         Path | None, typer.Option("--out", help="The file to write [default: beside FILE]")
     ] = None,
     rate: Annotated[
         float | None,
         typer.Option(
-            "--rate", help="Frames per second [Hz] [default: as recorded]", min=1.0, max=1000.0
+            "--rate",
+            "--fps",
+            help="Frames per second [Hz]; give that of a program which plays every file at its own rate "
+            "[default: as recorded]",
+            min=1.0,
+            max=1000.0,
         ),
     ] = None,
+    up: Annotated[
+        Up, typer.Option(help="The axis that points up; glb and vrma have y by their format.")
+    ] = Up["y"],
+    feet: Annotated[
+        Feet,
+        typer.Option(help="floor: move the body up or down so that a standing foot is on it."),
+    ] = Feet["tracked"],
+    legs: Annotated[
+        Legs, typer.Option(help="seen: leave out a leg that no camera saw; all: export the guess.")
+    ] = Legs["seen"],
     person: Annotated[int, typer.Option(help="Which person.", min=0)] = 0,
     force: ForceOption = False,
     config: ConfigOption = None,
@@ -33,26 +53,25 @@ def export(
 ) -> None:
     """Export a recording's motion for other programs.
 
-    bvh [cm], glb [m], csv [m], trc [mm] or c3d [mm], at a constant rate; see docs/recording.md.
+    bvh [cm], glb [m], vrma (avatars) [m], csv [m], trc [mm] or c3d [mm], at a constant rate; see docs/recording.md.
 
     Example: mocapd export training.mcap --to glb
     """
     from mocapd.app.recordings.exporting import motion_of
     from mocapd.app.terminal.logs import set_up_logs
-    from mocapd.exports.formats import FORMATS, export_file, write_export
+    from mocapd.exports.export_options import ExportOptions, check_options, prepared_motion
+    from mocapd.exports.formats import export_file, write_export
     from mocapd.outputs.mcap.recording_reader import RecordingReader
 
-    if to not in FORMATS:
-        raise ConfigError(
-            f"there is no format {to[:40]!r}", "--to", f"one of: {', '.join(FORMATS)}"
-        )
+    options = ExportOptions(up.value == "z", legs.value == "all", feet.value == "floor")
+    check_options(to, options)
     set_up_logs(effective_config(config, settings).config.log_level)
     path = out if out is not None else file.with_suffix(f".{to}")
     target = export_file(to, path, force, inputs=(file,))
     target.check()
     found = motion_of(RecordingReader(file), person, rate)
-    write_export(found.motion, to, target)
-    motion = found.motion
+    motion, seen = prepared_motion(found.motion, to, options)
+    write_export(motion, to, target)
     gaps = f", {int(motion.gap.sum())} of them in gaps" if motion.gap.any() else ""
     lost = f"; {found.lost} frames were without a person" if found.lost else ""
     others = (
@@ -60,7 +79,8 @@ def export(
         if found.other_skeleton
         else ""
     )
+    guessed = f"; {seen}" if seen else ""
     typer.echo(
-        f"{path}: {len(motion.joints_m)} frames at {motion.rate_hz:g} Hz{gaps}{lost}{others}",
+        f"{path}: {len(motion.joints_m)} frames at {motion.rate_hz:g} Hz{gaps}{lost}{others}{guessed}",
         err=True,
     )

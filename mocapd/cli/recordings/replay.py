@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,13 +81,13 @@ def replay(
 def _chosen(
     sections: "Mapping[str, OutputSection]", names: "Sequence[str]"
 ) -> "Mapping[str, OutputSection]":
-    """Those that are named, and enabled for that; without names as configured. Raises ConfigError."""
+    """Those that are named, and enabled for that; without names as configured. Raises UsageError."""
     from dataclasses import replace
     from typing import Any, cast
 
     for name in names:
         if name not in sections:
-            raise ConfigError(
+            raise UsageError(
                 f"there is no output {name!r}", "--output", f"one of: {', '.join(sections)}"
             )
     if not names:

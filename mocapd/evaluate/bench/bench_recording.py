@@ -12,6 +12,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from mocapd.child_process import child_command
 from mocapd.clock import NS_PER_S, unix_from_monotonic_ns
 from mocapd.errors import InputError
 from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
@@ -102,8 +103,10 @@ def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[Skeleto
 def _killed(source: Path, folder: Path, after_s: float) -> float:
     """How much of what a process had written in real time was lost when it was killed [s]."""
     target = folder / "killed.mcap"
+    name = write_in_real_time.__name__
+    program = f"from {__name__} import {name}; {name}(*sys.argv[1:])"
     with subprocess.Popen(
-        [sys.executable, "-m", __name__, str(source), str(target)],
+        child_command(program, str(source), str(target)),
         stdout=subprocess.PIPE,
         text=True,
     ) as process:
@@ -117,10 +120,10 @@ def _killed(source: Path, folder: Path, after_s: float) -> float:
     return (int(written) - read[-1].seq) / HZ
 
 
-def write_in_real_time(source: Path, target: Path) -> None:
+def write_in_real_time(source: str, target: str) -> None:
     """Until it is killed; the number of each frame goes to stdout once it is handed over."""
-    items = list(RecordingReader(source).everything())
-    with RecordingWriter(target, RecordingParams(), time.monotonic_ns()) as writer:
+    items = list(RecordingReader(Path(source)).everything())
+    with RecordingWriter(Path(target), RecordingParams(), time.monotonic_ns()) as writer:
         began_ns = time.monotonic_ns()
         for frame in _endless(writer, items):
             due_ns = began_ns + frame.capture_monotonic_ns
@@ -129,7 +132,3 @@ def write_in_real_time(source: Path, target: Path) -> None:
             sys.stdout.write(f"{frame.seq}\n")
             sys.stdout.flush()
             writer.beat(time.monotonic_ns())
-
-
-if __name__ == "__main__":
-    write_in_real_time(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -1,7 +1,7 @@
 """Motion as C3D: joints as points.
 
-Millimetres; axes as ours, which POINT:X_SCREEN (+X) and POINT:Y_SCREEN (+Y) say. A point of a gap is invalid: the
-format's residual of -1.
+Millimetres; axes as ours, which POINT:X_SCREEN (+X) and POINT:Y_SCREEN (+Y, or +Z with that up) say. A point of a gap is
+invalid: the format's residual of -1.
 
 The header and POINT:FRAMES count frames in 16 bits. A longer motion has 65535 there, and its count where programs then
 look: in POINT:LONG_FRAMES as a float, in TRIAL:ACTUAL_END_FIELD as two 16-bit words, or in the length of the file,
@@ -81,7 +81,7 @@ def _groups(motion: SampledMotion, data_block: int) -> Groups:
             "DATA_START": np.array([data_block]),
             "UNITS": ["mm"],
             "X_SCREEN": ["+X"],
-            "Y_SCREEN": ["+Y"],
+            "Y_SCREEN": [f"+{motion.up.upper()}"],
             **split_rows("LABELS", motion.skeleton.names),
             **split_rows("DESCRIPTIONS", motion.skeleton.names),
         },

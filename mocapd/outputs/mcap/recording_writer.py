@@ -25,7 +25,7 @@ from mocapd.capture.recording.recorded_picture import (
 )
 from mocapd.clock import NS_PER_S
 from mocapd.errors import CannotCreateError, mend_of
-from mocapd.output_file import OutputFile
+from mocapd.output_file import OutputFile, kind_by_magic
 from mocapd.outputs import schemas, wire
 from mocapd.outputs.mcap import foxglove_messages, foxglove_scene
 from mocapd.outputs.mcap.packed_frame import PACKED, PackedFrame, encode_packed, pack
@@ -35,6 +35,7 @@ from mocapd.outputs.wire import SkeletonFrame
 FLUSH_NS = NS_PER_S // 2  # of a chunk at most: what a kill may cost
 FSYNC_NS = 5 * NS_PER_S  # between two waits for the disk itself
 CHUNK_BYTES = 4 << 20  # before it is compressed; pictures fill it sooner
+_RECORDING = kind_by_magic("a recording", b"\x89MCAP0\r\n")
 _JSONSCHEMA = "jsonschema"
 
 
@@ -56,7 +57,7 @@ class RecordingWriter:
     def __init__(self, path: Path, params: RecordingParams, now_ns: int) -> None:
         """Make the file. Raises CannotCreateError; without force a recording that is there stays."""
         self.path, self._params = path, params
-        OutputFile(path, None, params.force).check_replaceable()
+        OutputFile(path, _RECORDING, params.force, option="").check_replaceable()
         mode = 0o600 if params.private else 0o666
         try:
             if params.force:

@@ -1,4 +1,4 @@
-"""Skeleton frames as VRChat's OSC trackers over UDP; see `tracker_table` for which and `unity_space` for where."""
+"""Skeleton frames as VRChat's OSC trackers over UDP; see `worn_trackers` for which and `unity_space` for where."""
 
 import logging
 import math
@@ -10,20 +10,20 @@ from msgspec import Meta
 
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
 from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
-from mocapd.outputs.vrchat.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
 from mocapd.outputs.vrchat.head_alignment import HeadAlignment
 from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
-from mocapd.outputs.vrchat.tracker_table import BodyPart, VrchatTracker, trackers_of
 from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
 from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
 from mocapd.outputs.vrchat.vrchat_link import KEY, VRChatLink
 from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
+from mocapd.outputs.worn_trackers import BodyPart, WornTracker, trackers_of
 
 AUTO = "auto"
 HEAD_ON = "neck"  # the bone whose confidence tells how well the place of the head is known
@@ -114,7 +114,7 @@ class VRChatSink:
             _log.warning("VRChat cannot be sent to: %s", error)
 
     def _vectors(
-        self, joints: Mapping[str, Joint], trackers: tuple[VrchatTracker, ...], is_aligned: bool
+        self, joints: Mapping[str, Joint], trackers: tuple[WornTracker, ...], is_aligned: bool
     ) -> dict[str, Vector]:
         """What is sent, by address: the head first, as the others are read by it."""
         turn_rad = self._alignment.turn_rad

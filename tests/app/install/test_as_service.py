@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.app.install.service_user import become, call_like, main_pid, unit_of
-from mocapd.errors import ConfigError, PermissionDeniedError, UnavailableError
+from mocapd.errors import PermissionDeniedError, UnavailableError, UsageError
 
 NO_PID = 2**22 + 1  # more than any machine gives
 
@@ -90,7 +90,7 @@ def test_a_service_that_has_just_ended_is_told() -> None:
 
 @pytest.mark.parametrize("rig", ["..", ".x", "a/b", "a b", "-" * 65, "%i", "ä"])
 def test_what_is_no_rig_is_none(rig: str) -> None:
-    with pytest.raises(ConfigError, match="no rig's name"):
+    with pytest.raises(UsageError, match="no rig's name"):
         unit_of(rig)
 
 

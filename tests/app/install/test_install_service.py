@@ -12,7 +12,7 @@ from mocapd.app.install.installing import InstallStep, InstallTarget, install, n
 from mocapd.app.install.own_file import Outcome
 from mocapd.app.install.places import InstallPaths, files, of_machine
 from mocapd.app.install.unit_texts import unit_text
-from mocapd.errors import CannotCreateError, ConfigError, PermissionDeniedError
+from mocapd.errors import CannotCreateError, ConfigError, PermissionDeniedError, UsageError
 from tests.cli.mocapd_process import mocapd_here
 
 UNIT = "usr/lib/systemd/system/mocapd.service"
@@ -126,7 +126,7 @@ def test_only_root_installs_for_the_machine_and_sudo_not_for_a_user(
         install(InstallTarget(), euid=1000)
     assert refused.value.exit_code == 77
     monkeypatch.setenv("SUDO_USER", "someone")
-    with pytest.raises(ConfigError, match="root's own service"):
+    with pytest.raises(UsageError, match="root's own service"):
         install(InstallTarget(user=True), euid=0)
 
 
@@ -248,4 +248,4 @@ def test_the_commands_say_what_they_do(clean_env: dict[str, str], tmp_path: Path
     gone = mocapd_here(clean_env, "uninstall-service", "--root", root)
     assert gone.out.count(" removed\n") == 6
     both = mocapd_here(clean_env, "install-service", "--root", root, "--user")
-    assert (both.code, both.err.count("\n")) == (78, 1)
+    assert (both.code, both.err.count("\n")) == (2, 1)

@@ -19,7 +19,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
 from mocapd.cli.send_test import send_test_command
 from mocapd.clock import nanoseconds
-from mocapd.errors import ConfigError, UnavailableError
+from mocapd.errors import UnavailableError, UsageError
 from mocapd.outputs import output_table, wire
 from mocapd.outputs.aim import resolved
 from mocapd.outputs.base import SinkStatus
@@ -80,7 +80,7 @@ def listening() -> Iterator[socket.socket]:
         yield one
 
 
-@pytest.mark.parametrize(("output", "seconds"), [("osc", 1.2), ("vrchat", 0.2)])
+@pytest.mark.parametrize(("output", "seconds"), [("osc", 1.2), ("vrchat", 0.2), ("vmt", 0.2)])
 def test_a_listener_gets_it_and_the_code_is_0(
     code_of: Command,
     output: str,
@@ -113,7 +113,7 @@ def test_an_avatar_gets_its_own_bones_from_a_sender_that_is_calibrated(
     assert arm[1:4] == pytest.approx(avatar.in_unity()["leftLowerArm"].at, abs=1e-6)
 
 
-@pytest.mark.parametrize("output", ["zenoh", "osc", "vrchat"])
+@pytest.mark.parametrize("output", ["zenoh", "osc", "vrchat", "vmt"])
 def test_where_nobody_listens_it_says_so_and_the_code_is_1(
     code_of: Command, output: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -169,7 +169,7 @@ def test_an_output_that_is_new_in_the_table_can_be_tried(
 
 
 def test_what_cannot_be_is_a_named_error(code_of: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ConfigError, match=r"no output 'vcm'.*one of: .*vrchat"):
+    with pytest.raises(UsageError, match=r"no output 'vcm'.*one of: .*vrchat"):
         code_of(output="vcm")
 
     def unknown(*_: object, **__: object) -> None:

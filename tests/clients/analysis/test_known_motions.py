@@ -117,6 +117,58 @@ def test_each_swing_is_found_at_its_time_and_speed() -> None:
     assert found.best_swing.peak_m_s == pytest.approx(4.0, rel=0.03)
 
 
+def swinging(t: np.ndarray) -> np.ndarray:
+    """Once by 0.8 m to +X, at 1.5 s, with 4 m/s; up a little."""
+    x = 0.4 * np.tanh((t - 1.5) / 0.1)
+    return np.stack([x, 0.1 * x, 0.0 * t], axis=1)
+
+
+def test_a_swing_says_from_where_to_where() -> None:
+    (swing,) = measure(with_joint(T, "rightHand", swinging)).swings
+    half_s = 0.1 * np.arccosh(np.sqrt(2.0))
+    assert (swing.start_s, swing.end_s) == pytest.approx((1.5 - half_s, 1.5 + half_s), abs=0.01)
+    rest_m = REST_M[AT["rightHand"]]
+    for at_s, place_m in ((swing.start_s, swing.start_m), (swing.end_s, swing.end_m)):
+        assert place_m == pytest.approx(rest_m + swinging(np.array([at_s]))[0], abs=0.01)
+    assert swing.way_m == pytest.approx(
+        np.linalg.norm(np.subtract(swing.end_m, swing.start_m)), rel=0.03
+    )
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0])
+@pytest.mark.parametrize("leap_m", [0.15, 0.3, 0.6, 1.5])
+def test_single_noisy_frames_are_no_swings(rate_hz: float, leap_m: float) -> None:
+    """A hand that a tracker sets elsewhere for one frame, sure of itself."""
+    rng, t_s = np.random.default_rng(7), times(8.0, rate_hz)
+    joints_m = standing(t_s) + rng.normal(0.0, 0.003, (len(t_s), len(REST_M), 3))
+    for frame in range(20, len(t_s) - 20, 23):
+        way = rng.normal(size=3)
+        joints_m[frame, AT["leftHand"]] += leap_m * way / np.linalg.norm(way)
+    found = measure(session(t_s, joints_m))
+    assert found.swings == ()
+    if leap_m >= 0.3:  # what could not be a person's has no part in any figure
+        assert found.joints["leftHand"].peak_speed.value < 1.0
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0])
+@pytest.mark.parametrize("off_frames", [-1, 0, 1])
+def test_a_hole_of_one_frame_loses_no_peak_and_makes_none(rate_hz: float, off_frames: int) -> None:
+    """Of a frame that is missing, of a hand that is not seen in one, and of one that is wrong in it."""
+    t_s = times(3.0, rate_hz)
+    whole = with_joint(t_s, "rightHand", swinging)
+    frame = int(np.argmin(np.abs(t_s - 1.5))) + off_frames
+    missing = session(np.delete(t_s, frame), np.delete(whole.joints_m, frame, axis=0))
+    confidence, wrong_m = whole.confidence.copy(), whole.joints_m.copy()
+    confidence[frame, AT["rightHand"]] = 0.0
+    wrong_m[frame, AT["rightHand"]] += [0.3, -0.8, 0.2]
+    for one in (missing, session(t_s, wrong_m, confidence), session(t_s, wrong_m)):
+        found = measure(one)
+        (swing,) = found.swings
+        assert swing.at_s == pytest.approx(1.5, abs=0.02)
+        assert swing.peak_m_s == pytest.approx(4.02, rel=0.05)
+        assert found.joints["rightHand"].peak_speed.value == pytest.approx(4.02, rel=0.05)
+
+
 def test_a_swing_that_was_not_seen_is_none() -> None:
     one = circling(0.4, 1.5)
     hidden = one.confidence.copy()

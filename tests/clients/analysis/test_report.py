@@ -6,18 +6,21 @@ import io
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from mocapd.errors import CannotCreateError
 from mocapd_analysis.comparison import compared
 from mocapd_analysis.csv_tables import frames_csv, measures_csv
 from mocapd_analysis.main import app
 from mocapd_analysis.measures import Measures, measure
 from mocapd_analysis.plots import as_svg, speed_plot, thinned
 from mocapd_analysis.report import report_html
+from mocapd_analysis.report_head import ReportHead
 from tests.clients.analysis.motions import AT, session, standing, times, turning_arm
 from tests.clients.analysis.test_sessions import track
 
@@ -95,6 +98,34 @@ def test_the_tables_hold_what_was_measured() -> None:
     )
 
 
+def test_every_figure_says_of_which_time_it_is() -> None:
+    found = swung(1.0)
+    rows = list(csv.DictReader(io.StringIO(measures_csv([found]))))
+    assert all(float(row["from_s"]) < float(row["to_s"]) for row in rows)
+    assert all(
+        float(r["from_s"]) <= float(r["at_s"]) <= float(r["to_s"]) for r in rows if r["at_s"]
+    )
+    way = next(r for r in rows if (r["measure"], r["of"]) == ("way", "swing 1 left"))
+    assert float(way["from_s"]) == pytest.approx(found.swings[0].start_s, rel=1e-4)
+    heights = [float(r["value"]) for r in rows if r["measure"] in ("start y", "end y")]
+    assert len(heights) == 2 * len(found.swings)
+    assert "above half of it from [s]" in report_html([found])
+
+
+def test_the_head_has_person_date_and_notes_as_text() -> None:
+    found = swung(1.0)
+    assert 'class="head"' not in report_html([found])
+    at_s = datetime(2026, 11, 26, 15, 4).astimezone().timestamp()
+    dated = replace(found, session=replace(found.session, recorded_unix_s=at_s))
+    assert "<dt>Date</dt><dd>2026-11-26 15:04</dd>" in report_html([dated, found])
+    page = report_html([dated], ReportHead("A. Player", "yesterday", "<i>left</i> knee"))
+    assert "<dd>A. Player</dd>" in page
+    assert "<dd>yesterday</dd>" in page
+    assert "&lt;i&gt;left&lt;/i&gt; knee" in page
+    unknown = replace(found, session=replace(found.session, recorded_unix_s=1e30))
+    assert 'class="head"' not in report_html([unknown])
+
+
 def test_thinning_a_line_loses_no_top() -> None:
     t = np.linspace(0.0, 100.0, 50_000)
     values = np.zeros(len(t))
@@ -109,6 +140,11 @@ def test_thinning_a_line_loses_no_top() -> None:
 def test_the_command_writes_all_files_and_says_which(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(track(tmp_path / "monday.npz"))])
     assert result.exit_code == 0, result.output
-    names = {"monday.html", "monday.csv", "monday_frames.csv"}
+    names = {"monday.html", "monday_measures.csv", "monday_frames.csv"}
     assert names <= {path.name for path in tmp_path.iterdir()}
     assert all(name in result.output for name in names)
+    written = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    again = CliRunner().invoke(app, ["report", str(tmp_path / "monday.npz")])
+    assert isinstance(again.exception, CannotCreateError)  # which ends the program with 73
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == written
+    assert not (tmp_path / "monday.csv").exists()  # the name of an export

@@ -1,7 +1,12 @@
 """The demo: simulated cameras and shooter follow one script."""
 
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
+import psutil
 import pytest
 
 from goalkeeper.app.headless import play_headless
@@ -11,6 +16,23 @@ from goalkeeper.streams.person_stream import PersonStream
 from goalkeeper.streams.scripted_shooter import ScriptedShooter
 from mocapd.errors import CannotCreateError
 from mocapd.sim.scenario import load_scenario
+from tests.outputs.frames import eventually
+from tests.processes import still_runs
+
+_PREPARES = (
+    "import time; print('pose database: 34 %, 12 s so far', file=sys.stderr, flush=True); "
+    "time.sleep(600)"
+)
+_PLAYER = (
+    "import sys\n"
+    "from pathlib import Path\n"
+    "from goalkeeper.app.end_signals import end_on_signals\n"
+    "from goalkeeper.streams.demo_daemon import DemoStream\n"
+    "end_on_signals()\n"
+    "stream = DemoStream(Path(sys.argv[1]))\n"
+    "print(stream.process.pid, flush=True)\n"
+    "sys.stdin.readline()\n"
+)
 
 
 def test_the_cameras_read_the_scenario_as_it_was_written(tmp_path: Path) -> None:
@@ -33,3 +55,42 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "cache").write_text("a file in its place")
     with pytest.raises(CannotCreateError, match=r"goalkeeper\.toml"):
         DemoStream(tmp_path / "cache")
+
+
+def test_what_the_daemon_prepares_is_said_with_time_and_share(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stream = DemoStream(tmp_path, _PREPARES)
+    try:
+        first = stream.state().trouble
+        assert first.startswith("Preparing the demo: ")
+        assert first.endswith(" s so far")
+        assert eventually(lambda: "pose database 34 %, " in stream.state().trouble)
+        assert not stream.state().ended
+    finally:
+        stream.close()
+    assert stream.process.poll() is not None
+    assert "pose database: 34 %" in capsys.readouterr().err  # the terminal has it, too
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_the_real_daemon_and_what_it_started_end_with_the_game(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    """In its first start, with processes that compile and render."""
+    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen(
+        [sys.executable, "-c", _PLAYER, str(tmp_path)],
+        env=env,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ) as player:
+        assert player.stdout is not None
+        daemon = psutil.Process(int(player.stdout.readline()))
+        assert eventually(lambda: bool(daemon.children(recursive=True)))
+        begun = [daemon.pid, *(child.pid for child in daemon.children(recursive=True))]
+        player.send_signal(number)
+        player.wait()
+        assert eventually(lambda: not any(map(still_runs, begun)), 5.0)

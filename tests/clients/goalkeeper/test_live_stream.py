@@ -76,6 +76,18 @@ def test_clocks_that_disagree_give_the_usual_age(running: Running, stream: LiveS
     assert one.captured_s == pytest.approx(time.monotonic() - 0.05, abs=5.0)
 
 
+def test_silence_before_the_first_frame_is_no_stream_that_has_stopped(
+    running: Running, stream: LiveStream
+) -> None:
+    """The daemon's outputs are open while it still compiles."""
+    assert eventually(lambda: "waiting for its first frame" in stream.state().trouble)
+    stream.poll(time.monotonic() + 5.0)
+    assert "waiting for its first frame" in stream.state().trouble
+    running.sink.send(_seen_now())
+    _next(stream)
+    assert stream.state().trouble == ""
+
+
 def test_a_stream_that_stops_is_said(running: Running, stream: LiveStream) -> None:
     running.sink.send(_seen_now())
     _next(stream)

@@ -11,9 +11,9 @@ from mocapd.clock import NS_PER_S
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.geometry import rotations
 from mocapd.outputs.messages import Facing
-from mocapd.outputs.vrchat.tracker_table import BodyPart
 from mocapd.outputs.vrchat.vrchat_sink import Params, VRChatSink
 from mocapd.outputs.wire import SkeletonFrame
+from mocapd.outputs.worn_trackers import BodyPart
 from tests.outputs.frames import free_port
 from tests.outputs.receivers.vrchat import MIRROR, VRChatReceiver
 from tests.outputs.vrchat.poses import known_but, of_the_shirt, stepping_left

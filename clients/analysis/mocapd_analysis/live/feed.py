@@ -17,7 +17,9 @@ class LiveFeed:
     """Connects, and connects again when the daemon goes; `moment` is what there is now."""
 
     def __init__(self, endpoint: str, person: int) -> None:
-        self._link = mocapd.client.Link(endpoint=endpoint, person=person, connect_timeout_s=1.0)
+        self._link = mocapd.client.Link(
+            endpoint=endpoint, person=person, connect_timeout_s=1.0, typed_options=True
+        )
         self._lock = threading.Lock()
         self._buffer = LiveBuffer(f"person {person}")  # under the lock
         self._status = f"waiting for mocapd at {endpoint}"  # under the lock

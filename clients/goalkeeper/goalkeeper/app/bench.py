@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import platformdirs
 
+from goalkeeper.app.end_signals import end_on_signals
 from goalkeeper.app.game import Game, GameParts
 from goalkeeper.app.window import SOFTWARE_HZ, WAITING_HZ, Pace, calm_collector
 from goalkeeper.core.match import Match, MatchRules, Phase
@@ -39,6 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--renderer", choices=("gl", "software"), default="software")
     parser.add_argument("--free", action="store_true", help="as fast as it goes")
     options = parser.parse_args(arguments)
+    end_on_signals()
     try:
         stage = open_stage(
             StageParams((960, 540), Renderer(options.renderer), offscreen=True, sound=False)

@@ -8,6 +8,7 @@ from contextlib import closing
 import platformdirs
 from panda3d.core import WindowProperties
 
+from goalkeeper.app.end_signals import end_on_signals
 from goalkeeper.app.game import Game, GameParts
 from goalkeeper.app.high_scores import high_score_path
 from goalkeeper.core.match import Match, MatchRules
@@ -29,7 +30,8 @@ _CALIBRATE_S = 8.0  # of a recording, in which nobody answers
 
 
 def run_window(options: Namespace) -> int:
-    """Until the player leaves; the exit code. Raises MocapdError."""
+    """Until the player leaves; the exit code. Raises MocapdError; SystemExit after SIGTERM or SIGHUP."""
+    end_on_signals()
     stage = open_stage(
         StageParams(
             options.size, Renderer(options.renderer), False, options.fullscreen, not options.mute
@@ -62,7 +64,7 @@ def open_stream(options: Namespace) -> PoseStream:
         return DemoStream(platformdirs.user_cache_path("mocapd-goalkeeper"))
     if options.recording is not None:
         return ShiftedStream(RecordedStream(options.recording, options.person))
-    return LiveStream(Link(options.endpoint, options.instance, options.person))
+    return LiveStream(Link(options.endpoint, options.instance, options.person, typed_options=True))
 
 
 def open_shooter(options: Namespace) -> Shooter:

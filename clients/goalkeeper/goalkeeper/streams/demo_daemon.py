@@ -2,26 +2,30 @@
 
 import socket
 import subprocess
-import sys
+import time
 from pathlib import Path
 
+from goalkeeper.streams.daemon_progress import DaemonProgress
 from goalkeeper.streams.demo_script import demo_scenario, scenario_toml
 from goalkeeper.streams.live_stream import LiveStream
 from goalkeeper.streams.sighting import Sighting, StreamState
+from mocapd.child_process import child_command
 from mocapd.client import Link
 from mocapd.errors import CannotCreateError
 from mocapd.whole_file import whole_file
 
 _INSTANCE = "goalkeeper-demo"
 _END_S = 5.0  # a daemon ends within two
-_MAIN = "from mocapd.cli.main import main; main()"
+DAEMON = "from mocapd.cli.main import main; main()"
 
 
 class DemoStream:
-    """Starts the daemon, and ends it with `close`. The first start draws what the cameras see: a minute or two."""
+    """Starts the daemon, and ends it with `close`; it also ends when this process ends. The first start draws what
+    the cameras see and compiles the tracker: a minute or two, of which `state` gives the share and the time."""
 
-    def __init__(self, folder: Path) -> None:
-        """folder: where the scenario is written. Raises CannotCreateError."""
+    def __init__(self, folder: Path, daemon: str = DAEMON) -> None:
+        """folder: where the scenario is written; daemon: Python statements that run `mocapd`. Called by the main
+        thread. Raises CannotCreateError."""
         scenario = folder / "goalkeeper.toml"
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -32,15 +36,22 @@ class DemoStream:
                 f"cannot be written ({error.strerror})", str(scenario), "make room there"
             ) from None
         port = _free_port()
-        self._daemon = subprocess.Popen(
-            [
-                *(sys.executable, "-c", _MAIN, "run"),
+        self._began_s = time.monotonic()
+        self.process = subprocess.Popen(
+            child_command(
+                daemon,
+                "run",
                 *("--capture", f"sim:{scenario}", "--instance", _INSTANCE),
                 *("--set", f"zenoh.port={port}", "--set", "zenoh.enabled=true"),
                 *("--set", "osc.enabled=false", "--set", "web.enabled=false"),
-            ],
+            ),
             stdin=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
         )
+        assert self.process.stderr is not None
+        self._progress = DaemonProgress(self.process.stderr)
         self._live = LiveStream(Link(f"tcp/127.0.0.1:{port}", _INSTANCE))
 
     def poll(self, now_s: float) -> list[Sighting]:
@@ -49,24 +60,24 @@ class DemoStream:
 
     def state(self) -> StreamState:
         """Whether frames come, and the daemon lives."""
-        code = self._daemon.poll()
+        code = self.process.poll()
         if code is not None:
             return StreamState(f"the demo's daemon has ended (exit code {code})", ended=True)
-        state = self._live.state()
-        if state.trouble.startswith("no mocapd"):
-            return StreamState("the demo's cameras are being prepared: see the terminal")
-        return state
+        if not self._live.has_heard:
+            return StreamState(self._progress.text(time.monotonic() - self._began_s))
+        return self._live.state()
 
     def close(self) -> None:
         """End the daemon."""
         self._live.close()
-        if self._daemon.poll() is None:
-            self._daemon.terminate()
+        if self.process.poll() is None:
+            self.process.terminate()
             try:
-                self._daemon.wait(_END_S)
+                self.process.wait(_END_S)
             except subprocess.TimeoutExpired:
-                self._daemon.kill()
-                self._daemon.wait()
+                self.process.kill()
+                self.process.wait()
+        self._progress.close()
 
 
 def _free_port() -> int:

@@ -1,6 +1,7 @@
 """The stream of a daemon that runs, and what can go wrong with it: none there, silent, of another version."""
 
 import threading
+from dataclasses import replace
 
 from goalkeeper.streams.sighting import Sighting, StreamState, pose_of_frame
 from mocapd.client import Body, Client, Link
@@ -27,15 +28,7 @@ class LiveStream:
 
     def _connect(self) -> None:
         """Until there is a daemon, or nobody wants one."""
-        link = Link(
-            self._link.endpoint,
-            self._link.instance,
-            self._link.person,
-            _ATTEMPT_S,
-            self._link.tls_root_ca,
-            self._link.user,
-            self._link.password,
-        )
+        link = replace(self._link, connect_timeout_s=_ATTEMPT_S)
         while not self._closed.is_set():
             try:
                 client = Client(link)
@@ -45,8 +38,8 @@ class LiveStream:
             if self._closed.is_set():
                 client.close()
                 return
-            self._trouble = ""
             self._client = client
+            self._trouble = ""
             return
 
     def poll(self, now_s: float) -> list[Sighting]:
@@ -66,11 +59,18 @@ class LiveStream:
         self._trouble, self._heard_s = "", now_s
         return [Sighting(_captured_s(body, now_s), pose_of_frame(body.frame))]
 
+    @property
+    def has_heard(self) -> bool:
+        """Whether a frame came, or something that is none."""
+        return self._heard_s is not None
+
     def state(self) -> StreamState:
         """Whether frames come."""
         if self._trouble or self._client is None:
             return StreamState(self._trouble)
-        if self._heard_s is None or self._now_s - self._heard_s > _SILENT_S:
+        if self._heard_s is None:
+            return StreamState("mocapd is there: waiting for its first frame")
+        if self._now_s - self._heard_s > _SILENT_S:
             return StreamState("the stream has stopped: is mocapd still running?")
         return StreamState()
 

@@ -1,0 +1,1 @@
+"""VRMA: animations for avatars."""
