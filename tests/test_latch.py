@@ -53,3 +53,20 @@ def test_who_is_told_nothing_waits_no_longer_than_asked() -> None:
     assert not latch.wait(0.01)
     assert not latch.wait(-1.0)
     assert not latch.is_set()
+
+
+# A signal comes about as often as the time is up
+UP_WHEN_INTERRUPTED = """
+import signal
+from mocapd.latch import Latch
+signal.signal(signal.SIGALRM, lambda *_: None)
+signal.setitimer(signal.ITIMER_REAL, 0.0007, 0.0007)
+latch = Latch()
+for _ in range(1000):
+    assert not latch.wait(0.001)
+signal.setitimer(signal.ITIMER_REAL, 0.0)
+"""
+
+
+def test_a_signal_as_the_time_is_up_does_not_make_it_wait_for_ever() -> None:
+    subprocess.run([sys.executable, "-c", UP_WHEN_INTERRUPTED], check=True, timeout=60.0)

@@ -10,7 +10,7 @@ import logging
 import threading
 import time
 from collections.abc import Sequence
-from queue import Empty, SimpleQueue
+from queue import Empty, Queue
 from typing import TYPE_CHECKING, Any
 
 from mocapd.errors import UnavailableError
@@ -40,7 +40,7 @@ class VRChatFinder:
         self.address: str | None = None  # `address:port`, None while none is known
         self.detail = "not looked for yet"
         self._source = ""  # the service that gave the address
-        self._announcements: SimpleQueue[tuple[str, bool]] = SimpleQueue()
+        self._announcements: Queue[tuple[str, bool]] = Queue()
         self._ended = threading.Event()
         self._thread: threading.Thread | None = None
 
