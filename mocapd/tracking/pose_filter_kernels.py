@@ -18,6 +18,26 @@ def _turn_between(one: Array, other: Array, inverse: Array, between: Array, out:
 
 
 @njit(cache=True, nogil=True)
+def tracking_signal(way: Array, mean: Array, ticks: float, still: tuple[float, float]) -> float:
+    """How much of a step is motion rather than noise, least..1: the length of the mean way over the mean length of the ways,
+    squared (Trigg and Leach 1967, Exponential smoothing with an adaptive response rate). Noise goes to and fro.
+
+    way (3,): of this step; mean (4,): mean way and mean length, which become those after it; still: the share of them that is
+    kept a tick, and the least.
+    """
+    keeps, least = still
+    new = 1.0 - keeps**ticks
+    length = together = 0.0
+    for i in range(3):
+        mean[i] += new * (way[i] - mean[i])
+        length += way[i] * way[i]
+        together += mean[i] * mean[i]
+    mean[3] += new * (np.sqrt(length) - mean[3])
+    signal = min(together / max(mean[3] * mean[3], 1e-18), 1.0)
+    return least + (1.0 - least) * signal
+
+
+@njit(cache=True, nogil=True)
 def follow_bones(
     found_xyzw: Array,
     last_xyzw: Array,
@@ -26,17 +46,19 @@ def follow_bones(
     gap_s: float,
     ticks: float,
     learns: float,
+    still: tuple[float, float],
+    ways_rad: Array,
     turning_rad_s: Array,
     out_xyzw: Array,
     follows: Array,
     learned: Array,
 ) -> None:
     """Fill out_xyzw (J,4) with bones gap_s after last_xyzw (J,4) on their way to found_xyzw (J,4); turning_rad_s (J,3) goes
-    from how they turned to how they turn.
+    from how they turned to how they turn, ways_rad (J,4) as the mean of `tracking_signal` does.
 
     trust (J,): in each bone's direction; following (7,J): the numbers of a `Following`, for each bone; ticks: gap_s in usual
     frames; learns: see `PoseFilterParams`. Fills follows and learned (J,): the shares of the way, and of a new speed, that
-    they took.
+    they take of steady motion.
     """
     turn, way = np.empty(4), np.empty(3)
     expected, scratch, between = np.empty(4), np.empty(4), np.empty(4)
@@ -53,7 +75,8 @@ def follow_bones(
         quat_exp(gap_s * speed[0], gap_s * speed[1], gap_s * speed[2], turn)
         quat_multiply(turn, last, expected)
         _turn_between(expected, found_xyzw[j], scratch, between, way)
-        quat_exp(follows[j] * way[0], follows[j] * way[1], follows[j] * way[2], turn)
+        share = follows[j] * tracking_signal(way, ways_rad[j], ticks, still)
+        quat_exp(share * way[0], share * way[1], share * way[2], turn)
         quat_multiply(turn, expected, between)
         expected[:] = between
         _turn_between(last, expected, scratch, between, way)
