@@ -24,7 +24,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
-from mocapd.tracking.pose_filter_kernels import follow_bones, tracking_signal
+from mocapd.tracking.pose_filter_kernels import Stillness, follow_bones, moving_share
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
 from mocapd.types import Floats, Ints, Pose, Skeleton
 
@@ -69,15 +69,20 @@ _SHIRT_ARM = Following(0.6, 0.0, 0.4, 15.0, sure_rad_s=60.0, goes_on=0.0, trust_
 _SHIRT_TRUNK = Following(1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, trust_s=1e-3)
 
 
+_STILL = Stillness(keeps=0.85, least=0.05, fast_rad_s=1.5, lasts=0.95, far_rad=0.15)
+_STILL_ROOT = Stillness(keeps=0.85, least=0.05, fast_rad_s=0.5, lasts=0.95, far_rad=0.06)  # metres
+
+
 @dataclass(frozen=True, slots=True)
 class PoseFilterParams:
-    """learns: of a new speed, at full confidence; still: see `tracking_signal`; settles_s: a body that was just found is
-    published as found, for so long [s]. An offset goes away within approach_s [s], of any joint at approach_m_s at least, at
-    any frame rate, and never by more than step_m in a frame. A joint that moves faster than leap_m_s, within approach_s of a
-    change, has settled elsewhere."""
+    """learns: of a new speed, at full confidence; still, root_still: see `Stillness`; settles_s: a body that was just found
+    is published as found, for so long [s]. An offset goes away within approach_s [s], of any joint at approach_m_s at least,
+    at any frame rate, and never by more than step_m in a frame. A joint that moves faster than leap_m_s, within approach_s
+    of a change, has settled elsewhere."""
 
     learns: float = 0.65
-    still: tuple[float, float] = (0.85, 0.05)
+    still: Stillness = _STILL
+    root_still: Stillness = _STILL_ROOT
     settles_s: float = 0.4
     approach_s: float = 0.25
     approach_m_s: float = 1.5
@@ -89,7 +94,8 @@ class PoseFilterParams:
 class _Filtered:
     """A pose as published at t_ns, of a body carried by `carrier`; smooth: without the offset; trust (J,): in each bone's
     direction, 0..1; since_ns: when the body was first found; turning_rad_s (J,3), moving_m_s (3,): as it goes on; lag_s: see
-    `PoseFilter.lag_s`; ways (1+J,4): the means of `tracking_signal`, of the root and of each bone."""
+    `PoseFilter.lag_s`; memory (1+J,5): of `moving_share`, of the root and of
+    each bone."""
 
     t_ns: int
     carrier: str
@@ -100,7 +106,7 @@ class _Filtered:
     turning_rad_s: Floats = field(default_factory=partial(np.zeros, (N_JOINTS, 3)))
     moving_m_s: Floats = field(default_factory=partial(np.zeros, 3))
     lag_s: float = 0.0
-    ways: Floats = field(default_factory=partial(np.zeros, (1 + N_JOINTS, 4)))
+    memory: Floats = field(default_factory=partial(np.zeros, (1 + N_JOINTS, 5)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -247,23 +253,25 @@ class PoseFilter:
         trust = np.minimum(trust, last.trust + gap_s / trust_s)
         turning = last.turning_rad_s.copy()
         turning[list(jumped)] = 0.0
-        ways = last.ways.copy()
+        memory = last.memory.copy()
         quats, follows, learned = np.empty((N_JOINTS, 4)), np.empty(N_JOINTS), np.empty(N_JOINTS)
         follow_bones(
-            found.quats_xyzw, last.smooth.quats_xyzw, trust, following, gap_s, ticks, p.learns, p.still, ways[1:],
+            found.quats_xyzw, last.smooth.quats_xyzw, trust, following, gap_s, ticks, p.learns, p.still, memory[1:],
             turning, quats, follows, learned,
         )  # fmt: skip
         moving = following[6, 0] ** ticks * last.moving_m_s
         expected_m = last.smooth.root_m + gap_s * moving
         way_m = found.root_m - expected_m
-        root_m = expected_m + follows[0] * tracking_signal(way_m, ways[0], ticks, p.still) * way_m
+        speed_m_s = float(np.linalg.norm(last.moving_m_s))
+        share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, p.root_still)
+        root_m = expected_m + share * way_m
         moving += learned[0] * ((root_m - last.smooth.root_m) / gap_s - moving)
         if legs_since_ns is not None and t_ns - legs_since_ns < nanoseconds(p.settles_s):
             quats[LOWER_BONES], turning[LOWER_BONES] = found.quats_xyzw[LOWER_BONES], 0.0
         pose = Pose(root_m, quats)
         lag_s = _lag_s(gap_s, follows, learned, following[6] ** ticks, trust)
         return _Filtered(
-            t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s, ways
+            t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s, memory
         )
 
 

@@ -1,5 +1,7 @@
 """How far each bone goes on the way to where it was found."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,24 +19,43 @@ def _turn_between(one: Array, other: Array, inverse: Array, between: Array, out:
     quat_log(between, out)
 
 
-@njit(cache=True, nogil=True)
-def tracking_signal(way: Array, mean: Array, ticks: float, still: tuple[float, float]) -> float:
-    """How much of a step is motion rather than noise, least..1: the length of the mean way over the mean length of the ways,
-    squared (Trigg and Leach 1967, Exponential smoothing with an adaptive response rate). Noise goes to and fro.
+class Stillness(NamedTuple):
+    """What tells motion from noise; a tick is a usual frame.
 
-    way (3,): of this step; mean (4,): mean way and mean length, which become those after it; still: the share of them that is
-    kept a tick, and the least.
+    keeps: share of the mean way that is kept a tick; least: share of its way that noise goes; fast_rad_s: speed of what
+    surely moves, and lasts: share of the highest speed that is remembered a tick; far_rad: noise is nearer than that to where
+    a bone is expected.
     """
-    keeps, least = still
+
+    keeps: float
+    least: float
+    fast_rad_s: float
+    lasts: float
+    far_rad: float
+
+
+@njit(cache=True, nogil=True)
+def moving_share(way: Array, speed: float, memory: Array, ticks: float, still: Stillness) -> float:
+    """How much of a step is motion rather than noise, still.least..1, by what speaks most for motion.
+
+    Ways of noise go to and fro: the mean way's length over the ways' mean length, squared (Trigg and Leach 1967, Exponential
+    smoothing with an adaptive response rate). Who was fast a moment ago turns back rather than trembles. Noise is never far.
+
+    way (3,): of this step [rad]; speed: up to it [rad/s]; memory (5,): mean way, mean length and remembered speed, which
+    become those after it.
+    """
+    keeps, least, fast, lasts, far = still
     new = 1.0 - keeps**ticks
-    length = together = 0.0
+    length2 = mean2 = 0.0
     for i in range(3):
-        mean[i] += new * (way[i] - mean[i])
-        length += way[i] * way[i]
-        together += mean[i] * mean[i]
-    mean[3] += new * (np.sqrt(length) - mean[3])
-    signal = min(together / max(mean[3] * mean[3], 1e-18), 1.0)
-    return least + (1.0 - least) * signal
+        memory[i] += new * (way[i] - memory[i])
+        length2 += way[i] * way[i]
+        mean2 += memory[i] * memory[i]
+    memory[3] += new * (np.sqrt(length2) - memory[3])
+    memory[4] = max(speed, memory[4] * lasts**ticks)
+    one_way = mean2 / max(memory[3] * memory[3], 1e-18)
+    moves = max(one_way, (memory[4] / fast) ** 2, length2 / (far * far))
+    return least + (1.0 - least) * min(moves, 1.0)
 
 
 @njit(cache=True, nogil=True)
@@ -46,15 +67,15 @@ def follow_bones(
     gap_s: float,
     ticks: float,
     learns: float,
-    still: tuple[float, float],
-    ways_rad: Array,
+    still: Stillness,
+    memory: Array,
     turning_rad_s: Array,
     out_xyzw: Array,
     follows: Array,
     learned: Array,
 ) -> None:
     """Fill out_xyzw (J,4) with bones gap_s after last_xyzw (J,4) on their way to found_xyzw (J,4); turning_rad_s (J,3) goes
-    from how they turned to how they turn, ways_rad (J,4) as the mean of `tracking_signal` does.
+    from how they turned to how they turn, memory (J,5) as that of `moving_share` does.
 
     trust (J,): in each bone's direction; following (7,J): the numbers of a `Following`, for each bone; ticks: gap_s in usual
     frames; learns: see `PoseFilterParams`. Fills follows and learned (J,): the shares of the way, and of a new speed, that
@@ -70,12 +91,13 @@ def follow_bones(
         follows[j] = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
         learned[j] = 1.0 - (1.0 - learns * np.sqrt(sure)) ** ticks
         speed, last = turning_rad_s[j], last_xyzw[j]
+        speed_rad_s = np.sqrt(speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2])
         for i in range(3):
             speed[i] *= goes_on**ticks
         quat_exp(gap_s * speed[0], gap_s * speed[1], gap_s * speed[2], turn)
         quat_multiply(turn, last, expected)
         _turn_between(expected, found_xyzw[j], scratch, between, way)
-        share = follows[j] * tracking_signal(way, ways_rad[j], ticks, still)
+        share = follows[j] * moving_share(way, speed_rad_s, memory[j], ticks, still)
         quat_exp(share * way[0], share * way[1], share * way[2], turn)
         quat_multiply(turn, expected, between)
         expected[:] = between

@@ -3,6 +3,7 @@
 import numpy as np
 
 from mocapd.geometry import rotations
+from mocapd.tracking.pose_filter_kernels import Stillness
 from mocapd.types import Floats
 
 
@@ -14,11 +15,11 @@ def followed(
     gap_s: float,
     ticks: float,
     learns: float,
-    still: tuple[float, float],
-    ways_rad: Floats,
+    still: Stillness,
+    memory: Floats,
     turning_rad_s: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """The filtered bones (J,4), how they turn (J,3), and the means of their ways (J,4)."""
+    """The filtered bones (J,4), how they turn (J,3), and what is remembered (J,5)."""
     all_sure, doubtful, least, doubtful_rad_s, sure_rad_s, power, goes_on = following
     sure = np.clip((trust - doubtful) / (all_sure - doubtful), 0.0, 1.0) ** power
     follows = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
@@ -26,14 +27,21 @@ def followed(
     turning = goes_on[:, None] ** ticks * turning_rad_s
     expected = rotations.multiply(rotations.exp(gap_s * turning), last_xyzw)
     way = rotations.log(rotations.multiply(found_xyzw, rotations.inverse(expected)))
-    keeps, least_signal = still[0] ** ticks, still[1]
-    length = np.linalg.norm(way, axis=1)
-    means = keeps * ways_rad + (1.0 - keeps) * np.column_stack([way, length])
-    signal = np.minimum((means[:, :3] ** 2).sum(axis=1) / means[:, 3] ** 2, 1.0)
-    share = follows * (least_signal + (1.0 - least_signal) * signal)
+    keeps, length = still.keeps**ticks, np.linalg.norm(way, axis=1)
+    means = keeps * memory[:, :4] + (1.0 - keeps) * np.column_stack([way, length])
+    fastest = np.maximum(np.linalg.norm(turning_rad_s, axis=1), still.lasts**ticks * memory[:, 4])
+    one_way = (means[:, :3] ** 2).sum(axis=1) / means[:, 3] ** 2
+    moves = np.max(
+        [one_way, (fastest / still.fast_rad_s) ** 2, (length / still.far_rad) ** 2], axis=0
+    )
+    share = follows * (still.least + (1.0 - still.least) * np.minimum(moves, 1.0))
     filtered = rotations.multiply(rotations.exp(share[:, None] * way), expected)
     turn = rotations.log(rotations.multiply(filtered, rotations.inverse(last_xyzw)))
     most_rad = gap_s * (doubtful_rad_s + (sure_rad_s - doubtful_rad_s) * sure)
     turn *= np.minimum(1.0, most_rad / np.maximum(np.linalg.norm(turn, axis=1), 1e-9))[:, None]
     filtered = rotations.canonical(rotations.multiply(rotations.exp(turn), last_xyzw))
-    return filtered, turning + learned[:, None] * (turn / gap_s - turning), means
+    return (
+        filtered,
+        turning + learned[:, None] * (turn / gap_s - turning),
+        np.column_stack([means, fastest]),
+    )

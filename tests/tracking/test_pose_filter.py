@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, standard_skeleton
 from mocapd.geometry import rotations
 from mocapd.tracking.pose_filter import PoseFilter, PoseFilterParams
-from mocapd.tracking.pose_filter_kernels import follow_bones
+from mocapd.tracking.pose_filter_kernels import Stillness, follow_bones
 from mocapd.types import Floats, Pose
 from tests.tracking import naive_pose_filter
 
@@ -245,14 +245,17 @@ def test_bones_one_by_one_go_as_the_formula_says(seed: int) -> None:
         rng.choice([0.0, 0.75], N_JOINTS),
     ])  # fmt: skip
     gap_s = float(rng.uniform(0.003, 0.2))
-    ways = np.column_stack([rng.normal(0.0, 0.1, (N_JOINTS, 3)), rng.uniform(0.2, 0.5, N_JOINTS)])
-    how = (trust, following, gap_s, 30.0 * gap_s, 0.65, (0.85, 0.05), ways)
-    filtered, now, means = naive_pose_filter.followed(found, last, *how, turning)
+    memory = np.column_stack(
+        [rng.normal(0.0, 0.1, (N_JOINTS, 3)), rng.uniform(0.2, 0.9, (N_JOINTS, 2))]
+    )
+    still = Stillness(0.85, 0.05, 3.0, 0.95, 1.0)
+    how = (trust, following, gap_s, 30.0 * gap_s, 0.65, still, memory)
+    filtered, now, remembered = naive_pose_filter.followed(found, last, *how, turning)
     out, shares = np.empty((N_JOINTS, 4)), (np.empty(N_JOINTS), np.empty(N_JOINTS))
     follow_bones(found, last, *how, turning, out, *shares)
     assert out == pytest.approx(filtered, abs=1e-9)
     assert turning == pytest.approx(now, abs=1e-7)
-    assert ways == pytest.approx(means, abs=1e-9)
+    assert memory == pytest.approx(remembered, abs=1e-9)
 
 
 @RATES
