@@ -20,6 +20,7 @@ from tests.faults.faulty_daemon import FaultyDaemon, faulty_daemon
 pytestmark = pytest.mark.kernels
 
 HOUR_NS = 3600 * 10**9
+COASTS_AFTER_NS = 10**8
 SHIFTED_CLOCK = ROOT / "tests" / "faults" / "shifted_clock.c"
 
 
@@ -79,7 +80,11 @@ def test_a_wall_clock_that_is_set_changes_nothing_but_what_it_is_said_to_be(
         bodies = daemon.bodies
         assert {b.seq - a.seq for a, b in pairwise(bodies)} == {1}
         assert all(b.t_ns > a.t_ns for a, b in pairwise(bodies))
-        assert "lost" not in {body.tracking for body in bodies}  # a busy machine may be late
+        # coasting only where this machine gave the daemon no processor for so long
+        assert all(
+            b.tracking == "live" or (b.tracking == "coasting" and b.t_ns - a.t_ns > COASTS_AFTER_NS)
+            for a, b in pairwise(bodies)
+        )
         assert daemon.end() == 0
 
 

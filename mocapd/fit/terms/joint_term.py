@@ -70,12 +70,15 @@ class JointTerm:
         """Of each camera, how far off the rays its joints (N,) are in a body at joints_m (J,3) [standard deviations^2]."""
         return [_mahalanobis2(one, joints_m)[0] for one in self.seen]
 
-    def spreads_m(self) -> list[Floats]:
-        """Of each camera, the standard deviation (N,) of each joint's place across its ray [m]."""
-        out: list[Floats] = []
+    def median_spreads_m(self, least_joints: int) -> list[float]:
+        """Of each camera, the median over its joints of the standard deviation of their places across the ray [m]; inf where
+        it saw fewer than least_joints."""
+        out: list[float] = []
         for one in self.seen:
             xx, xy, yy = one.information.T
-            out.append(np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy)))
+            enough = len(one.joints) >= least_joints
+            spreads_m = np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy))
+            out.append(float(np.median(spreads_m)) if enough else np.inf)
         return out
 
     def places_m(self, hips_m: Floats) -> Floats:

@@ -6,7 +6,7 @@ checks that furniture, shadows and screens fail: the silhouette agrees, most joi
 camera, the body touches the floor, and all of that twice in a row in one place.
 """
 
-from collections.abc import Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,6 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
-from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
@@ -110,18 +109,6 @@ class KeypointInitialiser:
         found = self.attempt(middle_m, who, then.shadows, state.factors, state.information)
         return found if found is not None and self.is_person(found) else None
 
-    def clearest_spread_m(self, state: MotionState, cameras: Iterable[int]) -> float:
-        """Median over the joints of how far the network spreads each over its map, about a body that stands here, in the
-        camera where that is smallest; 0 where no camera has enough joints inside its picture to tell."""
-        watch = self._joints.watch(self._silhouettes, state, self._views)
-        enough = [
-            spreads_m
-            for term in self._joints.term(self._silhouettes.model, map(watch, cameras))
-            for spreads_m in term.spreads_m()
-            if len(spreads_m) >= self._params.least_joints
-        ]
-        return min((float(np.median(one)) for one in enough), default=0.0)
-
     def _worth(self, one: KeypointCandidate) -> float:
         return one.fit.explained - (self._params.shadows_more if one.shadows else 0.0)
 
@@ -139,7 +126,7 @@ class KeypointInitialiser:
             if not terms or len(terms[0].seen) < len(who.blobs):
                 return None
             joints = terms[0]
-            if self._spread_m(joints) > p.hopeless_m:
+            if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
                 return None
             places_m = triangulated_joints(joints.seen, hips_m, p.middle_sd_m)
             posed = pose_through(fitter, places_m, factors, information)
@@ -159,8 +146,8 @@ class KeypointInitialiser:
             fit,
             who,
             shadows,
-            self._spread_m(joints),
-            _largest_median(joints.off_sds2(joints_m)),
+            max(joints.median_spreads_m(p.least_joints)),
+            max(float(np.median(one)) for one in joints.off_sds2(joints_m)),
             apart_m,
             float(joints_m[:, 1].min()),
         )
@@ -176,11 +163,6 @@ class KeypointInitialiser:
             and one.apart_m <= p.apart_m
             and low_m <= one.lowest_m <= high_m
         )
-
-    def _spread_m(self, joints: JointTerm) -> float:
-        """See `KeypointCandidate`."""
-        enough = min(len(one.joints) for one in joints.seen) >= self._params.least_joints
-        return _largest_median(joints.spreads_m()) if enough else np.inf
 
     def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
         """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
@@ -233,10 +215,6 @@ def _upright_about(
     root_m = middle_m - (middle_of(rest_m[_HIPS], rest_m[_NECK]) - rest_m[_HIPS])
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     return MotionState(root_m, local, np.zeros(fitter.model.n_pose), factors, information)
-
-
-def _largest_median(by_camera: Sequence[Floats]) -> float:
-    return max(float(np.median(one)) for one in by_camera)
 
 
 def _middle_px(blob: Blob) -> Floats:

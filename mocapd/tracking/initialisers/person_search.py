@@ -97,6 +97,7 @@ class PersonSearch:
         motion: of who is not found; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params, now_ns
+        self._joints, self._least_joints = joints, low.least_joints
         self._motion = MotionWatch(motion)
         self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
         self.reset()
@@ -214,8 +215,13 @@ class PersonSearch:
         )
 
     def _is_person(self, fit: Fit, seen: _Seen) -> bool:
-        """Whether the network knows the joints of a body where furniture may stand."""
-        return self._low.clearest_spread_m(fit.state, seen.who.blobs) <= self._params.spread_m
+        """Whether the network knows the joints of a body where furniture may stand: in one picture of those that show enough
+        of them."""
+        watch = self._joints.watch(self._silhouettes, fit.state, self._views)
+        terms = self._joints.term(self._silhouettes.model, map(watch, seen.who.blobs))
+        spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
+        known_m = [one for one in spreads_m if one < np.inf]
+        return not known_m or min(known_m) <= self._params.spread_m
 
     def _names(self, seen: _Seen) -> tuple[str, ...]:
         return tuple(self._views.each[i].name for i in seen.who.blobs)
