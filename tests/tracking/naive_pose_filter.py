@@ -3,7 +3,6 @@
 import numpy as np
 
 from mocapd.geometry import rotations
-from mocapd.tracking.pose_filter_kernels import Stillness
 from mocapd.types import Floats
 
 
@@ -15,26 +14,25 @@ def followed(
     gap_s: float,
     ticks: float,
     learns: float,
-    still: Stillness,
     memory: Floats,
     turning_rad_s: Floats,
 ) -> tuple[Floats, Floats, Floats]:
     """The filtered bones (J,4), how they turn (J,3), and what is remembered (J,5)."""
-    all_sure, doubtful, least, doubtful_rad_s, sure_rad_s, power, goes_on = following
+    all_sure, doubtful, least, doubtful_rad_s, sure_rad_s, power, goes_on, noise_rad = following
     sure = np.clip((trust - doubtful) / (all_sure - doubtful), 0.0, 1.0) ** power
     follows = 1.0 - ((1.0 - least) * (1.0 - sure)) ** ticks
     learned = 1.0 - (1.0 - learns * np.sqrt(sure)) ** ticks
     turning = goes_on[:, None] ** ticks * turning_rad_s
     expected = rotations.multiply(rotations.exp(gap_s * turning), last_xyzw)
     way = rotations.log(rotations.multiply(found_xyzw, rotations.inverse(expected)))
-    keeps, length = still.keeps**ticks, np.linalg.norm(way, axis=1)
+    keeps, length = 0.85**ticks, np.linalg.norm(way, axis=1)
     means = keeps * memory[:, :4] + (1.0 - keeps) * np.column_stack([way, length])
-    fastest = np.maximum(np.linalg.norm(turning_rad_s, axis=1), still.lasts**ticks * memory[:, 4])
+    fastest = np.maximum(np.linalg.norm(turning_rad_s, axis=1), 0.95**ticks * memory[:, 4])
     one_way = (means[:, :3] ** 2).sum(axis=1) / means[:, 3] ** 2
-    moves = np.max(
-        [one_way, (fastest / still.fast_rad_s) ** 2, (length / still.far_rad) ** 2], axis=0
-    )
-    share = follows * (still.least + (1.0 - still.least) * np.minimum(moves, 1.0))
+    far = np.divide(length, noise_rad, out=np.full(len(length), np.inf), where=noise_rad > 0.0)
+    fast = np.divide(fastest, 10.0 * noise_rad, out=np.ones(len(length)), where=noise_rad > 0.0)
+    moves = np.max([one_way, fast**2, far**2], axis=0)
+    share = follows * (0.05 + 0.95 * np.minimum(moves, 1.0))
     filtered = rotations.multiply(rotations.exp(share[:, None] * way), expected)
     turn = rotations.log(rotations.multiply(filtered, rotations.inverse(last_xyzw)))
     most_rad = gap_s * (doubtful_rad_s + (sure_rad_s - doubtful_rad_s) * sure)

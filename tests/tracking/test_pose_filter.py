@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, standard_skeleton
 from mocapd.geometry import rotations
 from mocapd.tracking.pose_filter import PoseFilter, PoseFilterParams
-from mocapd.tracking.pose_filter_kernels import Stillness, follow_bones
+from mocapd.tracking.pose_filter_kernels import follow_bones
 from mocapd.types import Floats, Pose
 from tests.tracking import naive_pose_filter
 
@@ -243,13 +243,13 @@ def test_bones_one_by_one_go_as_the_formula_says(seed: int) -> None:
         rng.uniform(1.0, 2.5, N_JOINTS), rng.uniform(0.0, 0.3, N_JOINTS), rng.uniform(0.1, 0.5, N_JOINTS),
         rng.uniform(2.0, 10.0, N_JOINTS), rng.uniform(20.0, 60.0, N_JOINTS), rng.choice([1.0, 3.0], N_JOINTS),
         rng.choice([0.0, 0.75], N_JOINTS),
+        rng.choice([0.0, 0.3, 1.0], N_JOINTS),
     ])  # fmt: skip
     gap_s = float(rng.uniform(0.003, 0.2))
     memory = np.column_stack(
         [rng.normal(0.0, 0.1, (N_JOINTS, 3)), rng.uniform(0.2, 0.9, (N_JOINTS, 2))]
     )
-    still = Stillness(0.85, 0.05, 3.0, 0.95, 1.0)
-    how = (trust, following, gap_s, 30.0 * gap_s, 0.65, still, memory)
+    how = (trust, following, gap_s, 30.0 * gap_s, 0.65, memory)
     filtered, now, remembered = naive_pose_filter.followed(found, last, *how, turning)
     out, shares = np.empty((N_JOINTS, 4)), (np.empty(N_JOINTS), np.empty(N_JOINTS))
     follow_bones(found, last, *how, turning, out, *shares)
@@ -287,8 +287,8 @@ def test_what_is_published_as_found_has_no_lag() -> None:
 
 def test_somebody_who_stands_still_trembles_less_than_what_is_found_and_goes_when_they_go() -> None:
     rng, one = np.random.default_rng(3), Stepped(carrier="shirt")
-    found = [turned(float(rng.normal(0.0, 0.02))) for _ in range(90)]
+    found = [turned(float(rng.normal(0.0, 0.006))) for _ in range(90)]
     poses = [one.step(pose) for pose in found]
     assert np.std([rad(pose) for pose in poses[30:]]) < 0.4 * np.std([rad(pose) for pose in found])
-    went = [one.step(turned(0.08 * k + float(rng.normal(0.0, 0.02)))) for k in range(1, 9)]
+    went = [one.step(turned(0.08 * k + float(rng.normal(0.0, 0.006)))) for k in range(1, 9)]
     assert rad(went[-1]) > 0.64 - 0.08
