@@ -45,7 +45,8 @@ def moving_share(way: Array, speed: float, memory: Array, ticks: float, noise: f
         return 1.0
     one_way = mean2 / max(memory[3] * memory[3], 1e-18)
     moves = max(one_way, (memory[4] / (_FAST_HZ * noise)) ** 2, length2 / (noise * noise))
-    return _LEAST + (1.0 - _LEAST) * min(moves, 1.0)
+    share: float = _LEAST + (1.0 - _LEAST) * min(moves, 1.0)
+    return share
 
 
 @njit(cache=True, nogil=True)
