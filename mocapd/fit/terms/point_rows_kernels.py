@@ -74,6 +74,45 @@ def stand_on_floor(
 
 
 @njit(cache=True, nogil=True)
+def hold_on_floor(
+    held: Ints,
+    places_m: Array,
+    information: float,
+    robust_m: float,
+    rest: Array,
+    parents: Ints,
+    joint_of_group: Ints,
+    group_of_joint: Ints,
+    share_of_joint: Array,
+    R: Array,
+    joints: Array,
+    H: Array,
+    b: Array,
+) -> float:
+    """Add two rows for each joint of `held` (F,), which pull it to its place on the floor, places_m (F,2) along x and z; the
+    robust cost. A joint that is robust_m away has a quarter of its weight (Geman-McClure)."""
+    carrier, whole = np.empty(1, np.int32), np.ones(1)
+    nothing = np.zeros((0, 3))
+    no_rest = np.zeros((0, rest.shape[0], 3))
+    row, along = np.empty(3 + 3 * joint_of_group.shape[0]), np.zeros(3)
+    cost = 0.0
+    for f in range(held.shape[0]):
+        joint = held[f]
+        carrier[0] = parents[joint]  # a joint is a point of the bone above it
+        x, z = places_m[f, 0] - joints[joint, 0], places_m[f, 1] - joints[joint, 2]
+        trust = 1.0 / (1.0 + (x * x + z * z) / (robust_m * robust_m))
+        for axis in range(2):
+            along[0], along[2] = 1.0 - axis, float(axis)
+            surface_row_of_arrays(
+                rest[joint], carrier, whole, nothing, along, rest, parents, joint_of_group,
+                group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
+            )  # fmt: skip
+            add_row(row, z if axis else x, information * trust * trust, H, b)
+        cost += information * (x * x + z * z) * trust
+    return cost
+
+
+@njit(cache=True, nogil=True)
 def pull_along_rays(
     triangle: Ints,
     origin: Array,

@@ -15,6 +15,7 @@ from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.planted_term import PlantedTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.tracking.base import Probe
@@ -29,6 +30,7 @@ from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.hypotheses.base import WHOLE, Evidence, Judged, Situation
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
+from mocapd.tracking.planted_feet import PlantedFeet
 from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose
@@ -83,6 +85,7 @@ class ClothesFits:
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
         self._others = OtherPoses(p, stature_m, cascade or blind_cascade())
+        self._feet = PlantedFeet(self.model.rest_m, p.feet)
         self.work = OptionalWork()
 
     def looks_round(self, ticks: Ticks) -> bool:
@@ -103,6 +106,7 @@ class ClothesFits:
         self.cameras.reset()
         self.wardrobe.forget(self.cameras)
         self._others.reset()
+        self._feet.reset()
 
     def rehearse(self) -> None:
         """Compile or load the kernels that no frame of an empty room reaches: whoever comes must not wait for them.
@@ -165,8 +169,11 @@ class ClothesFits:
                 fitter, last, known.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
             )
 
+        planted = self._planted()
+
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
-            return (*self.terms.measured(fitter, drawn, shown, frames, ticks.turn), *seen.joints)
+            measured = self.terms.measured(fitter, drawn, shown, frames, ticks.turn)
+            return (*measured, *seen.joints, *planted)
 
         terms = terms_of(predicted, views)
         probe("clothes.distances")
@@ -180,7 +187,7 @@ class ClothesFits:
             Evidence(self.cameras.classified, terms_of),
         )  # fmt: skip
         found = self._others.improve(Judged(fit, views, terms), at, self._searches(ticks), probe)
-        return self._found(found, known.motion, dt_s)
+        return self._found(found, known.motion, dt_s, frames.t_ns)
 
     def below(
         self,
@@ -215,9 +222,11 @@ class ClothesFits:
             return None
         fitter = self.fitter
 
+        planted = self._planted()
+
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             measured = self.terms.measured(fitter, drawn, shown, frames, ticks.turn, _BELOW)
-            return (*measured, *seen.joints)
+            return (*measured, *seen.joints, *planted)
 
         terms = terms_of(seen.drawn, seen.views)
         probe("clothes.distances")
@@ -233,7 +242,7 @@ class ClothesFits:
         found = self._others.improve(
             Judged(fit, seen.views, terms), at, self._searches(ticks), probe
         )
-        return self._found(found, None if is_new else known.motion, dt_s)
+        return self._found(found, None if is_new else known.motion, dt_s, frames.t_ns)
 
     def begin(self, there: MotionState, frames: FrameSet, ticks: Ticks) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
@@ -277,13 +286,24 @@ class ClothesFits:
             self.wardrobe.learn_first(fit.state, cameras)
         return self._found(Judged(fit, views, ()), last, dt_s)
 
-    def _found(self, judged: Judged, last: MotionState | None, dt_s: float) -> ClothesFound | None:
+    def _planted(self) -> tuple[Term, ...]:
+        """What holds the feet that stand."""
+        joints = self._feet.joints
+        if not len(joints):
+            return ()
+        return (PlantedTerm(self.model, joints, self._feet.places_m, self.params.planted),)
+
+    def _found(
+        self, judged: Judged, last: MotionState | None, dt_s: float, t_ns: int | None = None
+    ) -> ClothesFound | None:
         fit, changed = judged.fit, judged.changed
         if not _is_believed(fit, self.params):
             return None
         velocity = np.zeros(self.model.n_pose)
         if last is not None:
             velocity = _velocity_of(self.model, self.params, fit, last, dt_s, changed)
+        if t_ns is not None:
+            self._feet.saw(self.fitter.joints(fit.state)[0], t_ns)
         views = tuple(judged.views)
         motion = replace(fit.state, velocity=velocity)
         return ClothesFound(fit, motion, views, self.cameras.names(views), changed)

@@ -6,11 +6,13 @@ from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, 
 from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
 from mocapd.tracking.hypotheses.front_back_flip import FlipParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
+from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
 
@@ -108,6 +110,8 @@ class ClothesParams:
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_watch: MotionWatchParams = field(default_factory=MotionWatchParams)
     floor: FloorParams = field(default_factory=FloorParams)
+    planted: PlantedParams = field(default_factory=PlantedParams)
+    feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     flip: FlipParams = field(default_factory=FlipParams)
     limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)

@@ -1,0 +1,76 @@
+"""Which feet stand, and where: a foot that has been in one place on the floor for a while is planted there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX
+from mocapd.clock import seconds
+from mocapd.types import Floats, Ints
+
+_FEET = np.array([[INDEX[side + bone] for bone in ("Foot", "Toes")] for side in SIDES])  # (2,2)
+
+
+@dataclass(frozen=True, slots=True)
+class PlantedFeetParams:
+    """A foot is planted when ankle and toes have been within near_m of their mean place, and within low_m of the height that
+    they have in one who stands, for still_s. Its place follows them within follows_s. It is lifted, or stepped with, when
+    one of them is farther than far_m away or higher than high_m."""
+
+    near_m: float = 0.025
+    low_m: float = 0.03
+    still_s: float = 0.3
+    follows_s: float = 3.0
+    far_m: float = 0.05
+    high_m: float = 0.06
+
+
+class PlantedFeet:
+    """Remembers where each foot has been, and for how long."""
+
+    def __init__(self, rest_m: Floats, params: PlantedFeetParams) -> None:
+        """rest_m (J,3): the joints of the body in the T-pose, on the floor."""
+        self._params, self._standing_m = params, rest_m[_FEET, 1]
+        self.reset()
+
+    def reset(self) -> None:
+        """No foot was seen."""
+        self._t_ns: int | None = None
+        self._mean_m = np.zeros((2, 2, 2))  # of each foot's joints, along x and z
+        self._still_s = np.zeros(2)  # for how long each foot has been there
+
+    @property
+    def joints(self) -> Ints:
+        """The joints (F,) of the feet that are planted."""
+        out: Ints = _FEET[self._is_planted].ravel()
+        return out
+
+    @property
+    def places_m(self) -> Floats:
+        """Where they are (F,2), along x and z [m, world]."""
+        out: Floats = self._mean_m[self._is_planted].reshape(-1, 2)
+        return out
+
+    @property
+    def _is_planted(self) -> NDArray[np.bool_]:
+        return np.asarray(self._still_s >= self._params.still_s)
+
+    def saw(self, joints_m: Floats, t_ns: int) -> None:
+        """A body with joints at joints_m (J,3) was found."""
+        p = self._params
+        dt_s = 0.0 if self._t_ns is None else seconds(t_ns - self._t_ns)
+        self._t_ns = t_ns
+        feet_m = joints_m[_FEET]
+        place_m, height_m = feet_m[..., [0, 2]], feet_m[..., 1] - self._standing_m
+        away_m = np.linalg.norm(place_m - self._mean_m, axis=-1).max(axis=1)
+        planted = self._is_planted
+        stays = np.where(planted, away_m <= p.far_m, away_m <= p.near_m)
+        stays &= np.where(
+            planted, height_m.max(axis=1) <= p.high_m, height_m.max(axis=1) <= p.low_m
+        )
+        self._still_s = np.where(stays, self._still_s + dt_s, 0.0)
+        lasts_s = np.where(planted, p.follows_s, np.maximum(self._still_s, 1e-3))
+        share = np.where(stays, np.minimum(dt_s / lasts_s, 1.0), 1.0)
+        self._mean_m += share[:, None, None] * (place_m - self._mean_m)
