@@ -37,15 +37,18 @@ def _no_arm_search(params: ClothesParams) -> ClothesParams:
 
 def _no_leg_search(params: ClothesParams) -> ClothesParams:
     never = replace(params.legs, uncertain=_CERTAIN)
-    return replace(params, legs=never, crossed_looks=_FOREVER)
+    swap = replace(params.limb_swap, looks=_FOREVER)
+    return replace(params, legs=never, limb_swap=swap)
 
 
 def _no_faces(params: ClothesParams) -> ClothesParams:
-    return replace(params, facing=replace(params.facing, sure=float("inf")))
+    facing = replace(params.flip.facing, sure=float("inf"))
+    return replace(params, flip=replace(params.flip, facing=facing))
 
 
 def _no_turns(params: ClothesParams) -> ClothesParams:
-    return replace(params, turning=replace(params.turning, sure=float("inf")))
+    turning = replace(params.flip.turning, sure=float("inf"))
+    return replace(params, flip=replace(params.flip, turning=turning))
 
 
 def _no_shadows(params: ClothesParams) -> ClothesParams:

@@ -6,23 +6,28 @@ from dataclasses import dataclass
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.shape import BodyShape
-from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.fit.motion_state import MotionState, gone_on, known_of, learned
 from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST, CueTrust
+from mocapd.tracking.cues.base import Cue
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
 from mocapd.tracking.effort import WORK, Effort
+from mocapd.tracking.initialisers.base import Begun, Initialiser
+from mocapd.tracking.initialisers.given_body import GivenBody
+from mocapd.tracking.initialisers.person_before_background import PersonBeforeBackground
+from mocapd.tracking.initialisers.shirt_pose import ShirtPose
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.published_body import CueFindings, published_body
 from mocapd.tracking.ticks import TickClock
-from mocapd.tracking.track_state import Proportions, TrackState, at_rest
+from mocapd.tracking.track_state import Proportions, TrackState
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
 from mocapd.tracking.trunk_and_legs import joined, with_still_legs, with_upper
 from mocapd.types import BodyState, FrameSet, Rig, Tracking
@@ -66,28 +71,33 @@ class BodyTracker:
         self._model = clothes.model if clothes else build_model(stature_m, full_body())
         self._watch = ShirtWatch(shirt, self._model, p.damping) if shirt is not None else None
         self._tracking, self._filter = TrackingState(tracking), PoseFilter()
+        self._cues: tuple[Cue, ...] = tuple(one for one in (clothes, shirt) if one is not None)
+        self._given = GivenBody(self._model, self._skeleton, shirt, clothes, _TOO_OLD_S)
+        self._initialisers: list[Initialiser] = [self._given]
+        if self._watch is not None:
+            self._initialisers.append(ShirtPose(self._watch))
+        if clothes is not None:
+            self._initialisers.append(PersonBeforeBackground(clothes))
         self._filter.rehearse(self._skeleton)
-        for cue in (shirt, clothes):
-            if cue is not None:
-                cue.rehearse()
+        for cue in self._cues:
+            cue.rehearse()
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
         """See Tracker."""
-        for one in (self._shirt, self._clothes, self._watch, self._filter):
+        for one in (*self._cues, self._watch, self._filter):
             if one is not None:
                 one.reset()
-        self._near = near if near is not None and near.pose is not None else None
-        self._tracking.reset(None if self._near is None else self._near.t_ns)
+        self._given.give(near)
+        self._tracking.reset(None if self._given.body is None else self._given.body.t_ns)
         self._known: TrackState | None = None
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._begun_ns, self._ticks = 0, TickClock()
 
     def set_effort(self, effort: Effort) -> None:
         """See EffortTracker."""
-        for cue in (self._shirt, self._clothes):
-            if cue is not None:
-                cue.work = WORK[effort]
+        for cue in self._cues:
+            cue.work = WORK[effort]
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
         """See `RoomLearner`. Raises ConfigError as `step` does, and where no cue looks at clothes."""
@@ -144,10 +154,8 @@ class BodyTracker:
     def _look(self, frames: FrameSet) -> dict[int, float]:
         """Each seeing camera's own time after the frame set's [s], by index."""
         present = self._pictures.look(frames)
-        if self._clothes is not None:
-            self._clothes.take(self._pictures, frames.t_ns, self._ticks.now)
-        if self._shirt is not None:
-            self._shirt.take(self._pictures, self._ticks.now)
+        for cue in self._cues:
+            cue.take(self._pictures, self._ticks.now)
         return present
 
     def _recent(self, t_ns: int) -> TrackState | None:
@@ -253,46 +261,24 @@ class BodyTracker:
         self, wearer: Proportions, present: dict[int, float], frames: FrameSet
     ) -> tuple[TrackState | None, CueFindings]:
         """Look for somebody: where they were known, in the shirt, before the background."""
-        near, self._near = self._near, None
-        if near is not None and near.pose is not None:
-            if abs(frames.t_ns - near.t_ns) <= nanoseconds(_TOO_OLD_S):
-                local = local_from_global(self._skeleton, near.pose.quats_xyzw)
-                there = at_rest(self._model, near.pose.root_m.copy(), local, wearer)
-                trunk = (
-                    self._shirt.begin(there, wearer.taught_s, present, self._ticks.now.turn)
-                    if self._shirt
-                    else None
-                )
-                whole = self._clothes.begin(there, frames) if self._clothes else None
-                if trunk is not None or whole is not None:
-                    return self._begun(there, trunk, whole, frames)
-            self._tracking.reset()
-        if self._watch is not None:
-            trunk = self._watch.search(wearer, present, frames.t_ns, self._ticks.now.turn)
-            self.probe("shirt.detect")
-            if trunk is not None:
-                return self._begun(self._watch.standing(trunk, wearer), trunk, None, frames)
-        if self._clothes is not None:
-            whole = self._clothes.search(wearer, frames.t_ns)
-            self.probe("clothes.start")
-            if whole is not None:
-                return self._begun(whole.motion, None, whole, frames)
+        was_given = self._given.body is not None
+        for one in self._initialisers:
+            found = one.find(wearer, present, frames, self._ticks.now.turn)
+            self.probe(one.name)
+            if found is not None:
+                return self._begun(found, frames)
+            if was_given and one is self._given:
+                self._tracking.reset()
         return None, CueFindings()
 
-    def _begun(
-        self,
-        there: MotionState,
-        trunk: ShirtFound | None,
-        whole: ClothesFound | None,
-        frames: FrameSet,
-    ) -> tuple[TrackState, CueFindings]:
+    def _begun(self, found: Begun, frames: FrameSet) -> tuple[TrackState, CueFindings]:
         t_ns = self._begun_ns = frames.t_ns
-        known = TrackState(t_ns, there, ())
+        known, whole = TrackState(t_ns, found.body, ()), found.whole
         if whole is not None:
             known = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
-        if trunk is None:
+        if found.trunk is None:
             return known, CueFindings(None, whole)
-        return self._carried(known, known.motion, trunk, None, 1e-3, frames)
+        return self._carried(known, known.motion, found.trunk, None, 1e-3, frames)
 
     def _is_arriving(self, now: TrackState | None, t_ns: int) -> bool:
         """Whether this is a first look at somebody whom the shirt may know better a moment later."""

@@ -33,13 +33,13 @@ class CameraPicture:
 
 
 class Pictures:
-    """One work picture for each camera of a rig; present: each seeing camera's own time after the frame set's [s], by its
-    index."""
+    """One work picture for each camera of a rig; t_ns: of the frame set; present: each seeing camera's own time after that
+    [s], by its index."""
 
     def __init__(self, cameras: Sequence[Camera], work_width_px: int, each: Each = in_turn) -> None:
         scales = image_scales(cameras, work_width_px)
         self.each = [CameraPicture(c, k) for c, k in zip(cameras, scales, strict=True)]
-        self.present: dict[int, float] = {}
+        self.t_ns, self.present = 0, dict[int, float]()
         self._index = {camera.name: i for i, camera in enumerate(cameras)}
         self._each = each
 
@@ -49,5 +49,6 @@ class Pictures:
         for i, frame in mine:
             check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
         self._each(lambda one: self.each[one[0]].take(one[1].pixels), mine)
+        self.t_ns = frames.t_ns
         self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
         return self.present

@@ -3,7 +3,9 @@
 A limb that the pictures hardly confirm is often wrong, and what is wrong moves as no limb does: from one pose that looks
 right to the next. What is well confirmed is published nearly as it was found. A bone that keeps turning is expected to go on,
 so that what is held back of each step does not leave it behind (an alpha-beta filter: Kalata 1984, The tracking index).
-Where the cues that carry a body change, or an arm was found elsewhere, the difference goes away at a bounded speed.
+What goes to and fro about where a bone is expected is noise and is followed little, so that somebody who stands still does
+not tremble; what goes one way is motion. Where the cues that carry a body change, or an arm was found elsewhere, the
+difference goes away at a bounded speed.
 
 A bone that turns steadily is published behind where it is found, since less than all of its speed is expected to go on. With
 the share f of the way that it follows, the share l of a new speed that it learns and the share g that it keeps to the next
@@ -22,7 +24,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
-from mocapd.tracking.pose_filter_kernels import follow_bones
+from mocapd.tracking.pose_filter_kernels import follow_bones, moving_share
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
 from mocapd.types import Floats, Ints, Pose, Skeleton
 
@@ -51,6 +53,7 @@ class Following:
     sure_rad_s: float = 20.0  # and where it is sure
     power: float = 1.0  # above 1, what lies between is rather doubtful than sure
     goes_on: float = 0.75  # share of its speed that it keeps to the next frame
+    noise_rad: float = 0.15  # how far from where it is expected a bone that stays is found at most
     trust_s: float = 0.35  # who was not confirmed at all is fully believed no sooner
 
 
@@ -62,19 +65,24 @@ _CLOTHES = {
     "thigh": Following(2.5, 0.2, 0.43, 9.5),
     "shank": Following(2.0, 0.15, 0.3, 8.5),
 }
-# the shirt's colours mistake arms less, and its trunk hardly ever
-_SHIRT_ARM = Following(0.6, 0.0, 0.4, 15.0, sure_rad_s=60.0, goes_on=0.0, trust_s=0.7)
-_SHIRT_TRUNK = Following(1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, trust_s=1e-3)
+# the shirt's colours mistake arms less, and its trunk hardly ever: it is found to 0.3 mm and 2 mrad of where it stays
+_SHIRT_ARM = Following(
+    0.6, 0.0, 0.4, 15.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.04, trust_s=0.7
+)
+_SHIRT_TRUNK = Following(
+    1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.0, trust_s=1e-3
+)
 
 
 @dataclass(frozen=True, slots=True)
 class PoseFilterParams:
-    """learns: of a new speed, at full confidence; settles_s: a body that was just found is published as found, for so long
-    [s]. An offset goes away within approach_s [s], of any joint at approach_m_s at least, at any frame rate, and never by
-    more than step_m in a frame. A joint that moves faster than leap_m_s, within approach_s of a change, has settled
-    elsewhere."""
+    """learns: of a new speed, at full confidence; noise_m: how far from where it is expected the root of a body that stays is
+    found at most, without the shirt; settles_s: a body that was just found is published as found, for so long [s]. An offset
+    goes away within approach_s [s], of any joint at approach_m_s at least, at any frame rate, and never by more than step_m
+    in a frame. A joint that moves faster than leap_m_s, within approach_s of a change, has settled elsewhere."""
 
     learns: float = 0.65
+    noise_m: float = 0.06
     settles_s: float = 0.4
     approach_s: float = 0.25
     approach_m_s: float = 1.5
@@ -86,7 +94,7 @@ class PoseFilterParams:
 class _Filtered:
     """A pose as published at t_ns, of a body carried by `carrier`; smooth: without the offset; trust (J,): in each bone's
     direction, 0..1; since_ns: when the body was first found; turning_rad_s (J,3), moving_m_s (3,): as it goes on; lag_s: see
-    `PoseFilter.lag_s`."""
+    `PoseFilter.lag_s`; memory (1+J,5): of `moving_share`, for the root and each bone."""
 
     t_ns: int
     carrier: str
@@ -97,6 +105,7 @@ class _Filtered:
     turning_rad_s: Floats = field(default_factory=partial(np.zeros, (N_JOINTS, 3)))
     moving_m_s: Floats = field(default_factory=partial(np.zeros, 3))
     lag_s: float = 0.0
+    memory: Floats = field(default_factory=partial(np.zeros, (1 + N_JOINTS, 5)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -243,20 +252,27 @@ class PoseFilter:
         trust = np.minimum(trust, last.trust + gap_s / trust_s)
         turning = last.turning_rad_s.copy()
         turning[list(jumped)] = 0.0
+        memory = last.memory.copy()
         quats, follows, learned = np.empty((N_JOINTS, 4)), np.empty(N_JOINTS), np.empty(N_JOINTS)
         follow_bones(
-            found.quats_xyzw, last.smooth.quats_xyzw, trust, following, gap_s, ticks, p.learns, turning, quats, follows,
-            learned,
+            found.quats_xyzw, last.smooth.quats_xyzw, trust, following, gap_s, ticks, p.learns, memory[1:], turning,
+            quats, follows, learned,
         )  # fmt: skip
         moving = following[6, 0] ** ticks * last.moving_m_s
         expected_m = last.smooth.root_m + gap_s * moving
-        root_m = expected_m + follows[0] * (found.root_m - expected_m)
+        way_m = found.root_m - expected_m
+        speed_m_s = float(np.linalg.norm(last.moving_m_s))
+        noise_m = 0.0 if by_shirt else p.noise_m
+        share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, noise_m)
+        root_m = expected_m + share * way_m
         moving += learned[0] * ((root_m - last.smooth.root_m) / gap_s - moving)
         if legs_since_ns is not None and t_ns - legs_since_ns < nanoseconds(p.settles_s):
             quats[LOWER_BONES], turning[LOWER_BONES] = found.quats_xyzw[LOWER_BONES], 0.0
         pose = Pose(root_m, quats)
         lag_s = _lag_s(gap_s, follows, learned, following[6] ** ticks, trust)
-        return _Filtered(t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s)
+        return _Filtered(
+            t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s, memory
+        )
 
 
 def _lag_s(gap_s: float, follows: Floats, learned: Floats, kept: Floats, trust: Floats) -> float:
@@ -318,7 +334,7 @@ _SHIRT_TRUNK_BONES = np.array(
 
 @cache
 def _following(by_shirt: bool) -> tuple[Floats, Floats]:
-    """(7,J) what `follow_bones` needs of a `Following`, for each bone; and (J,) its trust_s."""
+    """(8,J) what `follow_bones` needs of a `Following`, for each bone; and (J,) its trust_s."""
     rows = []
     for j, kind in enumerate(_KIND_OF_BONE):
         one = _CLOTHES[kind]
@@ -328,4 +344,4 @@ def _following(by_shirt: bool) -> tuple[Floats, Floats]:
             one = _SHIRT_TRUNK
         rows.append(astuple(one))
     table = np.array(rows, np.float64).T
-    return np.ascontiguousarray(table[:7]), table[7].copy()
+    return np.ascontiguousarray(table[:8]), table[8].copy()

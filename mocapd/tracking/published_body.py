@@ -23,7 +23,7 @@ from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound
 from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence as confidence_by_shirt
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
-from mocapd.tracking.hypotheses.seen_pose import WHOLE
+from mocapd.tracking.hypotheses.base import WHOLE
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.track_state import TrackState, upper_of
 from mocapd.tracking.tracking_state import faded, grown

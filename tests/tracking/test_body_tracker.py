@@ -32,6 +32,8 @@ BOTH, SHIRT, CLOTHES, NOBODY = "shirt+clothes", "shirt", "clothes", "auto"
 POOR, BETWEEN = 0.3, 0.5 * (SHIRT_TRUST.good + SHIRT_TRUST.poor)
 LEGS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerLeg", "Foot")]
 JACKET = (Sight(0.0), Sight(1.0, None), Sight(3.0))
+HANDS = ("leftHand", "rightHand")
+ARM_NOISE_M = 0.005  # an arm that hardly moves is not followed nearer than what is found trembles
 RATES = pytest.mark.parametrize("hz", [15.0, 30.0, 60.0])
 
 
@@ -55,8 +57,9 @@ def test_the_trunk_is_the_shirts_and_the_legs_are_the_clothes() -> None:
     bodies = one.run(2.0)
     assert carriers(bodies) == [NOBODY, BOTH]
     joints_m, true_m = joints_of(bodies[-1]), true_joints_m(bodies[-1].t_ns)
-    trunk_and_arms = [INDEX[n] for n in ("hips", "upperChest", "neck", "leftHand", "rightHand")]
-    np.testing.assert_allclose(joints_m[trunk_and_arms], true_m[trunk_and_arms], atol=1e-6)
+    trunk, hands = [INDEX[n] for n in ("hips", "upperChest", "neck")], [INDEX[n] for n in HANDS]
+    np.testing.assert_allclose(joints_m[trunk], true_m[trunk], atol=1e-6)
+    np.testing.assert_allclose(joints_m[hands], true_m[hands], atol=ARM_NOISE_M)
     assert (np.linalg.norm(joints_m - true_m, axis=1)[LEGS[1::2]] > 0.1).all()  # as bent as seen
     assert bodies[-1].cameras == ("cam0", "cam1")
     assert (bodies[-1].confidence[LOWER_BONES] > 0.3).all()
@@ -181,7 +184,8 @@ def test_after_a_change_the_body_arrives_where_the_cues_find_it(hz: float) -> No
     steps = steps_m([b for b in bodies if b.t_ns > nanoseconds(1.0 + SHIRT_TRUST.doubt_s + 0.6)])
     assert steps[: round(hz)].max() < 0.02
     off_m = np.linalg.norm(joints_of(bodies[-1]) - true_joints_m(bodies[-1].t_ns), axis=1)
-    assert off_m[[INDEX["hips"], INDEX["leftHand"], INDEX["rightHand"]]].max() < 1e-6
+    assert off_m[INDEX["hips"]] < 1e-6
+    assert off_m[[INDEX[name] for name in HANDS]].max() < ARM_NOISE_M
 
 
 # --- legs, cameras, leaving ---

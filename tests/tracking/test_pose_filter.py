@@ -243,14 +243,19 @@ def test_bones_one_by_one_go_as_the_formula_says(seed: int) -> None:
         rng.uniform(1.0, 2.5, N_JOINTS), rng.uniform(0.0, 0.3, N_JOINTS), rng.uniform(0.1, 0.5, N_JOINTS),
         rng.uniform(2.0, 10.0, N_JOINTS), rng.uniform(20.0, 60.0, N_JOINTS), rng.choice([1.0, 3.0], N_JOINTS),
         rng.choice([0.0, 0.75], N_JOINTS),
+        rng.choice([0.0, 0.3, 1.0], N_JOINTS),
     ])  # fmt: skip
     gap_s = float(rng.uniform(0.003, 0.2))
-    how = (trust, following, gap_s, 30.0 * gap_s, 0.65)
-    filtered, now = naive_pose_filter.followed(found, last, *how, turning)
+    memory = np.column_stack(
+        [rng.normal(0.0, 0.1, (N_JOINTS, 3)), rng.uniform(0.2, 0.9, (N_JOINTS, 2))]
+    )
+    how = (trust, following, gap_s, 30.0 * gap_s, 0.65, memory)
+    filtered, now, remembered = naive_pose_filter.followed(found, last, *how, turning)
     out, shares = np.empty((N_JOINTS, 4)), (np.empty(N_JOINTS), np.empty(N_JOINTS))
     follow_bones(found, last, *how, turning, out, *shares)
     assert out == pytest.approx(filtered, abs=1e-9)
     assert turning == pytest.approx(now, abs=1e-7)
+    assert memory == pytest.approx(remembered, abs=1e-9)
 
 
 @RATES
@@ -278,3 +283,12 @@ def test_what_is_published_as_found_has_no_lag() -> None:
     assert one.filter.lag_s == 0.0
     one.step(turned(0.1))
     assert one.filter.lag_s == 0.0
+
+
+def test_somebody_who_stands_still_trembles_less_than_what_is_found_and_goes_when_they_go() -> None:
+    rng, one = np.random.default_rng(3), Stepped(carrier="shirt")
+    found = [turned(float(rng.normal(0.0, 0.006))) for _ in range(90)]
+    poses = [one.step(pose) for pose in found]
+    assert np.std([rad(pose) for pose in poses[30:]]) < 0.4 * np.std([rad(pose) for pose in found])
+    went = [one.step(turned(0.08 * k + float(rng.normal(0.0, 0.006)))) for k in range(1, 9)]
+    assert rad(went[-1]) > 0.64 - 0.08

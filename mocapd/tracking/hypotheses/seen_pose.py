@@ -13,10 +13,10 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
 from mocapd.geometry import rotations
+from mocapd.tracking.hypotheses.base import WHOLE
 from mocapd.types import Floats
 
 _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
-WHOLE = "whole"  # as a part that changed: all of the body
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,10 +77,10 @@ class ClothesCue:
         self._fits.rehearse()
         self.reset()
 
-    def take(self, pictures: Pictures, t_ns: int, ticks: Ticks) -> None:
-        """Take the work pictures of a frame set, and the ticks that passed with it."""
+    def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
+        """See Cue."""
         self._ticks = ticks
-        self._find.times.came(t_ns)
+        self._find.times.came(pictures.t_ns)
         self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
 
     def learn_room(self, frames: Iterable[FrameSet], pictures: Pictures) -> None:

@@ -27,9 +27,8 @@ from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.tracking.effort import OptionalWork
+from mocapd.tracking.hypotheses.base import WHOLE, Evidence, Judged, Situation
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
-from mocapd.tracking.hypotheses.seen_pose import WHOLE
-from mocapd.tracking.hypotheses.seen_tries import Anew
 from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose
@@ -138,7 +137,9 @@ class ClothesFits:
         )
         cameras.learn(somebody, views)
         _velocity_of(model, self.params, fit, somebody, TICK_S, ())
-        self._others.rehearse(self.wardrobe.dressed, somebody, views, seen)
+        evidence = Evidence(cameras.classified, lambda _, __: terms)
+        at = Situation(self.wardrobe.dressed, TICK_S, frames, Ticks(1, 1, 1), seen, evidence)
+        self._others.rehearse(Judged(fit, views, terms), at)
 
     def whole(
         self,
@@ -174,11 +175,12 @@ class ClothesFits:
             fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("clothes.fit")
-        fit, views, changed = self._others.improve(
-            self.wardrobe.dressed, fit, views, dt_s, frames, ticks, self._searches(ticks), terms, seen.joints,
-            Anew(self.cameras.classified, terms_of), probe,
+        at = Situation(
+            self.wardrobe.dressed, dt_s, frames, ticks, seen.joints,
+            Evidence(self.cameras.classified, terms_of),
         )  # fmt: skip
-        return self._found(fit, known.motion, dt_s, views, changed)
+        found = self._others.improve(Judged(fit, views, terms), at, self._searches(ticks), probe)
+        return self._found(found, known.motion, dt_s)
 
     def below(
         self,
@@ -224,12 +226,14 @@ class ClothesFits:
             terms=terms,
         )  # fmt: skip
         probe("clothes.fit")
-        fit, views, changed = self._others.other_legs(
-            self.wardrobe.dressed, fit, seen.views, dt_s, ticks, self._searches(ticks), terms, seen.joints,
-            Anew(cameras.classified, terms_of), held,
+        at = Situation(
+            self.wardrobe.dressed, dt_s, frames, ticks, seen.joints,
+            Evidence(cameras.classified, terms_of), held,
         )  # fmt: skip
-        probe("clothes.legs")
-        return self._found(fit, None if is_new else known.motion, dt_s, views, changed)
+        found = self._others.improve(
+            Judged(fit, seen.views, terms), at, self._searches(ticks), probe
+        )
+        return self._found(found, None if is_new else known.motion, dt_s)
 
     def begin(self, there: MotionState, frames: FrameSet, ticks: Ticks) -> ClothesFound | None:
         """Begin from a body as it was known elsewhere, if the pictures have its outline: what is beside it is the
@@ -248,7 +252,7 @@ class ClothesFits:
             there, views, BEGUN_S, self.params.fit.iterations,
             terms=self.terms.measured(fitter, there, views, frames, ticks.turn),
         )  # fmt: skip
-        return self._found(fit, None, BEGUN_S, views, ())
+        return self._found(Judged(fit, views, ()), None, BEGUN_S)
 
     def _outlined(
         self,
@@ -271,25 +275,18 @@ class ClothesFits:
         )  # fmt: skip
         if fit.explained >= p.learn_explained:
             self.wardrobe.learn_first(fit.state, cameras)
-        return self._found(fit, last, dt_s, views, ())
+        return self._found(Judged(fit, views, ()), last, dt_s)
 
-    def _found(
-        self,
-        fit: Fit,
-        last: MotionState | None,
-        dt_s: float,
-        views: Sequence[View],
-        changed: tuple[str, ...],
-    ) -> ClothesFound | None:
+    def _found(self, judged: Judged, last: MotionState | None, dt_s: float) -> ClothesFound | None:
+        fit, changed = judged.fit, judged.changed
         if not _is_believed(fit, self.params):
             return None
         velocity = np.zeros(self.model.n_pose)
         if last is not None:
             velocity = _velocity_of(self.model, self.params, fit, last, dt_s, changed)
-        names = self.cameras.names(views)
-        return ClothesFound(
-            fit, replace(fit.state, velocity=velocity), tuple(views), names, changed
-        )
+        views = tuple(judged.views)
+        motion = replace(fit.state, velocity=velocity)
+        return ClothesFound(fit, motion, views, self.cameras.names(views), changed)
 
     def _held(self, known: TrackState, dt_s: float) -> Floats:
         """Information (n_pose,n_pose) of a prediction whose trunk and arms the shirt carries."""

@@ -7,10 +7,10 @@ from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
-from mocapd.tracking.cues.face.face_watch import FaceWatchParams
 from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.hypotheses.front_back_flip import FlipParams
+from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
-from mocapd.tracking.hypotheses.turn_watch import TurnWatchParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
 
@@ -108,8 +108,8 @@ class ClothesParams:
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_watch: MotionWatchParams = field(default_factory=MotionWatchParams)
     floor: FloorParams = field(default_factory=FloorParams)
-    facing: FaceWatchParams = field(default_factory=FaceWatchParams)
-    turning: TurnWatchParams = field(default_factory=TurnWatchParams)
+    flip: FlipParams = field(default_factory=FlipParams)
+    limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     joints: JointViewParams = field(default_factory=JointViewParams)
     seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
@@ -130,16 +130,6 @@ class ClothesParams:
 
     # motion from frame to frame
     velocity: VelocityParams = field(default_factory=VelocityParams)
-
-    crossed_s: float = 3 / 30  # from one look at crossed legs to the next
-    crossed_looks: int = 5  # in a row: who steps over sideways crosses them for a moment
-    twisted_rad: float = 0.7  # of the chest against the hips, above which these may be left behind
-    crossed_iterations: int = 4
-    crossed_gain: float = (
-        10.0  # by how much the cost must fall to exchange them [disagreeing pixels]
-    )
-
-    turned_loss: float = 0.12  # of what is explained, that a body turned round may cost at first
 
     # decisions
     live_explained: float = (

@@ -97,8 +97,8 @@ class ShirtCue:
         self._next_search_ns = 0
         self._ticks = Ticks(1, 1, 1)
 
-    def take(self, pictures: Pictures, ticks: Ticks) -> None:
-        """Take the work pictures of a frame set, and the ticks that passed with it."""
+    def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
+        """See Cue."""
         self._ticks = ticks
         self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present}, ticks.count)
 

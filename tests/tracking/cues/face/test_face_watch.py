@@ -18,7 +18,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels
-from mocapd.tracking.hypotheses.turned import turned_round
+from mocapd.tracking.hypotheses.turned_round import turned_round
 from mocapd.types import BodyState, Floats, Pose
 from tests.geometry.rigs import ring
 from tests.tracking.profiles import markerless_tracker

@@ -15,7 +15,7 @@ from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels
-from mocapd.tracking.hypotheses.legs import (
+from mocapd.tracking.hypotheses.limb_swap import (
     are_crossed,
     twist_rad,
     with_hips_below_chest,

@@ -7,16 +7,22 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
+from mocapd.fit.fit_params import LegSearchParams, LimbSearchParams
+from mocapd.fit.limbs.arm_search import ArmSearch
+from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
+from mocapd.tracking.cues.clothes.look import Dressed
+from mocapd.tracking.hypotheses.base import Evidence, Judged, Situation
+from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
-from mocapd.tracking.hypotheses.seen_tries import Anew, Judged, tried_as_seen
-from mocapd.types import Floats, Ints
-from tests.tracking.hypotheses.test_leg_poses import BODY, FITTER, standing
+from mocapd.tracking.ticks import Ticks
+from mocapd.types import Floats, FrameSet, Ints
+from tests.tracking.hypotheses.test_limb_swap import BODY, FITTER, standing
 
 pytestmark = pytest.mark.kernels
 
@@ -68,6 +74,13 @@ def drawn(state: MotionState) -> list[View]:
     return views
 
 
+def situation(joints: JointTerm, evidence: Evidence) -> Situation:
+    dressed = Dressed(
+        FITTER, ArmSearch(FITTER, LimbSearchParams()), LegSearch(FITTER, LegSearchParams())
+    )
+    return Situation(dressed, DT_S, FrameSet(0, {}, 0), Ticks(1, 1, 1), (joints,), evidence)
+
+
 def nobody(state: MotionState) -> list[View]:
     return [replace(view, ids=np.zeros_like(view.ids)) for view in drawn(state)]
 
@@ -86,7 +99,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         return (joints,)
 
     now = Judged(fit, views, (joints,))
-    found = tried_as_seen(FITTER, now, DT_S, joints, Anew(shown, measured), PARAMS, None)
+    found = KeypointPoses(PARAMS).test(now, situation(joints, Evidence(shown, measured)))
     assert found.tried
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
     if shown is drawn:
@@ -103,8 +116,8 @@ def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
     now = Judged(fit, drawn(here), ())
     seen = seen_at(FITTER.joints(fit.state)[0])
-    anew = Anew(drawn, lambda _, __: ())
-    assert tried_as_seen(FITTER, now, DT_S, seen, anew, PARAMS, None) is now
+    at = situation(seen, Evidence(drawn, lambda _, __: ()))
+    assert KeypointPoses(PARAMS).test(now, at) is now
     assert not now.tried
 
 

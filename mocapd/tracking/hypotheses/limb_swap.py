@@ -1,20 +1,79 @@
 """Two legs look alike: when each has slipped onto the other, they are exchanged, or the hips were left behind in a turn."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
+from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.limbs.mirroring_kernels import shortest_turn
 from mocapd.fit.motion_state import MotionState
+from mocapd.fit.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
+from mocapd.tracking.hypotheses.base import Judged, Situation
 from mocapd.types import Floats
 
 _OF_HIPS = [INDEX[name] for name in ("spine", "leftUpperLeg", "rightUpperLeg")]
 _CROSSED_M = 0.03  # by which the left ankle is to the right of the right one
 LEG_BONES = ("UpperLeg", "LowerLeg", "Foot")
+
+
+@dataclass(frozen=True, slots=True)
+class LimbSwapParams:
+    """When legs are exchanged."""
+
+    every_s: float = 3 / 30  # from one look at crossed legs to the next
+    looks: int = 5  # in a row: who steps over sideways crosses them for a moment
+    twisted_rad: float = 0.7  # of the chest against the hips, above which these may be left behind
+    iterations: int = 4
+    gain: float = 10.0  # by how much the cost must fall to exchange them [disagreeing pixels]
+
+
+class LimbSwap:
+    """See Hypothesis. Remembers for how many looks the legs were crossed."""
+
+    def __init__(self, params: LimbSwapParams) -> None:
+        self._params = params
+        self.reset()
+
+    def reset(self) -> None:
+        """See Hypothesis."""
+        self._crossed_looks = 0
+
+    def rehearse(self, now: Judged, at: Situation, /) -> None:
+        """See Hypothesis."""
+        with_legs_exchanged(at.dressed.fitter, now.fit.state)
+
+    def test(self, now: Judged, at: Situation) -> Judged:
+        """Both legs look alike, and crossed ones are unusual. Where no trunk leads the hips may be turned as the chest is,
+        too: those of somebody who turned back may be left behind."""
+        p, fitter, fit = self._params, at.dressed.fitter, now.fit
+        if not at.ticks.due(p.every_s):
+            return now
+        hips_too = at.held is None
+        joints_m, globals_xyzw = fitter.joints(fit.state)
+        twisted = hips_too and abs(twist_rad(globals_xyzw)) > p.twisted_rad
+        crossed = are_crossed(joints_m)
+        self._crossed_looks = self._crossed_looks + 1 if crossed or twisted else 0
+        if self._crossed_looks < p.looks:
+            return now
+        self._crossed_looks = 0
+        starts = [with_legs_exchanged(fitter, fit.state)] if crossed else []
+        if twisted:
+            starts.append(with_hips_below_chest(fitter, fit.state))
+        # below hips that may be wrong no leg is usual; below those that the shirt knows that counts, too
+        unusual = 0.0 if hips_too else 1.0
+        best = cheapest_fit(
+            fit, starts,
+            lambda start: fitter.fit(start, now.views, at.dt_s, p.iterations, terms=now.terms),
+            lambda one: one.cost + unusual * unusual_legs(one.state.local_xyzw), p.gain,
+        )  # fmt: skip
+        if best is fit:
+            return now
+        changed = dict.fromkeys((*now.changed, *(f"{side}_leg" for side in SIDES)))
+        return replace(now, fit=best, changed=tuple(changed))
 
 
 def are_crossed(joints_m: Floats) -> bool:

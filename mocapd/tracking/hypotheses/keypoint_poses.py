@@ -1,0 +1,68 @@
+"""Where joints were seen elsewhere a fit begins there, in pictures that are classified beside that pose.
+
+Of regions that look alike only what is drawn tells which pixel is whose, so in pictures that were classified beside the
+predicted pose any other one loses: an arm before a trunk of its colour could not come loose.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.limbs.limb_candidates import turned_rad2
+from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.tracking.hypotheses.base import WHOLE, Judged, Situation
+from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, seen_pose, starts_as_seen
+
+_LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper, limb.lower)])
+
+
+class KeypointPoses:
+    """See Hypothesis."""
+
+    def __init__(self, params: SeenPoseParams) -> None:
+        self._params = params
+
+    def reset(self) -> None:
+        """See Hypothesis."""
+
+    def rehearse(self, now: Judged, at: Situation, /) -> None:
+        """See Hypothesis."""
+        for joints in at.joints:
+            seen_pose(at.dressed.fitter, now.fit.state, joints, (), self._params)
+
+    def test(self, now: Judged, at: Situation) -> Judged:
+        """See `tried_as_seen`; as it is in frames that saw no joints."""
+        for joints in at.joints:
+            now = tried_as_seen(now, at, joints, self._params)
+        return now
+
+
+def tried_as_seen(now: Judged, at: Situation, joints: JointTerm, params: SeenPoseParams) -> Judged:
+    """The cheapest of the present fit and those that begin where the joints were seen."""
+    fitter = at.dressed.fitter
+    held = [one for one in now.terms if not one.is_measured and one is not joints]
+    gained = params.gain
+
+    def cost_of(fit: Fit) -> float:
+        return float(joints.costs(fitter.joints(fit.state)[0]).sum())
+
+    here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
+    starts = starts_as_seen(fitter, now.fit, joints, held, params, legs_alone=at.held is not None)
+    best = replace(now, tried=True) if starts else now
+    for start, changed in starts:
+        views = at.evidence.classified(start)
+        if len(views) < len(now.views):
+            continue
+        terms = at.evidence.measured(start, views)
+        fit = fitter.fit(
+            start, views, at.dt_s, params.fit_iterations, rendered=True, fine=1, motion=at.held, terms=terms
+        )  # fmt: skip
+        away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
+        gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - params.farther * away_rad2
+        if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
+            gain -= cost_of(now.fit) - cost_of(fit)
+        if gain > gained:
+            best, gained = Judged(fit, views, terms, changed, tried=True), gain
+    return best

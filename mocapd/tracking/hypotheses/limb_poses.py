@@ -1,0 +1,49 @@
+"""An arm or a leg that the pictures hardly confirm may be elsewhere: poses about it and over its whole range are tried."""
+
+from dataclasses import replace
+
+from mocapd.body.pose_space import SIDES
+from mocapd.fit.fit_params import LimbSearchParams
+from mocapd.fit.limbs.arm_search import is_uncertain
+from mocapd.tracking.hypotheses.base import Judged, Situation
+
+
+class ArmPoses:
+    """Other arms, where no trunk leads that knows them; see Hypothesis."""
+
+    def __init__(self, params: LimbSearchParams) -> None:
+        self._params = params
+
+    def reset(self) -> None:
+        """See Hypothesis."""
+
+    def rehearse(self, now: Judged, at: Situation, /) -> None:
+        """See Hypothesis."""
+        at.dressed.arms.rehearse(now.fit.state, now.views)
+
+    def test(self, now: Judged, at: Situation) -> Judged:
+        """See Hypothesis."""
+        if at.held is not None:
+            return now
+        tried = now.tried or any(is_uncertain(side, now.fit, self._params) for side in SIDES)
+        fit, sides = at.dressed.arms.improve(now.fit, now.views, at.dt_s, at.ticks.turn, now.terms)
+        changed = (*now.changed, *(f"{side}_arm" for side in sides))
+        return replace(now, fit=fit, changed=changed, tried=tried)
+
+
+class LegPoses:
+    """Other legs; see Hypothesis."""
+
+    def reset(self) -> None:
+        """See Hypothesis."""
+
+    def rehearse(self, now: Judged, at: Situation, /) -> None:
+        """See Hypothesis."""
+        at.dressed.legs.rehearse(now.fit.state, now.views)
+
+    def test(self, now: Judged, at: Situation) -> Judged:
+        """See Hypothesis."""
+        fit, sides = at.dressed.legs.improve(
+            now.fit, now.views, at.dt_s, at.ticks.turn, now.terms, at.held
+        )
+        return replace(now, fit=fit, changed=(*now.changed, *(f"{side}_leg" for side in sides)))
