@@ -50,7 +50,7 @@ def silhouettes(
                     f"the tracker {config.tracker.name!r} has no silhouettes", "--tracker", "auto"
                 )
             found = _of_capture(ready.tracker, ready.shape, capture)
-            row = "".join(f"{np.mean([one[kind] for one in found]):12.3f}" for kind in _KINDS)
+            row = "".join(f"{np.nanmean([one[kind] for one in found]):12.3f}" for kind in _KINDS)
             typer.echo(f"{folder.name:24}{row}{len(found):11}")
 
 
@@ -84,10 +84,13 @@ def _of_picture(view: CameraView, true: Bytes, track: Track) -> Mapping[str, flo
         regions[top:bottom, left:right] = track.evidence[view.name] > 0
     kinds = {
         "background": stands(view.before),
-        "network": view.person_odds > 0.0,
+        "network": view.person_odds > 0.0 if view.person_odds.any() else None,
         "regions": regions,
     }
-    return {kind: _overlap(one[here], mask[here]) for kind, one in kinds.items()}
+    return {
+        kind: np.nan if one is None else _overlap(one[here], mask[here])
+        for kind, one in kinds.items()
+    }
 
 
 def _overlap(one: Mask, other: Mask) -> float:

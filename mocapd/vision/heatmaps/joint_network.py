@@ -16,10 +16,11 @@ from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
 
 # In the order of the maps. A joint has a left and a right one side by side
-JOINTS = (
+BODY_JOINTS = (
     "head", "neck", "hips", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm", "leftHand", "rightHand",
-    "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot", "leftToes", "rightToes",
+    "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot",
 )  # fmt: skip
+JOINTS = (*BODY_JOINTS, "leftToes", "rightToes")
 INPUT_PX = 96
 CELLS = 24  # of a map, each way
 STATURE_M = 1.75  # of a person, to which all sizes are brought
@@ -42,6 +43,14 @@ class SeenJoints:
     farther_m: Floats
     scale_m: Floats
     mask_odds: Singles
+
+    @property
+    def of_body(self) -> "SeenJoints":
+        """Of `BODY_JOINTS` alone."""
+        n = len(BODY_JOINTS)
+        return SeenJoints(
+            self.at_cells[:n], self.spread_cells2[:n], self.farther_m[:n], self.scale_m[:n], self.mask_odds
+        )  # fmt: skip
 
 
 class JointNetwork:

@@ -50,8 +50,8 @@ class AppearanceParams:
     shadow_per_px: float = 0.75
     shadow_px: float = 4.0  # from the expected body: nearer, cloth is likelier
     # of the network's odds that a pixel is the person, and the largest cost that they make or spare
-    person_weight: float = float(__import__("os").environ.get("PW", "0.5"))
-    person_most: float = float(__import__("os").environ.get("PM", "3.0"))
+    person_weight: float = 0.7
+    person_most: float = 3.0
     least_other_px: float = 50.0  # seen beside the body before it is a class
 
 
