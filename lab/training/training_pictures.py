@@ -2,9 +2,9 @@
 
 python -m lab.training.training_pictures CLIPS OUT --minutes 9 --seed 101
 
-Each file OUT/SEED_NUMBER.npz has pictures (N,128,128,6): what a camera shows about somebody, and the same without
-anybody, both BGR; uv (N,J,2): the joints in them [px]; farther (N,J): than the hips along the camera's axis [m, of
-somebody 1.75 m tall].
+Each file OUT/SEED_NUMBER.npz has pictures (N,128,128,7): what a camera shows about somebody, the same without anybody, both
+BGR, and where the person is seen, 0 or 255; uv (N,J,2): the joints in them [px]; farther (N,J): than the hips along the
+camera's axis [m, of somebody 1.75 m tall].
 A hundred a second and processor; run it once for each processor, with another seed.
 """
 
@@ -68,15 +68,19 @@ def examples_of(
             empty = renderer.picture(None, levels, int(rng.integers(1 << 20)))
         at_m = rng.normal(0.0, [0.35, 0.0, 0.35])
         pose = _moved(random_pose(rng, world.skeleton, clips, shutter_s), at_m)
-        opened, closed = [PersonBody(pose.opened)], [PersonBody(pose.closed)]
+        opened, middle, closed = (
+            [PersonBody(one)] for one in (pose.opened, pose.middle, pose.closed)
+        )
         if two:
             behind = random_pose(rng, other.skeleton, clips, shutter_s)
             behind = _moved(behind, 0.3 * at_m + _behind(rng, renderer.spec.position_m))
             opened.append(PersonBody(behind.opened))
+            middle.append(PersonBody(behind.middle))
             closed.append(PersonBody(behind.closed))
         shown = renderer.picture_of_group(opened, closed, levels, int(rng.integers(1 << 20)))
+        mask = renderer.mask_of_group(middle)
         joints_m = joint_positions(world.skeleton, pose.middle)
-        example = _example(renderer.camera, shown, empty, joints_m, world.shape.stature_m)
+        example = _example(renderer.camera, (shown, empty, mask), joints_m, world.shape.stature_m)
         if example is not None:
             out.append(example)
     return out
@@ -116,9 +120,9 @@ def _moved(pose: MovingPose, by_m: Floats) -> MovingPose:
 
 
 def _example(
-    camera: Camera, shown: Bytes, empty: Bytes, joints_m: Floats, stature_m: float
+    camera: Camera, pictures: tuple[Bytes, Bytes, Bytes], joints_m: Floats, stature_m: float
 ) -> Example | None:
-    """What is about the person, unless that is too near."""
+    """What is about the person, unless that is too near; pictures: with, without anybody, and where the person is."""
     there_m = to_camera(camera, joints_m)
     if there_m[:, 2].min() < _NEAREST_M:
         return None
@@ -127,12 +131,12 @@ def _example(
     crop = crop_about(camera, middle_m, SIDE_M * size, PICTURE_PX)
     M, square = crop.affine, (PICTURE_PX, PICTURE_PX)
     crops = [
-        cv2.warpAffine(one, M, square, flags=cv2.INTER_LINEAR, borderValue=_GREY)
-        for one in (shown, empty)
+        cv2.warpAffine(one, M, square, flags=cv2.INTER_LINEAR, borderValue=border)
+        for one, border in zip(pictures, (_GREY, _GREY, (0,)), strict=True)
     ]
     uv = project(camera, joints_m)[_JOINTS] * crop.scale + crop.corner_px
     farther = (there_m[_JOINTS, 2] - there_m[0, 2]) / size
-    return Example(np.concatenate(crops, axis=2), uv, farther)
+    return Example(np.dstack(crops), uv, farther)
 
 
 def main() -> int:

@@ -197,6 +197,11 @@ class CameraRenderer:
         patch = np.where(person, patches[np.clip(owner, 0, len(patches) - 1)], 0)
         return patch.astype(np.uint8), _mask(person), _mask(owner >= own)
 
+    def mask_of_group(self, bodies: list[PersonBody]) -> Bytes:
+        """255 where the person (H,W) is seen, of as many figures, the person first."""
+        owner = self._owners(tuple(range(len(bodies))), bodies)
+        return _mask((owner >= 0) & (owner < len(self.figure.triangles)))
+
     def _owners(self, there: tuple[int, ...], bodies: list[PersonBody]) -> Ints:
         """The triangle (H,W) of the group that each pixel sees, -1: none."""
         group = self._group(there)

@@ -94,6 +94,11 @@ class BodyTracker:
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._begun_ns, self._ticks = 0, TickClock()
 
+    @property
+    def clothes(self) -> ClothesCue | None:
+        """The cue of any clothes, where the profile has it."""
+        return self._clothes
+
     def set_effort(self, effort: Effort) -> None:
         """See EffortTracker."""
         for cue in self._cues:

@@ -14,9 +14,9 @@ import numpy as np
 from mocapd.types import Bytes, Floats, Ints
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.heatmaps.joint_network import (
+    BODY_JOINTS,
     CELLS,
     INPUT_PX,
-    JOINTS,
     MIDDLE,
     SIDE_M,
     STATURE_M,
@@ -25,7 +25,7 @@ from mocapd.vision.heatmaps.joint_network import (
 )
 
 WORK_PX = 320  # the longer side of pictures that are looked at
-_HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
+_HIPS, _NECK = BODY_JOINTS.index("hips"), BODY_JOINTS.index("neck")
 _TORSO_M = 0.50  # from hips to neck, of somebody 1.75 m tall
 _ROOM_PICTURES = 24
 _CELL_PX = INPUT_PX / CELLS
@@ -77,7 +77,7 @@ class _Start:
 class PersonView:
     """One person in F pictures of a camera.
 
-    times_s (F,) [s]; px (F,J,2): joints of `JOINTS` in the camera's full pictures; spread (F,J) of their maps [cells];
+    times_s (F,) [s]; px (F,J,2): joints of `BODY_JOINTS` in the camera's full pictures; spread (F,J) of their maps [cells];
     farther_m (F,J): than the hips, as the network guesses from the one picture. quarter_turns: how often the
     picture is turned left by 90 degrees until the person stands upright.
     """
@@ -124,7 +124,7 @@ class PersonFinder:
     def _follow(
         self, work: WorkPictures, room: ViewedRoom, box: Ints, turns: Sequence[int]
     ) -> PersonView | None:
-        count, joints = len(work.pictures), len(JOINTS)
+        count, joints = len(work.pictures), len(BODY_JOINTS)
         best = min(
             (self._begin(work, room, box, turn) for turn in turns), key=lambda one: one.spread
         )
@@ -185,7 +185,7 @@ class PersonFinder:
         there = cv2.warpAffine(room.known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
         seen = self._network.look(
             np.asarray(small, np.uint8), np.asarray(back, np.float32), np.asarray(there, np.uint8)
-        )
+        ).of_body
         crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         return (crop_px - corner) / scale, seen
 

@@ -13,7 +13,7 @@ import numpy as np
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.geometry.camera_model import centre, undistort
 from mocapd.types import Camera, Floats
-from mocapd.vision.heatmaps.joint_network import JOINTS
+from mocapd.vision.heatmaps.joint_network import BODY_JOINTS
 
 CAP_DEG = 5.0  # what is farther off counts as so far
 _SURE_CELLS = 1.5
@@ -23,14 +23,14 @@ _LEAST = 40  # joints in common, to say anything
 _ITERATIONS = 4  # of undistortion
 _TORSO_M = 0.50  # as in person_views
 _LEAST_PARALLAX_DEG, _NO_DEPTH = 8.0, 0.5
-_HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
-_FEET = [JOINTS.index("leftFoot"), JOINTS.index("rightFoot")]
+_HIPS, _NECK = BODY_JOINTS.index("hips"), BODY_JOINTS.index("neck")
+_FEET = [BODY_JOINTS.index("leftFoot"), BODY_JOINTS.index("rightFoot")]
 _LARGEST_M = 1.2  # of a joint's depth from the hips': more is a wrong match
 
 MIRROR_OF = np.array(
     [
-        JOINTS.index(name.replace("left", "*").replace("right", "left").replace("*", "right"))
-        for name in JOINTS
+        BODY_JOINTS.index(name.replace("left", "*").replace("right", "left").replace("*", "right"))
+        for name in BODY_JOINTS
     ]
 )
 

@@ -9,9 +9,9 @@ from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.view_agreement import PairFit
 from mocapd.geometry.camera_model import normalised
 from mocapd.types import Camera, Floats
-from mocapd.vision.heatmaps.joint_network import JOINTS, STATURE_M
+from mocapd.vision.heatmaps.joint_network import BODY_JOINTS, STATURE_M
 
-_HIPS, _NECK = JOINTS.index("hips"), JOINTS.index("neck")
+_HIPS, _NECK = BODY_JOINTS.index("hips"), BODY_JOINTS.index("neck")
 _UPRIGHT_DEG = 45.0  # people bend; not all the time
 _TURNED_DEG = 60.0
 _LEAST_ANGLES = 8  # of a view

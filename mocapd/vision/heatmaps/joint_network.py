@@ -1,4 +1,4 @@
-"""Heatmaps of a person's joints in a small picture of it, by a convolutional network.
+"""Heatmaps of a person's joints in a small picture of it, and which pixels are the person, by a convolutional network.
 
 One map a joint, as Tompson et al. 2014 (Joint training of a convolutional network and a graphical model for human pose
 estimation), read by its moments (Sun et al. 2018, Integral human pose regression); and how much farther away than the hips
@@ -16,10 +16,11 @@ from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
 
 # In the order of the maps. A joint has a left and a right one side by side
-JOINTS = (
+BODY_JOINTS = (
     "head", "neck", "hips", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm", "leftHand", "rightHand",
     "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot",
 )  # fmt: skip
+JOINTS = (*BODY_JOINTS, "leftToes", "rightToes")
 INPUT_PX = 96
 CELLS = 24  # of a map, each way
 STATURE_M = 1.75  # of a person, to which all sizes are brought
@@ -30,16 +31,26 @@ _FILE = "joint_heatmaps.onnx"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SeenJoints:
-    """The joints of one picture.
+    """The joints of one picture, and where the person is.
 
     at_cells (J,2): mean x, y of each map, the middle of the first cell being 0; spread_cells2 (J,3): its variances xx, xy,
-    yy; farther_m (J,): than the hips, of somebody 1.75 m tall, with the scale_m (J,) of its Laplace distribution.
+    yy; farther_m (J,): than the hips, of somebody 1.75 m tall, with the scale_m (J,) of its Laplace distribution; mask_odds
+    (96,96): logarithms of the odds that a pixel is the person.
     """
 
     at_cells: Floats
     spread_cells2: Floats
     farther_m: Floats
     scale_m: Floats
+    mask_odds: Singles
+
+    @property
+    def of_body(self) -> "SeenJoints":
+        """Of `BODY_JOINTS` alone."""
+        n = len(BODY_JOINTS)
+        return SeenJoints(
+            self.at_cells[:n], self.spread_cells2[:n], self.farther_m[:n], self.scale_m[:n], self.mask_odds
+        )  # fmt: skip
 
 
 class JointNetwork:
@@ -55,8 +66,10 @@ class JointNetwork:
         """Of a picture (96,96,3) about a person; background (96,96,3): the room without it, where that is known (96,96)."""
         fill_input(picture, background, known, self._input[0])
         self._net.setInput(self._input)
-        maps = np.ascontiguousarray(self._net.forward()[0])
+        maps, mask = self._net.forward(["maps", "mask"])
         n = len(JOINTS)
         out = np.empty((n, 7))
-        read_maps(maps, n, out)
-        return SeenJoints(out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy())
+        read_maps(np.ascontiguousarray(maps[0]), n, out)
+        return SeenJoints(
+            out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy(), mask[0, 0].copy()
+        )  # fmt: skip

@@ -49,6 +49,9 @@ class AppearanceParams:
     shadow_costs: tuple[float, float] = (1.5, 4.0)  # of a sure and a likely shadow, to be one
     shadow_per_px: float = 0.75
     shadow_px: float = 4.0  # from the expected body: nearer, cloth is likelier
+    # of the network's odds that a pixel is the person, and the largest cost that they make or spare
+    person_weight: float = 0.7
+    person_most: float = 3.0
     least_other_px: float = 50.0  # seen beside the body before it is a class
 
 
@@ -119,7 +122,12 @@ class Appearance:
         self._refresh()
 
     def classify(
-        self, picture: Bytes, before: Bytes, distance_px: Singles, on_floor: Bytes
+        self,
+        picture: Bytes,
+        before: Bytes,
+        distance_px: Singles,
+        on_floor: Bytes,
+        person_odds: Singles,
     ) -> Bytes:
         """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
         p = self._params
@@ -127,7 +135,7 @@ class Appearance:
         classify_regions(
             picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
             p.other_cost if self._knows_others else 1e6, p.other_per_px, p.other_px,
-            p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, ids,
+            p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, person_odds, p.person_weight, p.person_most, ids,
         )  # fmt: skip
         return ids
 

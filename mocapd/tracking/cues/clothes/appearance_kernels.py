@@ -98,6 +98,9 @@ def classify_regions(
     shadow_per_px: float,
     shadow_px: float,
     on_floor: NDArray[np.uint8],
+    person_odds: Singles,
+    person_weight: float,
+    person_most: float,
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
@@ -106,7 +109,8 @@ def classify_regions(
     region pays per_px for each pixel of distance, up to longest_px. What is no region pays other_cost, and other_per_px for
     each pixel that it is away from the body, up to other_px: limbs move there. What may be a shadow pays at most shadow_costs
     (a sure one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px; where
-    on_floor (h,w) is 0, only sure ones are shadows. Beyond reach_px from all regions nothing is.
+    on_floor (h,w) is 0, only sure ones are shadows. person_weight of person_odds (h,w), up to person_most, is spared by all
+    regions, and paid where negative. Beyond reach_px from all regions nothing is.
     """
     h, w = before.shape
     for y in range(h):
@@ -135,5 +139,7 @@ def classify_regions(
                     np.float32(shadow_px) - nearest, np.float32(0.0)
                 )
                 other = min(other, np.float32(shadow_costs[before[y, x] - SHADOW]) + within)
-            if best < other:
+            person = np.float32(person_weight) * person_odds[y, x]
+            person = min(max(person, -np.float32(person_most)), np.float32(person_most))
+            if best < other + person:
                 out[y, x] = found

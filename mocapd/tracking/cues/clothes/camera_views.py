@@ -15,9 +15,10 @@ from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.appearance import Appearance, region_distances
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.floor_view import FloorView
-from mocapd.types import Bytes, Floats
+from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
+from mocapd.vision.heatmaps.person_crop import PersonCrop
 from mocapd.vision.room_background import RoomBackground
 from mocapd.vision.uncovered import brightness_edges
 
@@ -40,6 +41,9 @@ class CameraView:
         self.before = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
         self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
+        self.person_odds = np.zeros(
+            (h, w), np.float32
+        )  # logarithms; 0 where the network did not look
         self.near: Roi | None = None  # the region about it
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
@@ -68,6 +72,14 @@ class CameraView:
             self.drawn[y0:y1, x0:x1] = here
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
+
+    def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
+        """Where the network sees the person: logarithms of odds (96,96) in a crop of the picture."""
+        h, w = self.person_odds.shape
+        cv2.warpAffine(
+            odds, crop.affine, (w, h), dst=self.person_odds, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+            borderValue=(0.0,),
+        )  # fmt: skip
 
     def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
@@ -113,6 +125,7 @@ class CameraViews:
         """Take work pictures (h,w,3), by camera; present: each seeing camera's own time after the frame set's [s]."""
         for i, picture in pictures.items():
             self.each[i].picture = picture
+            self.each[i].person_odds[:] = 0.0
         self.present = present
 
     def know_room(
@@ -185,7 +198,8 @@ class CameraViews:
         def prepare(i: int) -> tuple[View | None, T]:
             self._mark(i, state)
             self._renew_before(i, looks_round)
-            return self._classified(i, state, marked=True), also(i)
+            seen = also(i)
+            return self._classified(i, state, marked=True), seen
 
         done = self._each(prepare, self.present)
         return [view for view, _ in done if view is not None], [one for _, one in done]
@@ -210,6 +224,7 @@ class CameraViews:
             before,
             region_distances(drawn),
             self._floors[i].near(state.root_m, roi),
+            np.ascontiguousarray(camera.person_odds[y0:y1, x0:x1]),
         )
         weights = np.asarray(cv2.LUT(before, self._weights), np.uint8)
         return View(i, roi, ids, weights, dt_s)

@@ -79,6 +79,7 @@ class JointViews:
             return None
         crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
         seen = self._networks[index].look(*_cut_out(view, crop))
+        view.mark_person(seen.mask_odds, crop)
         crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
         distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
