@@ -6,17 +6,22 @@ import numpy as np
 
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
+from mocapd.body.skeleton import INDEX
 from mocapd.fit.terms.point_rows_kernels import hold_on_floor
 from mocapd.types import Floats, Ints
+
+_TOES = [INDEX[side + "Toes"] for side in SIDES]
 
 
 @dataclass(frozen=True, slots=True)
 class PlantedParams:
     """How firmly a foot stands."""
 
-    sd_m: float = 0.004  # pixels by the hundred pull at it
-    robust_m: float = 0.03  # away from its place, a foot has three quarters of its freedom
+    ankle_sd_m: float = 0.004  # pixels by the hundred pull at it
+    toes_sd_m: float = 0.02  # who begins to stand may have been seen to point elsewhere
+    robust_m: float = 0.03  # this far away from its place a joint is held by a quarter
 
 
 class PlantedTerm:
@@ -29,12 +34,14 @@ class PlantedTerm:
     ) -> None:
         self._model, self._joints, self._params = model, joints, params
         self._places_m = np.ascontiguousarray(places_m)
+        sd_m = np.where(np.isin(joints, _TOES), self._params.toes_sd_m, self._params.ankle_sd_m)
+        self._information = 1.0 / sd_m**2
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `Term`."""
         m, p = self._model, self._params
         cost: float = hold_on_floor(
-            self._joints, self._places_m, 1.0 / p.sd_m**2, p.robust_m, body.rest, m.parents,
+            self._joints, self._places_m, self._information, p.robust_m, body.rest, m.parents,
             m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
         )  # fmt: skip
         return cost

@@ -77,7 +77,7 @@ def stand_on_floor(
 def hold_on_floor(
     held: Ints,
     places_m: Array,
-    information: float,
+    information: Array,
     robust_m: float,
     rest: Array,
     parents: Ints,
@@ -89,8 +89,8 @@ def hold_on_floor(
     H: Array,
     b: Array,
 ) -> float:
-    """Add two rows for each joint of `held` (F,), which pull it to its place on the floor, places_m (F,2) along x and z; the
-    robust cost. A joint that is robust_m away has a quarter of its weight (Geman-McClure)."""
+    """Add two rows for each joint of `held` (F,), which pull it to its place on the floor, places_m (F,2) along x and z, with
+    information (F,) [1/m^2]; the robust cost. A joint that is robust_m away has a quarter of its weight (Geman-McClure)."""
     carrier, whole = np.empty(1, np.int32), np.ones(1)
     nothing = np.zeros((0, 3))
     no_rest = np.zeros((0, rest.shape[0], 3))
@@ -107,8 +107,8 @@ def hold_on_floor(
                 rest[joint], carrier, whole, nothing, along, rest, parents, joint_of_group,
                 group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
             )  # fmt: skip
-            add_row(row, z if axis else x, information * trust * trust, H, b)
-        cost += information * (x * x + z * z) * trust
+            add_row(row, z if axis else x, information[f] * trust * trust, H, b)
+        cost += information[f] * (x * x + z * z) * trust
     return cost
 
 
