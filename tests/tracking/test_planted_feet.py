@@ -88,4 +88,4 @@ def test_a_planted_foot_holds_the_leg_but_not_against_what_is_far_away() -> None
         return float(np.linalg.norm(joints_m[ankle][[0, 2]] - place_m))
 
     assert off_after_m(0.01) < 0.002
-    assert off_after_m(0.5) > 0.45
+    assert off_after_m(0.5) > 0.4
