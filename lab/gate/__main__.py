@@ -65,7 +65,7 @@ def gate(
             for one in cases_of(
                 tuple(sets.split(",")), clips, captures, effective.cache_dir, progress
             ):
-                if only not in one.case.name:
+                if only not in one.name:
                     continue
                 rows.append(
                     measure(
@@ -73,7 +73,7 @@ def gate(
                         lambda known: ready_tracker(name, known, resources),
                         runs,
                         effective.tracker.stature_m,
-                        partial(_tell, progress, one.case.name, runs),
+                        partial(_tell, progress, one.name, runs),
                     )
                 )
                 if out is not None:  # a run that is ended keeps what it has

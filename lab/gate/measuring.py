@@ -38,7 +38,7 @@ def measure(
             found.setdefault(name, []).append(round(value, 4))
         on_run(run + 1)
     ordered = {name: found[name] for name in NAMES if name in found}
-    return GateRow(set_name=one.set_name, name=one.case.name, joints=one.joints, runs=ordered)
+    return GateRow(set_name=one.set_name, name=one.name, joints=one.joints, runs=ordered)
 
 
 def _nudged(known: Calibration, run: int) -> Calibration:

@@ -1,5 +1,6 @@
 """The sets of recordings: which tracker follows them, which joints are scored, and how often each is tracked."""
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,7 @@ from mocapd.errors import InputError
 from mocapd.evaluate.capture_eval import Case, open_case
 from mocapd.session.tracker_setup import Progress
 
+_KEY = re.compile(r"-[0-9a-f]{12}$")
 SETS = ("dev", "shirt", "plain", "failures", "interruptions", "rest")
 _SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
 
@@ -25,6 +27,12 @@ class GateCase:
     joints: str
     by_chance: bool = True
     still_from_s: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Of its row: that of the recording, without the key of the code that drew it, so that sets are compared which another
+        version of the simulator drew anew."""
+        return _KEY.sub("", self.case.name)
 
 
 def cases_of(
