@@ -30,8 +30,8 @@ class GateCase:
 
     @property
     def name(self) -> str:
-        """Of its row: that of the recording, without the key of the code that drew it, so that sets are compared which another
-        version of the simulator drew anew."""
+        """Of its row: that of the recording, without the key of the code that drew it, so that sets are compared that two
+        versions of the simulator drew."""
         return _KEY.sub("", self.case.name)
 
 
