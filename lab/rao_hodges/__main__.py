@@ -14,23 +14,23 @@ import typer
 
 from lab.command_line import OutOption, repeat, run, tell_written
 from lab.rao_hodges.clip_angles import LIMBS, LimbAngles, limb_angles
-from lab.rao_hodges.experiment import Outcome, Variant, track_limb
+from lab.rao_hodges.experiment import LimbOutcome, LimbVariant, track_limb
 from lab.rao_hodges.tables import experiment_page
 from lab.simulated.motion_clip import read_clip
 from mocapd.errors import InputError
 from mocapd.published.rao_hodges.annealing import AnnealingParams, Selection
 
 VARIANTS = (
-    Variant("as published"),
-    Variant("with the converse term", converse=1.0),
-    Variant("converse term, six layers", converse=1.0, annealing=AnnealingParams(layers=6)),
+    LimbVariant("as published"),
+    LimbVariant("with the converse term", converse=1.0),
+    LimbVariant("converse term, six layers", converse=1.0, annealing=AnnealingParams(layers=6)),
 )
 ABLATIONS = (
-    Variant("as published"),
-    Variant("2D weight", silhouettes=True),
-    Variant("random selection", annealing=AnnealingParams(selection=Selection.RANDOM)),
-    Variant("crossover", annealing=AnnealingParams(crossover=True)),
-    Variant("PCA", components=5),
+    LimbVariant("as published"),
+    LimbVariant("2D weight", silhouettes=True),
+    LimbVariant("random selection", annealing=AnnealingParams(selection=Selection.RANDOM)),
+    LimbVariant("crossover", annealing=AnnealingParams(crossover=True)),
+    LimbVariant("PCA", components=5),
 )
 
 
@@ -52,7 +52,7 @@ def experiment(
         for every in (1, 2)
     )
     results = {variant: _tracked(truths, variant) for variant in VARIANTS}
-    results[Variant("as published, at 30 Hz")] = _tracked(halved, VARIANTS[0])
+    results[LimbVariant("as published, at 30 Hz")] = _tracked(halved, VARIANTS[0])
     legs = [truth for truth in truths if truth.limb == "legs"]
     some = [legs[k] for k in _spread(len(legs), ablated)]
     ablations = {variant: _tracked(some, variant, legs) for variant in ABLATIONS}
@@ -66,8 +66,8 @@ def experiment(
 
 
 def _tracked(
-    truths: Sequence[LimbAngles], variant: Variant, learned: Sequence[LimbAngles] = ()
-) -> list[tuple[LimbAngles, Outcome]]:
+    truths: Sequence[LimbAngles], variant: LimbVariant, learned: Sequence[LimbAngles] = ()
+) -> list[tuple[LimbAngles, LimbOutcome]]:
     sys.stderr.write(f"{variant.label}\n")
     return [
         (

@@ -29,7 +29,7 @@ _LEFT, _RIGHT = (1, 2), (4, 5)  # shanks and feet of the legs' chain
 
 
 @dataclass(frozen=True, slots=True)
-class Variant:
+class LimbVariant:
     """points: synthetic ones of each frame; converse: exponent of the term against empty ellipsoids, 0 as published;
     silhouettes: the weight in four pictures instead of in space; components: search in so many principal components."""
 
@@ -42,7 +42,7 @@ class Variant:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class LimbOutcome:
     """One limb of one clip: errors_deg (F,D) of each angle, absolute; spread_deg (F,) mean standard deviation of the selected
     particles; exchanged, apart: frames with the legs exchanged, of those in which they are apart; cpu_s: of the tracking."""
 
@@ -88,8 +88,8 @@ def principal_space(
 
 
 def track_limb(
-    truth: LimbAngles, variant: Variant, seed: int, others: Sequence[LimbAngles] = ()
-) -> Outcome:
+    truth: LimbAngles, variant: LimbVariant, seed: int, others: Sequence[LimbAngles] = ()
+) -> LimbOutcome:
     """Track one limb through a clip, from the true angles of its first frame on."""
     chain = chains()[truth.limb]
     space = search_space(chain, truth.dt_s)
@@ -111,10 +111,12 @@ def track_limb(
             counted, wrong = _exchanged(chain, now, true)
             apart += counted
             exchanged += wrong
-    return Outcome(np.degrees(errors), np.degrees(spread), exchanged, apart, cpu_s)
+    return LimbOutcome(np.degrees(errors), np.degrees(spread), exchanged, apart, cpu_s)
 
 
-def _weigher(chain: LimbChain, true: Floats, variant: Variant, rng: np.random.Generator) -> Weigh:
+def _weigher(
+    chain: LimbChain, true: Floats, variant: LimbVariant, rng: np.random.Generator
+) -> Weigh:
     """The weight of particles against one frame's points or silhouettes."""
     if variant.silhouettes:
         cameras = cameras_around(_ROOT_M)

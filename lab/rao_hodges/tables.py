@@ -5,16 +5,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lab.rao_hodges.clip_angles import LimbAngles
-from lab.rao_hodges.experiment import Outcome, Variant
+from lab.rao_hodges.experiment import LimbOutcome, LimbVariant
 
-Tracked = Sequence[tuple[LimbAngles, Outcome]]
+Tracked = Sequence[tuple[LimbAngles, LimbOutcome]]
 
 PAPER = "| the paper, with a GPU | 7.73 | | 4.54 | 19.3 | | 4 |"
 
 
 def experiment_page(
-    results: Mapping[Variant, Tracked],
-    ablations: Mapping[Variant, Tracked],
+    results: Mapping[LimbVariant, Tracked],
+    ablations: Mapping[LimbVariant, Tracked],
     clips: int,
     ablated: int,
     seconds: float,

@@ -20,10 +20,9 @@ class Selection(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AnnealingParams:
-    """particles, layers: N and M of the paper; selected: share of the particles that a layer hands on; cooling: by which
-    the variance of the noise shrinks from layer to layer, the share that survives, as in Deutscher 2000; smoothing: exponent of
-    the weights in the top layer, whose square root is that of the next one and so on down to 1 at layer 0; crossover: mix
-    the angles of two selected particles, as Deutscher 2001 does."""
+    """particles, layers: N and M of the paper. selected: share of the particles that a layer hands on. cooling: factor of the
+    noise's variance from layer to layer, the share that survives, as in Deutscher 2000. smoothing: exponent of the weights
+    in the top layer; layer 0 has 1. crossover: take each angle from one of two selected particles, as in Deutscher 2001."""
 
     particles: int = 81
     layers: int = 3

@@ -19,7 +19,7 @@ LIMITS_DEG = {"knee_x": (0.0, 152.0), "ankle_x": (-83.0, 33.0), "elbow": (5.0, 1
 
 
 def search_space(chain: LimbChain, dt_s: float = 1.0 / RATE_HZ) -> SearchSpace:
-    """The noise of the top layer is a third of the largest step of each angle, in proportion to the time from frame to frame."""
+    """The top layer's noise is a third of each angle's largest step, in proportion to the time between frames."""
     steps = np.radians([STEP_DEG[kind] for kind in chain.kinds])
     limits = np.radians([LIMITS_DEG.get(kind, (-np.inf, np.inf)) for kind in chain.kinds])
     return SearchSpace(steps / 3.0 * (dt_s * RATE_HZ), limits[:, 0], limits[:, 1])

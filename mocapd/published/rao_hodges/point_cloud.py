@@ -1,12 +1,11 @@
-"""Points that limbs are matched with, and how densely they fill a body."""
+"""Points that limbs are matched with."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.types import Floats, Singles
-
-_SIDE_M = 0.08  # of the cubes in which points are counted: as thick as an arm
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,14 +20,11 @@ class PointCloud:
         """How many points there are."""
         return int(self.points_m.shape[1])
 
+    def where(self, which: NDArray[np.bool_]) -> "PointCloud":
+        """Some of the points (P,), as dense as all."""
+        return PointCloud(np.ascontiguousarray(self.points_m[:, which]), self.per_m3)
 
-def point_cloud(points_m: Floats, per_m3: float | None = None) -> PointCloud:
-    """Of points (P,3) [m]. per_m3: where it is not known, it is counted in the cubes of a grid, each weighted by its
-    points, less the one that is counted for itself; cubes at the surface, half full, make it less than inside."""
-    rows = np.ascontiguousarray(points_m.T, np.float32)
-    if per_m3 is None:
-        at = np.floor(points_m / _SIDE_M).astype(np.int64)
-        _, counts = np.unique(at, axis=0, return_counts=True) if len(at) else (None, np.zeros(0))
-        mean = float((counts**2).sum() / max(len(at), 1)) - 1.0
-        per_m3 = max(mean, 1.0) / _SIDE_M**3
-    return PointCloud(rows, per_m3)
+
+def point_cloud(points_m: Floats, per_m3: float) -> PointCloud:
+    """Of points (P,3) [m]."""
+    return PointCloud(np.ascontiguousarray(points_m.T, np.float32), per_m3)

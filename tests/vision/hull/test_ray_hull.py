@@ -11,7 +11,9 @@ from mocapd.vision.hull.ray_hull import (
     hull_points,
     points_on,
     ray_hull,
+    views_of,
 )
+from mocapd.vision.hull.soft_carve import voxel_centres
 from tests.vision.hull.ring_of_cameras import (
     BOX_M,
     FIGURE,
@@ -94,7 +96,7 @@ def test_each_camera_more_leaves_less_of_the_rays() -> None:
 
 
 def test_points_are_inside_every_silhouette_and_fill_the_body() -> None:
-    points = hull_points(CAMERAS, MASKS, BOX_M, RayHullParams(points=1000))
+    points = hull_points(CAMERAS, MASKS, BOX_M, RayHullParams(points=1000)).points_m
     assert points.shape == (1000, 3)
     assert inside_masks(points, CAMERAS, MASKS, grown_px=1).all()
     assert inside_figure(points).mean() > 0.6
@@ -106,17 +108,20 @@ def test_points_are_inside_every_silhouette_and_fill_the_body() -> None:
 def test_an_interval_has_points_in_proportion_to_its_length() -> None:
     ways = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
     intervals = np.array([[[1.0, 2.0], [4.0, 4.5]], [[2.0, 4.0], [np.nan, np.nan]]])
-    hull = RayIntervals(0, np.zeros(3), ways, intervals, np.array([2, 1]))
-    points = points_on(hull, 70)
+    hull = RayIntervals(0, 0.01, np.zeros(3), ways, intervals, np.array([2, 1]))
+    found = points_on(hull, 70)
+    points = found.points_m
     z, x = points[:, 2], points[:, 0]
     assert np.count_nonzero((z >= 1.0) & (z <= 2.0)) == 20
     assert np.count_nonzero((z >= 4.0) & (z <= 4.5)) == 10
     assert np.count_nonzero((x >= 2.0) & (x <= 4.0)) == 40
+    # a cone of 0.01 sr between two distances
+    assert np.isclose(found.volumes_m3[x >= 2.0].sum(), 0.01 * (4.0**3 - 2.0**3) / 3.0, rtol=1e-3)
 
 
 @pytest.mark.parametrize("masks", [[], [np.zeros((240, 320), np.uint8)] * 4])
 def test_nothing_in_view_is_an_empty_hull(masks: list[Bytes]) -> None:
-    assert hull_points(CAMERAS[: len(masks)], masks, BOX_M).shape == (0, 3)
+    assert hull_points(CAMERAS[: len(masks)], masks, BOX_M).points_m.shape == (0, 3)
 
 
 def test_a_camera_that_does_not_see_a_place_says_nothing_of_it() -> None:
@@ -127,11 +132,22 @@ def test_a_camera_that_does_not_see_a_place_says_nothing_of_it() -> None:
                     np.diag([-1.0, 1.0, -1.0]) @ away.t_m)  # fmt: skip
     blind = np.zeros((240, 320), np.uint8)
     with_it = hull_points([*narrow, turned], [*MASKS, blind], BOX_M)
-    assert np.array_equal(with_it, hull_points(narrow, MASKS, BOX_M))
+    without = hull_points(narrow, MASKS, BOX_M)
+    assert np.array_equal(with_it.points_m, without.points_m)
+    views = views_of([*narrow, turned], without.points_m)
+    assert (views == 4).all()
+    assert np.array_equal(views_of(narrow, np.array([[40.0, 1.0, 40.0], [0.0, 0.9, 0.0]])), [0, 4])
+
+
+def test_the_volume_is_that_of_the_hull() -> None:
+    hull = hull_points(CAMERAS, MASKS, BOX_M)
+    centres, _ = voxel_centres(BOX_M, 0.02)
+    counted = np.count_nonzero(inside_masks(centres, CAMERAS, MASKS)) * 0.02**3
+    assert np.isclose(hull.volumes_m3.sum(), counted, rtol=0.08)
 
 
 def test_silhouettes_of_another_size_give_the_same_hull() -> None:
     half = [silhouette(camera, FIGURE, (160, 120)) for camera in CAMERAS]
-    fine, coarse = hull_points(CAMERAS, MASKS, BOX_M), hull_points(CAMERAS, half, BOX_M)
+    fine, coarse = (hull_points(CAMERAS, masks, BOX_M).points_m for masks in (MASKS, half))
     assert np.allclose(fine.mean(axis=0), coarse.mean(axis=0), atol=0.03)
     assert np.allclose(fine.std(axis=0), coarse.std(axis=0), atol=0.03)

@@ -1,0 +1,121 @@
+"""Silhouettes of the cameras of a rig, before backgrounds that are followed beside the body."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from mocapd.geometry.camera_model import project
+from mocapd.published.rao_hodges.params import Params
+from mocapd.tracking.pictures import CameraPicture, Pictures
+from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
+from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
+from mocapd.vision.room_background import RoomBackground
+
+
+class CameraSilhouette:
+    """One camera: its background, and what stands before it (h,w)."""
+
+    def __init__(self, picture: CameraPicture, params: Params) -> None:
+        """picture: of this camera, renewed by its owner."""
+        self.picture = picture
+        h, w = picture.bgr.shape[:2]
+        self.background = RoomBackground(h, w, params.background)
+        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the background."""
+        self.background.reset()
+        self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
+        self._body = np.zeros_like(self._before)
+
+    def renew(self, uncovered: bool) -> None:
+        """Compare the newest picture with the background; uncovered: and take for background what was uncovered."""
+        self.background.follow_light(self.picture.bgr, self._body)
+        self._before = self.background.before(self.picture.bgr)
+        if uncovered:
+            no_arms = np.zeros_like(self._body)
+            self.background.take_uncovered(self.picture.bgr, self._before, self._body, no_arms)
+
+    def mask(self) -> Bytes:
+        """(h,w): 255 where somebody or a shadow is before the background, or it is not known: a hole in one silhouette is one
+        in the hull, and shadows of several cameras meet on the floor alone."""
+        return np.where(self._before != BACKGROUND, 255, 0).astype(np.uint8)
+
+    def mark_body(self, places_m: Floats) -> None:
+        """Learn no background where the ellipsoids are within which these places (E,S,3) [m, world] lie, nor beside them."""
+        self._body[:] = 0
+        camera, (h, w) = self.picture.camera, self._body.shape
+        at = (project(camera, places_m) + 0.5) * (np.array([w, h]) / camera.size_px) - 0.5
+        for one in at:
+            if np.isfinite(one).all():
+                corners = np.clip(np.rint(one), -10_000, 10_000).astype(np.int32)
+                cv2.fillConvexPoly(self._body, cv2.convexHull(corners), 1)
+        self._body = np.asarray(cv2.dilate(self._body, self._beside), np.uint8)
+
+    def mark_foreground(self, absorb: bool) -> None:
+        """Learn no background where something stands before it, as it may be somebody; absorb: learn it everywhere."""
+        self._body[:] = 0
+        if not absorb and not self.background.is_new:
+            known = ((self._before != BACKGROUND) & (self._before != UNKNOWN)).astype(np.uint8)
+            self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
+
+    def learn(self) -> None:
+        """Follow the background where nobody is marked."""
+        self.background.learn(self.picture.bgr, self._body)
+
+    def seed(self) -> None:
+        """Take the picture beside the marked body for the background."""
+        self.background.seed(self.picture.bgr, self._body)
+
+
+class RigSilhouettes:
+    """All cameras of a rig; `present` are those of the last frame set."""
+
+    def __init__(self, rig: Rig, params: Params) -> None:
+        self._pictures = Pictures(rig.cameras, params.work_width_px)
+        self._every = [CameraSilhouette(one, params) for one in self._pictures.each]
+        self._cameras = rig.cameras
+        self.present: list[CameraSilhouette] = []
+        self.cameras: list[Camera] = []
+
+    def reset(self) -> None:
+        """Forget the backgrounds."""
+        for one in self._every:
+            one.reset()
+
+    def look(self, frames: FrameSet) -> None:
+        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        there = self._pictures.look(frames)
+        self.present = [self._every[i] for i in there]
+        self.cameras = [self._cameras[i] for i in there]
+
+    @property
+    def are_new(self) -> bool:
+        """Whether a background is not known yet."""
+        return any(one.background.is_new for one in self.present)
+
+    def masks(self) -> Sequence[Bytes]:
+        """Of the present cameras."""
+        return [one.mask() for one in self.present]
+
+    def renew(self, uncovered: bool) -> None:
+        """Compare the newest pictures with the backgrounds."""
+        for one in self.present:
+            one.renew(uncovered)
+
+    def seed(self, places_m: Floats) -> None:
+        """Take what is beside a body's ellipsoids for the background; places_m as of `mark_body`."""
+        for one in self.present:
+            one.mark_body(places_m)
+            one.seed()
+
+    def learn(self, places_m: Floats | None, absorb: bool) -> None:
+        """Follow the backgrounds beside a body's ellipsoids, or beside all foreground when nobody is known."""
+        for one in self.present:
+            if places_m is not None:
+                one.mark_body(places_m)
+            else:
+                one.mark_foreground(absorb)
+            one.learn()
