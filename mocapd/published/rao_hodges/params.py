@@ -31,6 +31,8 @@ class Params:
     root_converse: float = 1.0
     root: RootParams = field(default_factory=RootParams)
     hull: RayHullParams = field(default_factory=RayHullParams)
+    # while nobody is followed: most of a room's points are where hardly any camera looks
+    room_hull: RayHullParams = field(default_factory=lambda: RayHullParams(rays=2000, points=10000))
     background: BackgroundParams = field(default_factory=BackgroundParams)
     seed: int = 0
     work_width_px: int = 320
@@ -47,5 +49,9 @@ class Params:
 
     # background
     beside_px: int = 12  # about the body nothing is learned as background [work px]
+    close_px: int = 5  # so far about it what was never seen of the background is learned [work px]
+    least_contrast: float = (
+        1.3  # of the outline of a body that was taken over, behind which no background is known
+    )
     uncovered_looks: int = 10  # from one search for uncovered background to the next
     absorb_looks: int = 13  # of so many looks one learns foreground, too, while nobody is followed

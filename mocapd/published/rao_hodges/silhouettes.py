@@ -11,6 +11,7 @@ from mocapd.tracking.pictures import CameraPicture, Pictures
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
 from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
 from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.uncovered import brightness_edges
 
 
 class CameraSilhouette:
@@ -21,14 +22,17 @@ class CameraSilhouette:
         self.picture = picture
         h, w = picture.bgr.shape[:2]
         self.background = RoomBackground(h, w, params.background)
-        self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
+        self._beside, self._close = (
+            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        )
         self.reset()
 
     def reset(self) -> None:
         """Forget the background."""
         self.background.reset()
         self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
-        self._body = np.zeros_like(self._before)
+        self._body = np.zeros_like(self._before)  # where no background is learned
+        self._drawn = np.zeros_like(self._before)  # the ellipsoids of the body
 
     def renew(self, uncovered: bool) -> None:
         """Compare the newest picture with the background; uncovered: and take for background what was uncovered."""
@@ -45,18 +49,19 @@ class CameraSilhouette:
 
     def mark_body(self, places_m: Floats) -> None:
         """Learn no background where the ellipsoids are within which these places (E,S,3) [m, world] lie, nor beside them."""
-        self._body[:] = 0
+        self._drawn[:] = 0
         camera, (h, w) = self.picture.camera, self._body.shape
         at = (project(camera, places_m) + 0.5) * (np.array([w, h]) / camera.size_px) - 0.5
         for one in at:
             if np.isfinite(one).all():
                 corners = np.clip(np.rint(one), -10_000, 10_000).astype(np.int32)
-                cv2.fillConvexPoly(self._body, cv2.convexHull(corners), 1)
-        self._body = np.asarray(cv2.dilate(self._body, self._beside), np.uint8)
+                cv2.fillConvexPoly(self._drawn, cv2.convexHull(corners), 1)
+        self._body = np.asarray(cv2.dilate(self._drawn, self._beside), np.uint8)
 
     def mark_foreground(self, absorb: bool) -> None:
         """Learn no background where something stands before it, as it may be somebody; absorb: learn it everywhere."""
         self._body[:] = 0
+        self._drawn[:] = 0
         if not absorb and not self.background.is_new:
             known = ((self._before != BACKGROUND) & (self._before != UNKNOWN)).astype(np.uint8)
             self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
@@ -64,10 +69,25 @@ class CameraSilhouette:
     def learn(self) -> None:
         """Follow the background where nobody is marked."""
         self.background.learn(self.picture.bgr, self._body)
+        if self._drawn.any():
+            h, w = self._drawn.shape
+            near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+            self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
 
     def seed(self) -> None:
         """Take the picture beside the marked body for the background."""
-        self.background.seed(self.picture.bgr, self._body)
+        near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+        self.background.seed(self.picture.bgr, near)
+
+    def edges_at_outline(self) -> tuple[float, float]:
+        """How steep the picture is along the marked body's outline, and farther outside of it."""
+        if not self._drawn.any():
+            return 0.0, 0.0
+        edges = brightness_edges(self.picture.bgr)
+        near, far = (cv2.dilate(self._drawn, kernel) for kernel in (self._close, self._beside))
+        inner = cv2.erode(self._drawn, self._close)
+        farther = cv2.dilate(far, self._beside)
+        return float(edges[near != inner].mean()), float(edges[farther != far].mean())
 
 
 class RigSilhouettes:
@@ -110,6 +130,15 @@ class RigSilhouettes:
         for one in self.present:
             one.mark_body(places_m)
             one.seed()
+
+    def outline_contrast(self, places_m: Floats) -> float:
+        """How much steeper the pictures are along a body's outline than beside it; about 1 where nobody is."""
+        found = []
+        for one in self.present:
+            one.mark_body(places_m)
+            found.append(one.edges_at_outline())
+        on, beside = np.array(found).sum(axis=0)
+        return float(on / max(beside, 1e-3))
 
     def learn(self, places_m: Floats | None, absorb: bool) -> None:
         """Follow the backgrounds beside a body's ellipsoids, or beside all foreground when nobody is known."""

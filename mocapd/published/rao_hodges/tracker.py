@@ -35,7 +35,7 @@ from mocapd.published.rao_hodges.silhouettes import RigSilhouettes
 from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded, grown
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Rig, Tracking
-from mocapd.vision.hull.ray_hull import HullPoints, hull_points, views_of
+from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, hull_points, views_of
 
 _TICK_S = 1.0 / 30.0
 _SURE_M, _BONE_M = (
@@ -84,6 +84,7 @@ class RaoHodgesTracker:
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
         self._followed: _Followed | None = None
+        self._taken_over = False  # so that what the body covered at first is not known
         self._looks = 0
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
@@ -110,7 +111,7 @@ class RaoHodgesTracker:
         if found is not None:
             self._followed = found
         elif tracking is Tracking.LOST:
-            self._followed = None
+            self._followed, self._taken_over = None, False
         self._learn()
         self.probe("learn")
         return self._track(tracking, frames, shape)
@@ -125,13 +126,16 @@ class RaoHodgesTracker:
             near.t_ns, place, np.zeros(n.n_dof), np.zeros(len(n.bones)), 0.0, ()
         )
         self._silhouettes.seed(self._places(place))
+        self._taken_over = True
 
     def _search(self, last: _Followed | None, frames: FrameSet) -> _Followed | None:
         """The body in this frame set's hull; None where there is none, or it does not explain the hull."""
         p, views = self.params, self._silhouettes
         masks = views.masks()
         if last is None:
-            floor = standing_place(self._hull(self._room_m, masks).points_m, self._stature_m)
+            floor = standing_place(
+                self._hull(self._room_m, masks, p.room_hull).points_m, self._stature_m
+            )
             if floor is None:
                 return None
             cloud = self._cloud(floor, masks)
@@ -150,18 +154,23 @@ class RaoHodgesTracker:
         self.probe("particles")
         if inside < p.least_inside or full.mean() < p.least_full:
             return None
+        if self._taken_over and views.outline_contrast(self._places(place)) < p.least_contrast:
+            return None
+        # a hull is fatter than its body, the less so the more cameras there are
+        quality = float(np.sqrt(inside * full.mean()))
         names = tuple(camera.name for camera in views.cameras)
-        return _Followed(frames.t_ns, place, spread, full, inside * float(full.mean()), names)
+        return _Followed(frames.t_ns, place, spread, full, quality, names)
 
-    def _hull(self, box_m: Floats, masks: Sequence[Bytes]) -> HullPoints:
+    def _hull(self, box_m: Floats, masks: Sequence[Bytes], params: RayHullParams) -> HullPoints:
         """Points of the hull within a box; none where hardly any camera looks, as nothing is carved there."""
         cameras = self._silhouettes.cameras
-        hull = hull_points(cameras, masks, box_m, self.params.hull)
+        hull = hull_points(cameras, masks, box_m, params)
         return hull.where(views_of(cameras, hull.points_m) >= max(2, len(cameras) - 1))
 
     def _cloud(self, middle_m: Floats, masks: Sequence[Bytes]) -> PointCloud:
         """Points of the hull about a person."""
-        hull = self._hull(_box(middle_m, self.params.about_m, self.params.height_m), masks)
+        p = self.params
+        hull = self._hull(_box(middle_m, p.about_m, p.height_m), masks, p.hull)
         self.probe("hull")
         if len(hull.points_m) == 0:
             return point_cloud(hull.points_m, 0.0)
