@@ -1,6 +1,6 @@
 """Repeat the experiment of Rao and Hodges on clips of real motion, with their own comparisons.
 
-python -m lab.rao_hodges CLIPS [--out docs]
+python -m lab.rao_hodges CLIPS
 """
 
 import sys
@@ -12,10 +12,10 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from lab.command_line import OutOption, repeat, run, tell_written
+from lab.command_line import repeat, run
 from lab.rao_hodges.clip_angles import LIMBS, LimbAngles, limb_angles
 from lab.rao_hodges.experiment import LimbOutcome, LimbVariant, track_limb
-from lab.rao_hodges.tables import experiment_page
+from lab.rao_hodges.tables import experiment_tables
 from lab.simulated.motion_clip import read_clip
 from mocapd.errors import InputError
 from mocapd.published.rao_hodges.annealing import AnnealingParams, Selection
@@ -36,7 +36,6 @@ ABLATIONS = (
 
 def experiment(
     clips: Annotated[Path, typer.Argument(help="A folder of clips of motion.")],
-    out: OutOption = None,
     count: Annotated[int, typer.Option(help="How many clips, spread over the folder.")] = 24,
     ablated: Annotated[int, typer.Option(help="Of how many of them the legs are ablated.")] = 8,
     seconds: Annotated[float, typer.Option(help="Of each clip, from its begin.")] = 2.5,
@@ -56,13 +55,9 @@ def experiment(
     legs = [truth for truth in truths if truth.limb == "legs"]
     some = [legs[k] for k in _spread(len(legs), ablated)]
     ablations = {variant: _tracked(some, variant, legs) for variant in ABLATIONS}
-    command = repeat("lab.rao_hodges", clips, *(() if out is None else ("--out", out)))
-    text = experiment_page(results, ablations, len(read), len(some), seconds, command)
-    if out is None:
-        sys.stdout.write(text)
-    else:
-        (out / "rao-hodges.md").write_text(text, encoding="utf-8")
-        tell_written([out / "rao-hodges.md"])
+    command = repeat("lab.rao_hodges", clips)
+    text = experiment_tables(results, ablations, len(read), len(some), seconds, command)
+    sys.stdout.write(text)
 
 
 def _tracked(

@@ -43,13 +43,13 @@ class Params:
     height_m: float = 2.6
 
     # losing
-    least_inside: float = 0.1  # share of the points that a believed body contains
+    least_inside: float = 0.05  # share of the points that a believed body contains
     least_full: float = 0.4  # how full its ellipsoids are on average
     too_old_s: float = 1.0  # a pose is not carried on over a longer gap
 
     # background
     beside_px: int = 12  # about the body nothing is learned as background [work px]
-    close_px: int = 5  # so far about it what was never seen of the background is learned [work px]
+    close_px: int = 1  # so far beside a body that was taken over the picture is the background [work px]
     least_contrast: float = (
         1.3  # of the outline of a body that was taken over, behind which no background is known
     )

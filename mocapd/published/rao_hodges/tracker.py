@@ -84,7 +84,7 @@ class RaoHodgesTracker:
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
         self._followed: _Followed | None = None
-        self._taken_over = False  # so that what the body covered at first is not known
+        self._taken_over = False  # what the body covered at first is not known then
         self._looks = 0
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
@@ -111,7 +111,7 @@ class RaoHodgesTracker:
         if found is not None:
             self._followed = found
         elif tracking is Tracking.LOST:
-            self._followed, self._taken_over = None, False
+            self._followed = None
         self._learn()
         self.probe("learn")
         return self._track(tracking, frames, shape)
