@@ -74,7 +74,7 @@ def _tracked(
 
 
 def _spread(total: int, count: int) -> list[int]:
-    return np.unique(np.linspace(0, total - 1, min(count, total)).round().astype(int)).tolist()
+    return sorted({round(k) for k in np.linspace(0, total - 1, min(count, total)).tolist()})
 
 
 def _begin(truth: LimbAngles, seconds: float) -> LimbAngles:

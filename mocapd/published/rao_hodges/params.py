@@ -49,7 +49,9 @@ class Params:
 
     # background
     beside_px: int = 12  # about the body nothing is learned as background [work px]
-    close_px: int = 1  # so far beside a body that was taken over the picture is the background [work px]
+    close_px: int = (
+        1  # so far beside a body that was taken over the picture is the background [work px]
+    )
     least_contrast: float = (
         1.3  # of the outline of a body that was taken over, behind which no background is known
     )

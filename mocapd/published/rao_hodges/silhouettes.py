@@ -50,7 +50,8 @@ class CameraSilhouette:
     def mark_body(self, places_m: Floats) -> None:
         """Learn no background where the ellipsoids are within which these places (E,S,3) [m, world] lie, nor beside them."""
         self._drawn[:] = 0
-        camera, (h, w) = self.picture.camera, self._body.shape
+        camera = self.picture.camera
+        h, w = self.picture.bgr.shape[:2]
         at = (project(camera, places_m) + 0.5) * (np.array([w, h]) / camera.size_px) - 0.5
         for one in at:
             if np.isfinite(one).all():
@@ -70,7 +71,7 @@ class CameraSilhouette:
         """Follow the background where nobody is marked."""
         self.background.learn(self.picture.bgr, self._body)
         if self._drawn.any():
-            h, w = self._drawn.shape
+            h, w = self.picture.bgr.shape[:2]
             near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
             self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
 

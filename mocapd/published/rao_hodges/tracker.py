@@ -178,7 +178,9 @@ class RaoHodgesTracker:
 
     def _places(self, place: BodyPlace) -> Floats:
         whole = self._body.whole
-        return places_within(whole, posed(whole, place.angles, place.root_turn, place.root_m))[0]
+        pose = posed(whole, place.angles, place.root_turn, place.root_m)
+        places: Floats = places_within(whole, pose)[0]
+        return places
 
     def _learn(self) -> None:
         """Follow the backgrounds beside the body, or beside all that stands before them."""
@@ -226,4 +228,4 @@ def _common_place(cameras: Sequence[Camera]) -> Floats:
         across = np.eye(3) - np.outer(camera.R[2], camera.R[2])
         total += across
         right += across @ centre(camera)
-    return np.linalg.solve(total, right)
+    return np.asarray(np.linalg.solve(total, right), np.float64)

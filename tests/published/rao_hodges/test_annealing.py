@@ -12,6 +12,7 @@ from mocapd.published.rao_hodges.annealing import (
     AnnealingParams,
     SearchSpace,
     Selection,
+    Weigh,
     anneal,
 )
 from mocapd.published.rao_hodges.limb_motion import STEP_DEG, search_space
@@ -27,7 +28,7 @@ def near_peak(angles: Floats) -> Floats:
     return weights
 
 
-def searched(params: AnnealingParams, seed: int = 0, weigh=near_peak) -> Floats:
+def searched(params: AnnealingParams, seed: int = 0, weigh: Weigh = near_peak) -> Floats:
     return anneal(np.zeros(4), SPACE, weigh, np.random.default_rng(seed), params).angles
 
 

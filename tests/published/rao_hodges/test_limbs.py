@@ -22,7 +22,10 @@ def volume_m3() -> float:
 def naive_inside(angles: Floats, points: Floats) -> np.ndarray:
     """(E,P) point by point, with rotations multiplied one after the other."""
     chain = chains()["legs"]
-    a, at, turned, out = chain.arrays, [], [], []
+    a = chain.arrays
+    at: list[Floats] = []
+    turned: list[Floats] = []
+    out: list[np.ndarray] = []
     for e, parent in enumerate(a.parents):
         R = ROOT_R if parent < 0 else turned[parent]
         joint = (ROOT_M if parent < 0 else at[parent]) + R @ a.joints_m[e]
