@@ -81,8 +81,8 @@ class BundlerSection:
 class TrackerSection:
     """Which tracker, and what it needs to know of the wearer.
 
-    name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009
-      (as published)
+    name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009,
+      rao_hodges (as published)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
     stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]

@@ -104,6 +104,16 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     return ""
 
 
+def _ring_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
+    """For trackers by the visual hull, which of two cameras' silhouettes is several times a body."""
+    missing = _pair_lacks(calibration, cameras)
+    if missing or calibration.rig is None:
+        return missing
+    if len(set(calibration.rig.names) & set(cameras)) < 3:
+        return f"needs three of the calibrated cameras ({', '.join(calibration.rig.names)})"
+    return ""
+
+
 def _canned(_calibration: Calibration, params: Any, _resources: Resources) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
@@ -182,6 +192,12 @@ def _hecht2009(calibration: Calibration, params: Any, resources: Resources) -> T
     return build_hecht2009_tracker(calibration, params, resources.tracking)
 
 
+def _rao_hodges(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
+    from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
+
+    return build_rao_hodges_tracker(calibration, params, resources.tracking)
+
+
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "auto": _profile("auto"),
@@ -191,6 +207,11 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
         "hecht2009": TrackerEntry(
             _hecht2009,
             _pair_lacks,
+            sees=True,
+        ),
+        "rao_hodges": TrackerEntry(
+            _rao_hodges,
+            _ring_lacks,
             sees=True,
         ),
         "wang2011": TrackerEntry(

@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
+from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.published.wang2011.build import build_wang2011_tracker
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
 from mocapd.sim.renderer import camera_renderers
@@ -115,14 +116,24 @@ def shirt_case(
     return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 
+BEHIND = {"name": "behind", "position_m": [0.3, 1.5, -3.2], "look_at_m": [0.0, 1.0, 0.0]}
+
+
 @cache
-def filmed_from_empty() -> Filmed:
-    """The same room in steady light, seen empty for a while before somebody stands in it and slowly moves."""
+def filmed_from_empty(ring: bool = False) -> Filmed:
+    """The same room in steady light, seen empty for a while before somebody stands in it and slowly moves. ring: the two
+    cameras stand back, so that they see feet and hands, and a third one is behind the person."""
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
+    whole = {}
+    if ring:
+        for camera in cameras:
+            camera["position_m"] = [1.3 * x for x in camera["position_m"]]
+        cameras.append(BEHIND | {"size_px": [320, 240]})
+        whole = {"room": {}, "body": {"whole": True}, "clothes": {"shirt": "plain"}}
     lights = [{**light, "events": []} for light in small.table()["lights"]]
     turns = {"t_s": 3.0, "pose": "relaxed", "at_m": [0.1, 0.1], "yaw_deg": 20.0}
     motion = {"keyframes": [{"t_s": 0.0, "pose": "t_pose"}, turns]}
-    scenario = small.scenario(cameras=cameras, lights=lights, motion=motion, loop_s=6.0)
+    scenario = small.scenario(cameras=cameras, lights=lights, motion=motion, loop_s=6.0, **whole)
     renderers = camera_renderers(World(scenario))
     empty = {
         r.camera.name: [r.picture(None, np.ones(2), noise_key=i) for i in range(N_BEFORE)]
@@ -134,8 +145,10 @@ def filmed_from_empty() -> Filmed:
     return Filmed(known, filmed().database, frame_sets(shown), frame_sets(empty))
 
 
-def plain_case(build_tracker: Callable[[Calibration], Tracker], *carriers: str) -> TrackerCase:
-    shown = filmed_from_empty()
+def plain_case(
+    build_tracker: Callable[[Calibration], Tracker], *carriers: str, ring: bool = False
+) -> TrackerCase:
+    shown = filmed_from_empty(ring)
     tracker = Stepping(build_tracker(shown.known), known_shape(shown.known))
     return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
@@ -148,4 +161,5 @@ CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "wang2011": lambda: shirt_case(build_wang2011_tracker),
     "markerless": lambda: plain_case(markerless_tracker, "clothes"),
     "hecht2009": lambda: plain_case(build_hecht2009_tracker),
+    "rao_hodges": lambda: plain_case(build_rao_hodges_tracker, ring=True),
 }

@@ -1,4 +1,5 @@
-"""Trackers without the shirt say what they lack of a pair of cameras: where they are, a second one, a second place."""
+"""Trackers without the shirt say what they lack of a pair of cameras: where they are, a second one, a second place; that
+of the visual hull needs a third."""
 
 from dataclasses import replace
 
@@ -14,7 +15,7 @@ from mocapd.types import Rig
 
 (ONE,) = nominal_rig("left", (320, 240)).cameras
 PERSON = Wearer(1.75, has_shirt=False)
-NAMES = ("markerless", "hecht2009", "auto")
+NAMES = ("markerless", "hecht2009", "rao_hodges", "auto")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -36,3 +37,9 @@ def test_two_cameras_in_one_place(name: str, apart_m: float) -> None:
     assert np.linalg.norm(centre(other) - centre(ONE)) == pytest.approx(apart_m)
     with pytest.raises(ConfigError, match="by the calibration all are in one"):
         build(name, Calibration(Rig((ONE, other)), PERSON), Resources())
+
+
+def test_a_hull_of_two_silhouettes() -> None:
+    pair = Rig((ONE, replace(ONE, name="right", t_m=ONE.t_m - np.array([1.0, 0.0, 0.0]))))
+    with pytest.raises(ConfigError, match="needs three of the calibrated cameras"):
+        build("rao_hodges", Calibration(pair, PERSON), Resources())

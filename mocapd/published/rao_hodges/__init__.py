@@ -1,0 +1,1 @@
+"""Rao and Hodges: limbs of ellipsoids, tracked by an annealed particle filter in points of the visual hull."""

@@ -1,0 +1,151 @@
+"""Silhouettes of the cameras of a rig, before backgrounds that are followed beside the body."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from mocapd.geometry.camera_model import project
+from mocapd.published.rao_hodges.params import Params
+from mocapd.tracking.pictures import CameraPicture, Pictures
+from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
+from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
+from mocapd.vision.room_background import RoomBackground
+from mocapd.vision.uncovered import brightness_edges
+
+
+class CameraSilhouette:
+    """One camera: its background, and what stands before it (h,w)."""
+
+    def __init__(self, picture: CameraPicture, params: Params) -> None:
+        """picture: of this camera, renewed by its owner."""
+        self.picture = picture
+        h, w = picture.bgr.shape[:2]
+        self.background = RoomBackground(h, w, params.background)
+        self._beside, self._close = (
+            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        )
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the background."""
+        self.background.reset()
+        self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
+        self._body = np.zeros_like(self._before)  # where no background is learned
+        self._drawn = np.zeros_like(self._before)  # the ellipsoids of the body
+
+    def renew(self, uncovered: bool) -> None:
+        """Compare the newest picture with the background; uncovered: and take for background what was uncovered."""
+        self.background.follow_light(self.picture.bgr, self._body)
+        self._before = self.background.before(self.picture.bgr)
+        if uncovered:
+            no_arms = np.zeros_like(self._body)
+            self.background.take_uncovered(self.picture.bgr, self._before, self._body, no_arms)
+
+    def mask(self) -> Bytes:
+        """(h,w): 255 where somebody or a shadow is before the background, or it is not known: a hole in one silhouette is one
+        in the hull, and shadows of several cameras meet on the floor alone."""
+        return np.where(self._before != BACKGROUND, 255, 0).astype(np.uint8)
+
+    def mark_body(self, places_m: Floats) -> None:
+        """Learn no background where the ellipsoids are within which these places (E,S,3) [m, world] lie, nor beside them."""
+        self._drawn[:] = 0
+        camera = self.picture.camera
+        h, w = self.picture.bgr.shape[:2]
+        at = (project(camera, places_m) + 0.5) * (np.array([w, h]) / camera.size_px) - 0.5
+        for one in at:
+            if np.isfinite(one).all():
+                corners = np.clip(np.rint(one), -10_000, 10_000).astype(np.int32)
+                cv2.fillConvexPoly(self._drawn, cv2.convexHull(corners), 1)
+        self._body = np.asarray(cv2.dilate(self._drawn, self._beside), np.uint8)
+
+    def mark_foreground(self, absorb: bool) -> None:
+        """Learn no background where something stands before it, as it may be somebody; absorb: learn it everywhere."""
+        self._body[:] = 0
+        self._drawn[:] = 0
+        if not absorb and not self.background.is_new:
+            known = ((self._before != BACKGROUND) & (self._before != UNKNOWN)).astype(np.uint8)
+            self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
+
+    def learn(self) -> None:
+        """Follow the background where nobody is marked."""
+        self.background.learn(self.picture.bgr, self._body)
+        if self._drawn.any():
+            h, w = self.picture.bgr.shape[:2]
+            near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+            self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
+
+    def seed(self) -> None:
+        """Take the picture beside the marked body for the background."""
+        near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+        self.background.seed(self.picture.bgr, near)
+
+    def edges_at_outline(self) -> tuple[float, float]:
+        """How steep the picture is along the marked body's outline, and farther outside of it."""
+        if not self._drawn.any():
+            return 0.0, 0.0
+        edges = brightness_edges(self.picture.bgr)
+        near, far = (cv2.dilate(self._drawn, kernel) for kernel in (self._close, self._beside))
+        inner = cv2.erode(self._drawn, self._close)
+        farther = cv2.dilate(far, self._beside)
+        return float(edges[near != inner].mean()), float(edges[farther != far].mean())
+
+
+class RigSilhouettes:
+    """All cameras of a rig; `present` are those of the last frame set."""
+
+    def __init__(self, rig: Rig, params: Params) -> None:
+        self._pictures = Pictures(rig.cameras, params.work_width_px)
+        self._every = [CameraSilhouette(one, params) for one in self._pictures.each]
+        self._cameras = rig.cameras
+        self.present: list[CameraSilhouette] = []
+        self.cameras: list[Camera] = []
+
+    def reset(self) -> None:
+        """Forget the backgrounds."""
+        for one in self._every:
+            one.reset()
+
+    def look(self, frames: FrameSet) -> None:
+        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        there = self._pictures.look(frames)
+        self.present = [self._every[i] for i in there]
+        self.cameras = [self._cameras[i] for i in there]
+
+    @property
+    def are_new(self) -> bool:
+        """Whether a background is not known yet."""
+        return any(one.background.is_new for one in self.present)
+
+    def masks(self) -> Sequence[Bytes]:
+        """Of the present cameras."""
+        return [one.mask() for one in self.present]
+
+    def renew(self, uncovered: bool) -> None:
+        """Compare the newest pictures with the backgrounds."""
+        for one in self.present:
+            one.renew(uncovered)
+
+    def seed(self, places_m: Floats) -> None:
+        """Take what is beside a body's ellipsoids for the background; places_m as of `mark_body`."""
+        for one in self.present:
+            one.mark_body(places_m)
+            one.seed()
+
+    def outline_contrast(self, places_m: Floats) -> float:
+        """How much steeper the pictures are along a body's outline than beside it; about 1 where nobody is."""
+        found = []
+        for one in self.present:
+            one.mark_body(places_m)
+            found.append(one.edges_at_outline())
+        on, beside = np.array(found).sum(axis=0)
+        return float(on / max(beside, 1e-3))
+
+    def learn(self, places_m: Floats | None, absorb: bool) -> None:
+        """Follow the backgrounds beside a body's ellipsoids, or beside all foreground when nobody is known."""
+        for one in self.present:
+            if places_m is not None:
+                one.mark_body(places_m)
+            else:
+                one.mark_foreground(absorb)
+            one.learn()

@@ -1,0 +1,231 @@
+"""The published tracker with the visual hull: limbs of ellipsoids in an annealed particle filter.
+
+Rao and Hodges, Interactive marker-less tracking of human limbs (manuscript for IEEE Transactions on Visualization and
+Computer Graphics).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
+from mocapd.body.skeleton import joint_positions
+from mocapd.clock import nanoseconds, seconds
+from mocapd.geometry.camera_model import centre
+from mocapd.published.rao_hodges.body_chains import (
+    BodyChains,
+    BodyPlace,
+    body_chains,
+    by_joint,
+    place_of,
+    pose_of,
+)
+from mocapd.published.rao_hodges.body_search import (
+    followed,
+    match_body,
+    standing_place,
+    started,
+)
+from mocapd.published.rao_hodges.limb_weight import places_within, posed
+from mocapd.published.rao_hodges.params import Params
+from mocapd.published.rao_hodges.point_cloud import PointCloud, point_cloud
+from mocapd.published.rao_hodges.silhouettes import RigSilhouettes
+from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Rig, Tracking
+from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, hull_points, views_of
+
+_TICK_S = 1.0 / 30.0
+_SURE_M, _BONE_M = (
+    0.03,
+    0.4,
+)  # of a joint that particles agree on; by which an angle's spread moves a joint
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Followed:
+    """Carried from frame to frame. spread (18,) of the angles [rad]; full (E,) of the ellipsoids; quality 0..1."""
+
+    t_ns: int
+    place: BodyPlace
+    spread: Floats
+    full: Floats
+    quality: float
+    cameras: tuple[str, ...]
+
+
+class RaoHodgesTracker:
+    """Three calibrated cameras or more around a whole person; see `mocapd.tracking.base.Tracker` for the promises."""
+
+    name = "rao_hodges"
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        params: Params | None = None,
+        tracking: TrackingStateParams | None = None,
+    ) -> None:
+        self.params = p = params if params is not None else Params()
+        self._stature_m = stature_m
+        self._body: BodyChains = body_chains(mean_shape(stature_m))
+        self._silhouettes = RigSilhouettes(rig, p)
+        self._room_m = _box(_common_place(rig.cameras), p.room_m, p.height_m)
+        self._tracking = TrackingState(tracking)
+        self.probe: Probe = unprobed
+        self.reset()
+
+    def reset(self, near: BodyState | None = None) -> None:
+        """Forget pose and background. near: a body that is tracked on from where it is."""
+        self._silhouettes.reset()
+        self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
+        self._rng = np.random.default_rng(self.params.seed)
+        self._near = near
+        self._followed: _Followed | None = None
+        self._taken_over = False  # what the body covered at first is not known then
+        self._looks = 0
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
+        require_stature(shape, self._stature_m)
+        if not np.array_equal(shape.factors, self._body.shape.factors):
+            self._body = body_chains(shape)
+        p, views = self.params, self._silhouettes
+        self._looks += 1
+        views.look(frames)
+        self.probe("picture")
+        if self._near is not None and views.present:
+            self._take_over(self._near, frames)
+            self._near = None
+        last = self._followed
+        if last is not None and seconds(frames.t_ns - last.t_ns) > p.too_old_s:
+            last = self._followed = None
+        views.renew(self._looks % p.uncovered_looks == 0)
+        self.probe("background")
+        found = None
+        if len(views.present) >= 2 and not views.are_new:
+            found = self._search(last, frames)
+        tracking = self._tracking.step(frames.t_ns, found is not None)
+        if found is not None:
+            self._followed = found
+        elif tracking is Tracking.LOST:
+            self._followed = None
+        self._learn()
+        self.probe("learn")
+        return self._track(tracking, frames, shape)
+
+    def _take_over(self, near: BodyState, frames: FrameSet) -> None:
+        """Begin from another tracker's body; what is beside it is the background. The hull confirms it or does not."""
+        if near.pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
+            return
+        place = place_of(near.pose)
+        n = self._body.whole
+        self._followed = _Followed(
+            near.t_ns, place, np.zeros(n.n_dof), np.zeros(len(n.bones)), 0.0, ()
+        )
+        self._silhouettes.seed(self._places(place))
+        self._taken_over = True
+
+    def _search(self, last: _Followed | None, frames: FrameSet) -> _Followed | None:
+        """The body in this frame set's hull; None where there is none, or it does not explain the hull."""
+        p, views = self.params, self._silhouettes
+        masks = views.masks()
+        if last is None:
+            floor = standing_place(
+                self._hull(self._room_m, masks, p.room_hull).points_m, self._stature_m
+            )
+            if floor is None:
+                return None
+            cloud = self._cloud(floor, masks)
+            if cloud.count == 0:
+                return None
+            place = started(self._body, floor, cloud, self._rng, p)
+            spread = np.zeros(self._body.whole.n_dof)
+        else:
+            cloud = self._cloud(last.place.root_m, masks)
+            if cloud.count == 0:
+                return None
+            dt_s = float(np.clip(seconds(frames.t_ns - last.t_ns), 1e-3, 4.0 * _TICK_S))
+            place, spread = followed(self._body, last.place, cloud, dt_s, self._rng, p)
+        match = match_body(self._body, place, cloud)
+        inside, full = float(match.inside[0]), match.full[0]
+        self.probe("particles")
+        if inside < p.least_inside or full.mean() < p.least_full:
+            return None
+        if self._taken_over and views.outline_contrast(self._places(place)) < p.least_contrast:
+            return None
+        # a hull is fatter than its body, the less so the more cameras there are
+        quality = float(np.sqrt(inside * full.mean()))
+        names = tuple(camera.name for camera in views.cameras)
+        return _Followed(frames.t_ns, place, spread, full, quality, names)
+
+    def _hull(self, box_m: Floats, masks: Sequence[Bytes], params: RayHullParams) -> HullPoints:
+        """Points of the hull within a box; none where hardly any camera looks, as nothing is carved there."""
+        cameras = self._silhouettes.cameras
+        hull = hull_points(cameras, masks, box_m, params)
+        return hull.where(views_of(cameras, hull.points_m) >= max(2, len(cameras) - 1))
+
+    def _cloud(self, middle_m: Floats, masks: Sequence[Bytes]) -> PointCloud:
+        """Points of the hull about a person."""
+        p = self.params
+        hull = self._hull(_box(middle_m, p.about_m, p.height_m), masks, p.hull)
+        self.probe("hull")
+        if len(hull.points_m) == 0:
+            return point_cloud(hull.points_m, 0.0)
+        return point_cloud(hull.points_m, 1.0 / float(np.median(hull.volumes_m3)))
+
+    def _places(self, place: BodyPlace) -> Floats:
+        whole = self._body.whole
+        pose = posed(whole, place.angles, place.root_turn, place.root_m)
+        places: Floats = places_within(whole, pose)[0]
+        return places
+
+    def _learn(self) -> None:
+        """Follow the backgrounds beside the body, or beside all that stands before them."""
+        known = self._followed
+        absorb = self._looks % self.params.absorb_looks == 0
+        self._silhouettes.learn(None if known is None else self._places(known.place), absorb)
+
+    def _track(self, tracking: Tracking, frames: FrameSet, shape: BodyShape) -> Track:
+        known = self._followed
+        if tracking is Tracking.LOST or known is None:
+            return Track(lost_body(frames.t_ns, self.name), shape)
+        away_s = seconds(frames.t_ns - known.t_ns)
+        pose = pose_of(self._body, known.place)
+        spread = by_joint(self._body, self._spread_of_ellipsoids(known.spread))
+        body = BodyState(
+            t_ns=frames.t_ns,
+            tracking=tracking,
+            tracker=self.name,
+            pose=pose,
+            joints_m=joint_positions(skeleton_of(shape), pose),
+            confidence=by_joint(self._body, known.full) * faded(away_s),
+            cameras=known.cameras if away_s == 0.0 else (),
+            uncertainty_m=grown(np.hypot(_SURE_M, _BONE_M * spread), away_s),
+        )
+        return Track(body, shape, known.quality * faded(away_s))
+
+    def _spread_of_ellipsoids(self, spread: Floats) -> Floats:
+        """(E,) the largest spread of each ellipsoid's own angles [rad]; 0 of one that has none."""
+        first = self._body.whole.arrays.first_dof
+        return np.array([spread[a:b].max(initial=0.0) for a, b in pairwise(first)])
+
+
+def _box(middle_m: Floats, aside_m: float, height_m: float) -> Floats:
+    """(2,3) from a little below the floor to this height, so far to each side of a place."""
+    aside = np.array([aside_m, 0.0, aside_m])
+    low, high = middle_m - aside, middle_m + aside
+    low[1], high[1] = -0.05, height_m
+    return np.array([low, high])
+
+
+def _common_place(cameras: Sequence[Camera]) -> Floats:
+    """The point (3,) that is nearest to the optical axes of all cameras [m]."""
+    total, right = 1e-6 * np.eye(3), np.zeros(3)
+    for camera in cameras:
+        across = np.eye(3) - np.outer(camera.R[2], camera.R[2])
+        total += across
+        right += across @ centre(camera)
+    return np.asarray(np.linalg.solve(total, right), np.float64)

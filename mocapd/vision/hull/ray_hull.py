@@ -1,0 +1,144 @@
+"""Points of the visual hull in O(n) of n cameras: rays of one camera, clipped against the silhouettes of the others.
+
+Rao and Hodges, Interactive marker-less tracking of human limbs, section 7, after Matusik et al. 2001: a ray through each
+grid point of one silhouette is clipped along its epipolar lines in the other pictures, and the parts that are inside all
+silhouettes get points in proportion to their length.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.geometry.camera_model import project, rays
+from mocapd.types import Bytes, Camera, Floats, Ints
+from mocapd.vision.hull.hull_kernels import clip_rays
+from mocapd.vision.hull.picture_stack import stack_pictures, stack_projections
+
+_MOST_INTERVALS = 8  # of a ray: a body has four limbs
+
+
+@dataclass(frozen=True, slots=True)
+class RayHullParams:
+    """rays: about how many; points: how many at most; step_px: along epipolar lines, of the silhouettes."""
+
+    rays: int = 800
+    points: int = 1500
+    step_px: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RayIntervals:
+    """Parts of rays that are inside every silhouette. own: the camera whose rays they are; eye_m (3,), ways (N,3) of
+    length 1; ray_sr: the solid angle that each stands for; intervals_m (N,K,2): distances from the eye, of which the first
+    counts (N,) are valid."""
+
+    own: int
+    ray_sr: float
+    eye_m: Floats
+    ways: Floats
+    intervals_m: Floats
+    counts: Ints
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HullPoints:
+    """points_m (P,3) [m, world] and volumes_m3 (P,), of how much of the hull each stands for."""
+
+    points_m: Floats
+    volumes_m3: Floats
+
+    def where(self, which: NDArray[np.bool_]) -> "HullPoints":
+        """Some of them (P,)."""
+        return HullPoints(self.points_m[which], self.volumes_m3[which])
+
+
+def ray_hull(
+    cameras: Sequence[Camera],
+    silhouettes: Sequence[Bytes],
+    box_m: Floats,
+    params: RayHullParams | None = None,
+) -> RayIntervals:
+    """Clip the rays of the camera with the largest silhouette.
+
+    silhouettes (h,w): 0 is background; each shows its camera's whole frame at any size. box_m (2,3): lower and upper
+    corner of the space that is looked at [m, world]. No rays without a camera or without foreground.
+    """
+    p = params if params is not None else RayHullParams()
+    areas = [int(np.count_nonzero(mask)) * (1e6 / mask.size) for mask in silhouettes]
+    if not areas or max(areas) == 0.0:
+        none = np.empty((0, 3))
+        return RayIntervals(
+            0, 0.0, np.zeros(3), none, np.empty((0, _MOST_INTERVALS, 2)), np.empty(0, int)
+        )
+    own = int(np.argmax(areas))
+    pixels, pixel_sr = _grid(silhouettes[own], p.rays, cameras[own])
+    eye, ways = rays(cameras[own], pixels)
+    reach = _within_box(eye, ways, box_m)
+    intervals = np.empty((len(ways), _MOST_INTERVALS, 2))
+    counts = np.zeros(len(ways), np.int64)
+    masks = np.asarray(stack_pictures(silhouettes), np.uint8)
+    sizes = [(mask.shape[1], mask.shape[0]) for mask in silhouettes]
+    clip_rays(
+        eye, np.ascontiguousarray(ways), reach, own, masks, *stack_projections(cameras, sizes), p.step_px, intervals,
+        counts,
+    )  # fmt: skip
+    return RayIntervals(own, pixel_sr, eye, ways, intervals, counts)
+
+
+def points_on(hull: RayIntervals, most: int) -> HullPoints:
+    """Points at even distances along all intervals laid end to end, so that each interval has as many as its length deserves:
+    `most` of them, or none where the hull is empty."""
+    valid = np.arange(hull.intervals_m.shape[1]) < hull.counts[:, None]
+    spans = hull.intervals_m[valid]
+    ray = np.nonzero(valid)[0]
+    ends = np.cumsum(spans[:, 1] - spans[:, 0])
+    if len(ends) == 0 or ends[-1] <= 0.0:
+        return HullPoints(np.empty((0, 3)), np.empty(0))
+    apart_m = float(ends[-1]) / most
+    along = (np.arange(most) + 0.5) * apart_m
+    which = np.minimum(np.searchsorted(ends, along), len(ends) - 1)
+    at_m = spans[which, 1] - (ends[which] - along)
+    points = hull.eye_m + at_m[:, None] * hull.ways[ray[which]]
+    return HullPoints(points, at_m**2 * (hull.ray_sr * apart_m))
+
+
+def hull_points(
+    cameras: Sequence[Camera],
+    silhouettes: Sequence[Bytes],
+    box_m: Floats,
+    params: RayHullParams | None = None,
+) -> HullPoints:
+    """Points inside the visual hull within box_m; see `ray_hull` and `points_on`."""
+    p = params if params is not None else RayHullParams()
+    return points_on(ray_hull(cameras, silhouettes, box_m, p), p.points)
+
+
+def views_of(cameras: Sequence[Camera], points_m: Floats) -> Ints:
+    """(P,) how many cameras have points (P,3) [m, world] in view."""
+    count = np.zeros(len(points_m), np.int64)
+    for camera in cameras:
+        at = np.nan_to_num(project(camera, points_m), nan=-1e6)
+        count += ((at >= -0.5) & (at < np.array(camera.size_px) - 0.5)).all(axis=-1)
+    return count
+
+
+def _grid(mask: Bytes, wanted: int, camera: Camera) -> tuple[Floats, float]:
+    """Frame pixels (N,2) of about so many foreground pixels of a mask (h,w), on a square grid, and the solid angle of a cell
+    of the grid in the middle of the picture [sr]."""
+    stride = max(1, int(np.sqrt(np.count_nonzero(mask) / wanted)))
+    rows, columns = np.nonzero(mask[stride // 2 :: stride, stride // 2 :: stride])
+    xy = np.stack([columns, rows], axis=-1) * stride + stride // 2
+    scale = np.array(camera.size_px) / (mask.shape[1], mask.shape[0])
+    cell = stride * scale / (camera.K[0, 0], camera.K[1, 1])
+    pixels: Floats = (xy + 0.5) * scale - 0.5
+    return pixels, float(cell.prod())
+
+
+def _within_box(eye_m: Floats, ways: Floats, box_m: Floats) -> Floats:
+    """Where (N,2) rays enter and leave a box (2,3) [m]; the first is the greater where they miss it."""
+    safe = np.where(np.abs(ways) < 1e-12, 1e-12, ways)
+    crossings = (box_m[:, None] - eye_m) / safe
+    enter, leave = crossings.min(axis=0).max(axis=1), crossings.max(axis=0).min(axis=1)
+    return np.stack([np.maximum(enter, 0.0), leave], axis=-1)
