@@ -101,7 +101,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             DaemonControl(path, config, outputs, trouble) as control,
             outputs,
         ):
-            session = prepared_session(config, outputs, notifier, control.open)
+            session = prepared_session(config, outputs, notifier, control.open, control.preparing)
             service = Service(config, session, outputs)
             page = DaemonPage(service) if config.web.enabled else None
             change = SessionChange(service, read, signals, page, notifier)

@@ -56,9 +56,9 @@ def status_report(service: Service, last_trouble: Trouble | None) -> StatusRepor
 
 
 def starting_report(
-    config: Config, outputs: OpenOutputs, last_trouble: Trouble | None
+    config: Config, outputs: OpenOutputs, last_trouble: Trouble | None, preparing: str = ""
 ) -> StatusReport:
-    """The same while the outputs are open, and the first session is still prepared."""
+    """The same while the outputs are open, and the first session is still prepared; `preparing`: where that stands."""
     return StatusReport(
         version=mocapd.__version__,
         pid=os.getpid(),
@@ -76,6 +76,7 @@ def starting_report(
         cameras=(),
         outputs=_outputs({sink.name: sink.status() for sink in outputs.sinks}),
         last_trouble=last_trouble,
+        lost_reason=preparing,
     )
 
 

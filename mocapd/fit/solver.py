@@ -94,6 +94,7 @@ class Fitter:
         priors = self._narrow if self.is_narrow(prediction, views) else self._wide
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
+        known = np.ascontiguousarray(prediction.information)  # a slice would be another kernel
         for k in range(iterations):
             is_fine, body = k >= iterations - fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
@@ -110,7 +111,7 @@ class Fitter:
                 measured += added if term.is_measured else 0.0
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, priors, prediction.factors - state.factors, prediction.information,
+                motion, priors, prediction.factors - state.factors, known,
             )  # fmt: skip
             root_m, local_xyzw = stepped(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = (

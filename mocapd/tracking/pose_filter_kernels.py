@@ -55,7 +55,8 @@ def follow_bones(
         _turn_between(expected, found_xyzw[j], scratch, between, way)
         quat_exp(follows[j] * way[0], follows[j] * way[1], follows[j] * way[2], turn)
         quat_multiply(turn, expected, between)
-        expected[:] = between
+        for i in range(4):  # by numbers: numba takes seconds to compile an array's assignment
+            expected[i] = between[i]
         _turn_between(last, expected, scratch, between, way)
         most_rad = gap_s * (doubtful_rad_s + (sure_rad_s - doubtful_rad_s) * sure)
         length = np.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])

@@ -6,8 +6,9 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.app.daemon.cache_warmup import MARKER, prepare_apart
+from mocapd.app.daemon.cache_warmup import prepare_apart
 from mocapd.config.sections import Config
+from mocapd.session.prepared_marker import MARKER
 from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash

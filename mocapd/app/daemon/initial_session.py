@@ -20,12 +20,18 @@ def prepared_session(
     outputs: OpenOutputs,
     notifier: Notifier,
     on_open: Callable[[], None] = lambda: None,
+    on_progress: Callable[[str], None] = lambda _: None,
 ) -> Session:
-    """Open the outputs, say so, also to `on_open`, and then prepare what they will send from. Called by the main
-    thread, while it is the only one. Raises what opening them or a session raises.
+    """Open the outputs, say so, also to `on_open`, and then prepare what they will send from; `on_progress` hears
+    where that stands. Called by the main thread, while it is the only one. Raises what opening them or a session raises.
 
     A signal's exception leaves another thread at work: see `end_despite_work`.
     """
+
+    def tell(text: str) -> None:
+        notifier.status(text)
+        on_progress(text)
+
     plan = plan_session(config)
     try:
         with preparing_apart(config) as preparation:
@@ -37,8 +43,8 @@ def prepared_session(
                 else "preparing the tracker"
             )
             notifier.patience(PATIENCE_S)
-            preparation.wait()
-        notifier.status("preparing the tracker")
+            preparation.wait(tell)
+        tell("preparing the tracker")
         session = _opened(plan)
     except BaseException:
         notifier.stopping()

@@ -49,6 +49,8 @@ def duration(span_s: float) -> str:
 
 def _state(report: StatusReport) -> str:
     """Somebody who is not taken for a person is in view."""
+    if report.state == "starting" and report.lost_reason:
+        return report.lost_reason
     if report.state == "nobody" and report.lost_reason:
         return f"nobody is tracked: {report.lost_reason}"
     return _STATES[report.state]

@@ -35,8 +35,8 @@ def value_noise(u: float, v: float, seed: int) -> float:
 def _poster(u: float, v: float, seed: int, rgb: Floats) -> None:
     """Discs and a stripe of strong colours on paper; u, v in 0..1 over the sheet."""
     for k in range(7):
-        cu, cv = hash01(k, 1, seed), hash01(k, 2, seed)
-        radius = 0.10 + 0.22 * hash01(k, 3, seed)
+        cu, cv = hash01(k, np.int64(1), seed), hash01(k, np.int64(2), seed)
+        radius = 0.10 + 0.22 * hash01(k, np.int64(3), seed)
         if (u - cu) ** 2 + 1.8 * (v - cv) ** 2 < radius * radius:
             for c in range(3):
                 rgb[c] = 0.04 + 0.75 * hash01(k, 4 + c, seed) ** 2

@@ -116,7 +116,7 @@ def cast_room(
             u = np.float64(directions[y, x, 0])
             v = np.float64(directions[y, x, 1])
             w = np.float64(directions[y, x, 2])
-            best, near = -1, _FAR
+            best, near = np.int64(-1), _FAR
             for g in range(len(casts)):
                 if _passes(ball, g, origin[0], origin[1], origin[2], u, v, w):
                     for p in range(first[g], first[g + 1]):

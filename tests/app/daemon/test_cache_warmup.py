@@ -10,11 +10,12 @@ from pathlib import Path
 import psutil
 import pytest
 
-from mocapd.app.daemon.cache_warmup import MARKER, database_beside
+from mocapd.app.daemon.cache_warmup import database_beside
 from mocapd.app.terminal import progress
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.config.sections import Config
 from mocapd.session import tracker_setup
+from mocapd.session.prepared_marker import MARKER
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
@@ -135,7 +136,7 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
         "import os, sys, time\n"
         "from mocapd.app.daemon import cache_warmup\n"
         "from mocapd.config.sections import Config\n"
-        "def work(config):\n"
+        "def work(config, tell):\n"
         "    print(os.getpid(), flush=True)\n"
         "    cache_warmup._all_end_well(config, (deep,))\n"
         "def deep(config):\n"

@@ -1,0 +1,57 @@
+"""Where numba keeps a kernel's compiled code, and until when that is good: until the kernel, or one it calls, changes.
+
+numba's own cache is good until the kernel's file changes: an upgrade that touches a comment compiles anew, and one
+that touches a callee in another file goes on with the old code. Named in `NUMBA_CACHE_LOCATOR_CLASSES`, which
+numba reads when it is imported, before its own classes, so that other packages' functions are kept as ever.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Self
+
+import numba
+import numpy as np
+from numba.core import config
+from numba.core.caching import _CacheLocator
+
+import mocapd
+from mocapd.kernels.callees import content_of
+
+_PACKAGE = Path(mocapd.__file__).resolve().parent
+_LETTERS = 16  # of the hash, in a file's name
+
+
+class KernelLocator(_CacheLocator):  # type: ignore[misc]
+    """See numba's `_CacheLocator`. Kernels of other contents have files of other names, so that a
+    checkout's branches do not take each other's."""
+
+    def __init__(self, function: Callable[..., Any], file: Path) -> None:
+        self._py_file, self._function = str(file), function
+        beside = file.parent / "__pycache__"
+        place = "_".join(file.parent.relative_to(_PACKAGE.parent).parts)
+        self._path = Path(config.CACHE_DIR) / place if config.CACHE_DIR else beside
+
+    def get_cache_path(self) -> str:
+        """In the folder that numba was told, by the package's names; else in __pycache__."""
+        return str(self._path)
+
+    def get_source_stamp(self) -> tuple[str, ...]:
+        """Of kernel, callees and compiler."""
+        return (content_of(self._function), numba.__version__, np.__version__)
+
+    def get_disambiguator(self) -> str:
+        """Part of the file's name."""
+        return content_of(self._function)[:_LETTERS]
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> Self | None:
+        """None for functions that are not mocapd's, and where nothing can be written."""
+        file = Path(py_file).resolve()
+        if _PACKAGE not in file.parents:
+            return None
+        found = cls(py_func, file)
+        try:
+            found.ensure_cache_path()
+        except OSError:
+            return None
+        return found
