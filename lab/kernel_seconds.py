@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,7 +50,7 @@ def _small_database(cache: Path) -> "PoseDatabase":
     from mocapd.shirt.pose_database.database import DatabaseParams
     from mocapd.shirt.pose_database.database_file import load_or_build
 
-    return load_or_build(cache, DatabaseParams(count=3000, pool=1.2, cells=32)).database
+    return load_or_build(cache, DatabaseParams(count=3000, cells=32)).database
 
 
 def _film(cache: Path) -> None:
@@ -82,7 +83,7 @@ def _tracker(stage: str, cache: Path) -> None:
 STAGES: Mapping[str, Callable[[Path], object]] = {
     "film": _film,
     "database": _small_database,
-    **{stage: (lambda cache, stage=stage: _tracker(stage, cache)) for stage in TRACKERS},
+    **{stage: partial(_tracker, stage) for stage in TRACKERS},
 }
 
 

@@ -58,13 +58,13 @@ def cache_home(pytestconfig: pytest.Config) -> Path:
 @pytest.fixture(scope="session")
 def pose_database(cache_home: Path) -> "PoseDatabase":
     """A small pose database, built once."""
-    return kept_database(cache_home, count=3000, pool=1.2, cells=32)
+    return kept_database(cache_home, count=3000, cells=32)
 
 
 @pytest.fixture(scope="session")
 def smaller_database(cache_home: Path) -> "PoseDatabase":
     """One of a third of the poses, for pictures that need no more."""
-    return kept_database(cache_home, count=1000, pool=1.1, cells=16)
+    return kept_database(cache_home, count=1000, cells=16)
 
 
 def kept_database(cache_home: Path, **params: Any) -> "PoseDatabase":

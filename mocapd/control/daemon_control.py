@@ -45,8 +45,12 @@ class DaemonControl:
             _log.warning("`mocapd status` will not find this daemon: %s", error)
 
     def preparing(self, text: str) -> None:
-        """Where the preparation of the first session stands, in words for people."""
+        """Where preparations stand, in words for people; empty when they are over."""
         self._preparing = text
+
+    def what_is_prepared(self) -> str:
+        """The newest that `preparing` was given."""
+        return self._preparing
 
     def attach(self, service: Service, reloads: Reloads) -> None:
         """There is a session."""
@@ -78,7 +82,7 @@ class DaemonControl:
             )
         match verb:
             case "status":
-                return status_report(service, self._trouble.newest)
+                return status_report(service, self._trouble.newest, self._preparing)
             case "recenter":
                 facing, outputs = service.recenter(), service.snapshot().outputs
                 return Recentered(facing.yaw_deg, tuple(outputs))

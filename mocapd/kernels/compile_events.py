@@ -22,7 +22,7 @@ class CompiledKernel:
     total_s: float
 
 
-class _Listener(event.Listener):  # type: ignore[misc]
+class _Listener(event.Listener):
     def __init__(self, compiled: list[CompiledKernel]) -> None:
         self._compiled, self._open = compiled, threading.local()
 

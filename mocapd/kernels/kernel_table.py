@@ -35,8 +35,8 @@ class KernelRow:
     stages: frozenset[str]
 
     @cached_property
-    def dispatcher(self) -> Dispatcher:
-        """The kernel. Raises MalformedError where there is none of this name."""
+    def dispatcher(self) -> Any:
+        """The kernel, a Dispatcher. Raises MalformedError where there is none of this name."""
         try:
             found = getattr(importlib.import_module(self.module), self.function)
         except (ImportError, AttributeError):
@@ -70,7 +70,7 @@ def rows_of(rows: Sequence[KernelRow], stages: Collection[str]) -> tuple[KernelR
 
 def callees_of_rows(rows: Sequence[KernelRow]) -> tuple[frozenset[int], ...]:
     """For each row, the indices of earlier rows that must be compiled before it, so that nobody compiles them twice."""
-    where: dict[Dispatcher, list[int]] = {}
+    where: dict[Any, list[int]] = {}
     for i, row in enumerate(rows):
         where.setdefault(row.dispatcher, []).append(i)
     return tuple(

@@ -18,10 +18,11 @@ import mocapd
 from mocapd.kernels.callees import content_of
 
 _PACKAGE = Path(mocapd.__file__).resolve().parent
+_config: Any = config  # its settings carry no types
 _LETTERS = 16  # of the hash, in a file's name
 
 
-class KernelLocator(_CacheLocator):  # type: ignore[misc]
+class KernelLocator(_CacheLocator):
     """See numba's `_CacheLocator`. Kernels of other contents have files of other names, so that a
     checkout's branches do not take each other's."""
 
@@ -29,7 +30,8 @@ class KernelLocator(_CacheLocator):  # type: ignore[misc]
         self._py_file, self._function = str(file), function
         beside = file.parent / "__pycache__"
         place = "_".join(file.parent.relative_to(_PACKAGE.parent).parts)
-        self._path = Path(config.CACHE_DIR) / place if config.CACHE_DIR else beside
+        told = _config.CACHE_DIR
+        self._path = Path(told) / place if told else beside
 
     def get_cache_path(self) -> str:
         """In the folder that numba was told, by the package's names; else in __pycache__."""
@@ -43,6 +45,10 @@ class KernelLocator(_CacheLocator):  # type: ignore[misc]
         """Part of the file's name."""
         return content_of(self._function)[:_LETTERS]
 
+    def _ensure(self) -> None:
+        ensure: Any = self.ensure_cache_path
+        ensure()
+
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], py_file: str) -> Self | None:
         """None for functions that are not mocapd's, and where nothing can be written."""
@@ -51,7 +57,7 @@ class KernelLocator(_CacheLocator):  # type: ignore[misc]
             return None
         found = cls(py_func, file)
         try:
-            found.ensure_cache_path()
+            found._ensure()
         except OSError:
             return None
         return found

@@ -10,22 +10,24 @@ from mocapd.errors import MalformedError
 
 Code = str | dict[str, Any]
 
+_types: Any = types  # its functions carry no types
+
 _ARRAY = re.compile(r"(\w+)\[(\d)([CFA])(r?)\]")
 
 
-def encode(of: types.Type) -> Code:
+def encode(of: Any) -> Code:
     """The code of a type; `decode` gives the type back. Raises MalformedError for one that has no code."""
     code: Code
-    if isinstance(of, types.Array):
+    if isinstance(of, _types.Array):
         code = f"{of.dtype}[{of.ndim}{of.layout}{'' if of.mutable else 'r'}]"
-    elif isinstance(of, types.BaseNamedTuple):
+    elif isinstance(of, _types.BaseNamedTuple):
         name = f"{of.instance_class.__module__}:{of.instance_class.__qualname__}"
         code = {"named": name, "of": [encode(one) for one in of]}
-    elif isinstance(of, types.BaseTuple):
+    elif isinstance(of, _types.BaseTuple):
         code = {"tuple": [encode(one) for one in of]}
-    elif isinstance(of, types.Literal):
+    elif isinstance(of, _types.Literal):
         code = {"literal": of.literal_value}
-    elif isinstance(of, types.Omitted):
+    elif isinstance(of, _types.Omitted):
         code = {"omitted": of.value}
     else:
         code = str(of)
@@ -37,22 +39,25 @@ def encode(of: types.Type) -> Code:
 def decode(code: Code) -> types.Type:
     """The type of a code. Raises MalformedError for a code that names nothing."""
     if isinstance(code, str):
-        found = _ARRAY.fullmatch(code)
-        if found is None:
+        match = _ARRAY.fullmatch(code)
+        if match is None:
             return _scalar(code)
-        dtype, ndim, layout, readonly = found.groups()
-        return types.Array(_scalar(dtype), int(ndim), layout, readonly=bool(readonly))
-    if "named" in code:
-        return types.BaseTuple.from_types(
-            [decode(one) for one in code["of"]], _class_of(code["named"])
+        dtype, ndim, layout, readonly = match.groups()
+        array: types.Type = _types.Array(_scalar(dtype), int(ndim), layout, readonly=bool(readonly))
+        return array
+    found: types.Type
+    if "named" in code or "tuple" in code:
+        parts = [decode(one) for one in code["of" if "named" in code else "tuple"]]
+        found = _types.BaseTuple.from_types(
+            parts, _class_of(code["named"]) if "named" in code else None
         )
-    if "tuple" in code:
-        return types.BaseTuple.from_types([decode(one) for one in code["tuple"]])
-    if "literal" in code:
-        return types.literal(code["literal"])
-    if "omitted" in code:
-        return types.Omitted(code["omitted"])
-    raise MalformedError(f"{code} is no code of a type")
+    elif "literal" in code:
+        found = _types.literal(code["literal"])
+    elif "omitted" in code:
+        found = _types.Omitted(code["omitted"])
+    else:
+        raise MalformedError(f"{code} is no code of a type")
+    return found
 
 
 def _scalar(name: str) -> types.Type:

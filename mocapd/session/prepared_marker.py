@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import mocapd
 from mocapd.boundary.files import read_text
+from mocapd.capture.kinds.source_kinds import is_simulated
 from mocapd.errors import InputError
 from mocapd.whole_file import whole_file
 
@@ -59,6 +60,9 @@ def _fingerprint(config: "Config", what: str) -> str:
     for path in sorted(package.rglob("*.py")):
         stat = path.stat()
         digest.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
+    # what draws simulated webcams is compiled for them alone
     tracker = config.tracker.name
+    if any(is_simulated(camera.source) for camera in config.camera):
+        tracker += " simulated"
     digest.update(f"{platform.python_version()} {version('numba')} {tracker}{what}".encode())
     return digest.hexdigest()

@@ -73,7 +73,7 @@ class Demo:
         env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
         self.env = env | {
             "HOME": str(home), "XDG_RUNTIME_DIR": str(home / "run"), "MOCAPD_ZENOH_PORT": str(port),
-            "MOCAPD_WEB_PORT": str(port + 1), "MOCAPD_OSC_PORT": str(port + 2),
+            "MOCAPD_WEB_PORT": str(port + 1),
         }  # fmt: skip
         limit = f"CPUQuota={100 * (quota or 0):.0f}%"
         before = ["systemd-run", "--quiet", "--scope", "-p", limit] if quota else []
@@ -114,7 +114,7 @@ class Demo:
     def _hear(self, seen: Start, now_s: float) -> None:
         """The mean of the shares that `mocapd status` tells."""
         for daemon in running_daemons([self._runtime], ()).daemons:
-            words = daemon.status.lost_reason.replace(";", ",").split(",")
+            words = daemon.status.preparing.replace(";", ",").replace(":", ",").split(",")
             shares = [float(one.split()[-2]) / 100.0 for one in words if one.endswith("%")]
             if shares:
                 seen.told.append((now_s, min(shares)))

@@ -21,7 +21,7 @@ from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.sim.small import TABLE, table
 
-_DATABASE = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+_DATABASE = DatabaseParams(count=60, cells=4, dimensions=8)
 
 
 class _MadeAnew(Exception):

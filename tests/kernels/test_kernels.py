@@ -3,15 +3,18 @@
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numba
 import numpy as np
 import pytest
-from numba import typeof
 
 from mocapd.body.arrays import SkinArrays
 from mocapd.errors import MalformedError
 from mocapd.kernels.kernel_table import callees_of_rows, read_table, rows_of
 from mocapd.kernels.type_codes import decode, encode
+
+typeof: Any = numba.typeof  # it carries no types
 
 CALLEE = """\
 from numba import njit

@@ -6,7 +6,7 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _DATABASE = " database"  # alone, without the tracker's code compiled
 FIRST_AFTER_S = 1.0  # what takes less, such as being refused, is not worth a line [s]
+_READY = "\0"  # what is said when a stream can begin
 _LOOK_S = 0.2  # how often whoever waits can be interrupted [s]
 _MOST_PROCESSES = 4  # each takes up to 300 MB
 _OPENING_S = 4.0  # to build the tracker from what was prepared, on the figures' machine
@@ -40,37 +41,49 @@ class Preparation:
 
     def __init__(self, child: BaseProcess | None, said: Connection | None = None) -> None:
         self._child, self._said = child, said
-        self.is_needed = child is not None
+        self.is_needed, self._is_ready = child is not None, False
+        self._words = "compiling, once on this machine"
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing is prepared any more, well or not."""
+        return self._child is None or not self._child.is_alive()
+
+    def newest(self) -> str:
+        """Where it stands, in words for people; empty when it is over."""
+        self._words = "" if self.is_over else self._hear(self._words, 0.0)
+        return self._words
 
     def wait(self, tell: Tell = _quiet) -> None:
-        """Until it is over, well or not; `tell` hears where it stands, in words for people."""
+        """Until a stream can begin, or it is over, well or not; `tell` hears where it stands, in words for people."""
         began_s, told = time.monotonic(), False
         in_journal = stderr_is_journal()  # elsewhere the preparation itself has bars or lines
-        newest = "compiling, once on this machine"
-        while self._child is not None and self._child.is_alive():
-            newest = self._newest(newest)
+        while not self.is_over and not self._is_ready:
+            self._words = self._hear(self._words, _LOOK_S)
             if time.monotonic() - began_s > FIRST_AFTER_S:
-                tell(newest)
+                tell(self._words)
                 if in_journal and not told:
                     told = True
-                    _log.info("%s", newest)
+                    _log.info("%s", self._words)
         if told:
             _log.info("prepared after %.0f s", time.monotonic() - began_s)
 
-    def _newest(self, before: str) -> str:
-        """What was said last, after a moment."""
+    def _hear(self, words: str, within_s: float) -> str:
+        """What was said last."""
         assert self._child is not None
         if self._said is None:
-            self._child.join(_LOOK_S)
-            return before
-        try:
-            if not self._said.poll(_LOOK_S):
-                return before
-            while self._said.poll():
-                before = self._said.recv()
-        except EOFError:
-            self._child.join(_LOOK_S)
-        return before
+            self._child.join(within_s)
+            return words
+        with suppress(EOFError):  # it is about to end
+            while self._said.poll(within_s):
+                said, within_s = self._said.recv(), 0.0
+                if said == _READY:
+                    self._is_ready = True
+                else:
+                    words = said
+            return words
+        self._child.join(within_s)
+        return words
 
 
 @contextmanager
@@ -136,7 +149,7 @@ def _run_tasks(config: "Config", tell: Tell) -> bool:
             tell(_progress_text(progress))
 
         tell(headline)
-        return run_tasks(tasks, processes, hear, pace)
+        return run_tasks(tasks, processes, hear, pace, lambda: tell(_READY))
 
 
 def _about(seconds: float) -> str:
@@ -151,9 +164,7 @@ def _progress_text(progress: "Progress") -> str:
     open_shares = [
         f"{what} {100 * share:.0f} %" for what, share in progress.shares.items() if share < 1.0
     ]
-    return (
-        f"preparing, once on this machine: {', '.join(open_shares)}; {_about(progress.left_s)} left"
-    )
+    return f"once on this machine: {', '.join(open_shares)}; {_about(progress.left_s)} left"
 
 
 def _open_once(config: "Config", _tell: Tell) -> bool:

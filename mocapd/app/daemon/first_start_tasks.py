@@ -18,8 +18,12 @@ _STAGES = {
     "markerless": ("clothes",),
 }
 _LOOP = 50_000
-TABLE_LOOP_S = 0.0045  # `loop_s` there
-_DATABASE_S, _FILM_S = 9.0, 11.0  # on the table's machine, without their kernels
+TABLE_LOOP_S = 0.0028  # `loop_s` there
+_DATABASE_S, _FILM_S, _BEGINNING_S = (
+    20.0,
+    11.0,
+    3.0,
+)  # on the table's machine, without their kernels
 
 
 def loop_s() -> float:
@@ -43,6 +47,15 @@ def has_tasks(tracker: str) -> bool:
     return tracker in _STAGES
 
 
+def begins_early(config: "Config") -> bool:
+    """Whether the stream begins with what is ready first: the person of simulated webcams, by the shirt alone, in the
+    first seconds of the film. Real cameras were set up with a tracker that is compiled by then."""
+    from mocapd.capture.kinds.source_kinds import is_simulated
+
+    simulated = any(is_simulated(camera.source) for camera in config.camera)
+    return simulated and config.tracker.name == "auto"
+
+
 def first_start_tasks(config: "Config") -> list[Task]:
     """All that this configuration needs and that may be missing. Imports the kernels."""
     from mocapd.capture.kinds.source_kinds import is_simulated
@@ -52,17 +65,23 @@ def first_start_tasks(config: "Config") -> list[Task]:
     has_film = any(is_simulated(camera.source) for camera in config.camera)
     has_database = bool(TRACKERS[name].caches) and not has_caches(name, config.cache_dir)
     stages += ["film"] * has_film + ["database"] * has_database
+    first = {"shirt", "film", "database"} if begins_early(config) else set(stages)
     rows = rows_of(read_table(), stages)
     tasks = [
-        Task(COMPILING, row.seconds, partial(_compile, row), after)
+        Task(COMPILING, row.seconds, partial(_compile, row), after, not row.stages & first)
         for row, after in zip(rows, callees_of_rows(rows), strict=True)
     ]
     if has_database:
-        tasks.append(
-            Task(DATABASE, _DATABASE_S, partial(_make_database, config), _needed(rows, "database"))
-        )
+        making = partial(_make_database, config)
+        tasks.append(Task(DATABASE, _DATABASE_S, making, _needed(rows, "database"), tells=True))
     if has_film:
-        tasks.append(Task(FILM, _FILM_S, partial(_make_film, config), _needed(rows, "film")))
+        needed = _needed(rows, "film")
+        if begins_early(config):
+            beginning = partial(_make_film, config, is_beginning=True)
+            tasks.append(Task(FILM, _BEGINNING_S, beginning, needed, tells=True))
+            needed |= {len(tasks) - 1}
+        whole = partial(_make_film, config)
+        tasks.append(Task(FILM, _FILM_S, whole, needed, begins_early(config), tells=True))
     return tasks
 
 
@@ -80,8 +99,8 @@ def _make_database(config: "Config", tell: Share) -> None:
     make_caches(config.tracker.name, config.cache_dir, lambda _, done, of: tell(done / of))
 
 
-def _make_film(config: "Config", tell: Share) -> None:
+def _make_film(config: "Config", tell: Share, is_beginning: bool = False) -> None:
     from mocapd.capture.kinds.source_kinds import open_origin, origin_of
 
     for origin in {origin_of(camera.source) for camera in config.camera}:
-        open_origin(origin, config.cache_dir, lambda _, done, of: tell(done / of))
+        open_origin(origin, config.cache_dir, lambda _, done, of: tell(done / of), is_beginning)

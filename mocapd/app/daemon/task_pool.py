@@ -15,17 +15,21 @@ from mocapd.errors import MocapdError
 Share = Callable[[float], None]  # hears how much of a task is done, 0..1
 
 _TELL_S = 0.25
+_LATER_NICE = 10
 _TRUSTED_S = 3.0  # of work, after which the measured pace counts as much as the one that was given
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """`seconds`: how long it takes on the machine that the figures are of; `after`: indices of earlier tasks of the list."""
+    """`seconds`: how long it takes on the machine that the figures are of; `after`: indices of earlier tasks of the list;
+    `is_later`: not among what is waited for first; `tells`: it says how much of it is done."""
 
     what: str
     seconds: float
     work: Callable[[Share], object]
     after: frozenset[int] = frozenset()
+    is_later: bool = False
+    tells: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +46,7 @@ class _Worker:
     pipe: Connection
     task: int = -1
     began_s: float = 0.0
-    told: float | None = None
+    told: float = 0.0
 
 
 @dataclass(slots=True)
@@ -56,11 +60,16 @@ class _State:
 
 
 def run_tasks(
-    tasks: Sequence[Task], processes: int, tell: Callable[[Progress], None], pace: float = 1.0
+    tasks: Sequence[Task],
+    processes: int,
+    tell: Callable[[Progress], None],
+    pace: float = 1.0,
+    on_first: Callable[[], None] = lambda: None,
 ) -> bool:
     """Whether all came to a good end; ends at the first that did not.
 
-    Of the tasks that may begin, the one with the longest way behind it goes first. The processes are forks, so
+    Of the tasks that may begin, those that are not `is_later` go first, and of these the one with the longest way behind
+    it; on_first: called when none but later ones are left, which then run with little priority. The processes are forks, so
     what the tasks need is best imported before; they end with this one. Call it while the process has one thread.
     pace: how much longer than in `Task.seconds` this machine takes, as far as that is known beforehand.
     """
@@ -73,7 +82,11 @@ def run_tasks(
             child.start()
             there.close()
             workers.append(_Worker(child, here))
+        first = {i for i, task in enumerate(tasks) if not task.is_later}
         while len(state.done) < len(tasks):
+            if first and first <= state.done:
+                first = set()
+                on_first()
             for worker in workers:
                 _give(worker, state, way_s)
             for pipe in wait([worker.pipe for worker in workers if worker.task >= 0], _TELL_S):
@@ -103,8 +116,8 @@ def _give(worker: _Worker, state: _State, way_s: Sequence[float]) -> None:
     ]
     if worker.task >= 0 or not free:
         return
-    worker.task = max(free, key=lambda i: way_s[i])
-    worker.began_s, worker.told = time.monotonic(), None
+    worker.task = max(free, key=lambda i: (not state.tasks[i].is_later, way_s[i]))
+    worker.began_s, worker.told = time.monotonic(), 0.0
     state.taken.add(worker.task)
     worker.pipe.send(worker.task)
 
@@ -137,7 +150,7 @@ def _progress(workers: Sequence[_Worker], state: _State, processes: int) -> Prog
         if worker.task >= 0:
             task = state.tasks[worker.task]
             guess = min((time.monotonic() - worker.began_s) / max(pace * task.seconds, 1e-3), 0.9)
-            done_s[task.what] += task.seconds * (guess if worker.told is None else worker.told)
+            done_s[task.what] += task.seconds * (worker.told if task.tells else guess)
     left_s = pace * (sum(all_s.values()) - sum(done_s.values())) / max(1, processes)
     return Progress({what: done_s[what] / max(all_s[what], 1e-9) for what in all_s}, left_s)
 
@@ -150,8 +163,13 @@ def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     try:
+        niced = False
         while True:
-            tasks[pipe.recv()].work(pipe.send)
+            task = tasks[pipe.recv()]
+            if task.is_later and not niced:
+                os.nice(_LATER_NICE)
+                niced = True
+            task.work(pipe.send)
             pipe.send(None)
     except (EOFError, MocapdError):
         os._exit(1)

@@ -48,7 +48,6 @@ class DatabaseParams:
     """How the database is made; all of it enters the content hash."""
 
     count: int = 80_000
-    pool: float = 1.0
     seed: int = 2011
     stature_m: float = 1.75
     focal_px: float = 650.0

@@ -50,7 +50,9 @@ def covered(x: Floats | float, reach_m: float, level: float) -> Floats | float:
 
 
 @njit(cache=True, nogil=True)
-def _woven(of: Floats, n: int, cloth: int, along: float, across: float, rgb: Floats) -> None:
+def _woven(
+    of: Floats, n: int, cloth: int | np.int64, along: float, across: float, rgb: Floats
+) -> None:
     """The cloth's colour where the stripes run across `along` [m]."""
     pattern, period = of[n, cloth + _PATTERN], of[n, cloth + _PERIOD]
     share = 0.0

@@ -8,7 +8,7 @@ from mocapd.types import Floats
 
 
 @njit(cache=True, nogil=True)
-def hash01(x: int, y: int, seed: int) -> float:
+def hash01(x: int, y: int | np.int64, seed: int) -> float:
     """A number 0..1 that depends on three integers alone (two rounds of the Murmur3 finaliser)."""
     h = np.uint32(x) * np.uint32(0x9E3779B1) ^ np.uint32(y) * np.uint32(0x85EBCA77)
     h = np.uint32(h ^ (np.uint32(seed) * np.uint32(0xC2B2AE3D)))

@@ -61,10 +61,14 @@ def test_a_task_that_fails_ends_all(tmp_path: Path) -> None:
 def test_progress_is_by_expected_seconds_and_what_a_long_task_tells() -> None:
     told: list[Progress] = []
 
+    def half(tell: Share) -> None:
+        tell(0.5)
+        time.sleep(0.6)
+
     tasks = [
         Task("compiling", 3.0, lambda _: None),
         Task("compiling", 1.0, lambda _: time.sleep(0.6), frozenset({0})),
-        Task("film", 1.0, lambda tell: (tell(0.5), time.sleep(0.6)), frozenset({0, 1})),
+        Task("film", 1.0, half, frozenset({0, 1}), tells=True),
     ]
     assert run_tasks(tasks, 1, told.append)
     shares = [(one.shares["compiling"], one.shares["film"]) for one in told]
