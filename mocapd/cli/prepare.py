@@ -20,15 +20,22 @@ def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
-    from mocapd.errors import UnavailableError
+    from mocapd.errors import ConfigError, UnavailableError
 
     effective = effective_config(config, settings).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
     from mocapd.app.daemon.cache_warmup import prepare_apart
+    from mocapd.app.daemon.first_start_tasks import has_tasks
     from mocapd.session.prepared_marker import is_prepared
 
+    if not has_tasks(effective.tracker.name):
+        raise ConfigError(
+            f"the tracker {effective.tracker.name!r} is prepared by its first start alone",
+            "tracker.name",
+            "start it, or prepare auto, shirt or markerless",
+        )
     prepare_apart(effective)
     if not is_prepared(effective):
         raise UnavailableError(

@@ -6,6 +6,7 @@ numba reads when it is imported, before its own classes, so that other packages'
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
 
@@ -19,6 +20,7 @@ from mocapd.kernels.callees import content_of
 
 _PACKAGE = Path(mocapd.__file__).resolve().parent
 _config: Any = config  # its settings carry no types
+_OLD_S = 30 * 86400.0
 _LETTERS = 16  # of the hash, in a file's name
 
 
@@ -44,6 +46,17 @@ class KernelLocator(_CacheLocator):
     def get_disambiguator(self) -> str:
         """Part of the file's name."""
         return content_of(self._function)[:_LETTERS]
+
+    def remove_old(self, now_s: float) -> None:
+        """What is kept of other contents of this kernel, when it has not been written for a month: versions that are gone."""
+        name = f"{Path(self._py_file).stem}.{self._function.__qualname__}-"
+        for path in self._path.glob(f"{name}*.nb[ci]"):
+            with suppress(OSError):  # somebody else's, or removed by another start
+                if (
+                    self.get_disambiguator() not in path.name
+                    and now_s - path.stat().st_mtime > _OLD_S
+                ):
+                    path.unlink()
 
     def _ensure(self) -> None:
         ensure: Any = self.ensure_cache_path

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import SkinArrays
+from mocapd.body.posing_kernels import quat_exp
 from mocapd.errors import MalformedError
 from mocapd.kernels.kernel_table import callees_of_rows, read_table, rows_of
+from mocapd.kernels.locator import KernelLocator
 from mocapd.kernels.type_codes import decode, encode
 
 typeof: Any = numba.typeof  # it carries no types
@@ -77,6 +80,29 @@ def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path
     assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
     assert kernels.said(option=", fastmath=True") == "6.0 twice"
     assert kernels.said() == "6.0"  # an earlier version's is there still
+
+
+def test_code_of_versions_that_are_gone_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a month: until then a checkout may come back to them."""
+    monkeypatch.setattr(numba.core.config, "CACHE_DIR", str(tmp_path))
+    function = quat_exp.py_func
+    locator = KernelLocator.from_function(function, function.__code__.co_filename)
+    assert locator is not None
+    folder = Path(locator.get_cache_path())
+    own = folder / f"posing_kernels.quat_exp-{locator.get_disambiguator()}.py311.nbi"
+    names = (
+        "posing_kernels.quat_exp-29.py311.nbi",
+        "posing_kernels.quat_exp-29.py311.1.nbc",
+        "posing_kernels.quat_log-9.py311.nbi",
+    )
+    for path in (own, *(folder / name for name in names)):
+        path.touch()
+    locator.remove_old(time.time() + 29 * 86400.0)
+    assert len([*folder.iterdir()]) == 4
+    locator.remove_old(time.time() + 31 * 86400.0)
+    assert {path.name for path in folder.iterdir()} == {own.name, names[2]}
 
 
 @pytest.mark.parametrize(

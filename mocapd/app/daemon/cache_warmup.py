@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _DATABASE = " database"  # alone, without the tracker's code compiled
 FIRST_AFTER_S = 1.0  # what takes less, such as being refused, is not worth a line [s]
+_BEGUN = "compiling, once on this machine"  # until the preparation says more
 _READY = "\0"  # what is said when a stream can begin
 _LOOK_S = 0.2  # how often whoever waits can be interrupted [s]
 _MOST_PROCESSES = 4  # each takes up to 300 MB
@@ -42,7 +43,7 @@ class Preparation:
     def __init__(self, child: BaseProcess | None, said: Connection | None = None) -> None:
         self._child, self._said = child, said
         self.is_needed, self._is_ready = child is not None, False
-        self._words = "compiling, once on this machine"
+        self._words = _BEGUN
 
     @property
     def is_over(self) -> bool:
@@ -62,7 +63,7 @@ class Preparation:
             self._words = self._hear(self._words, _LOOK_S)
             if time.monotonic() - began_s > FIRST_AFTER_S:
                 tell(self._words)
-                if in_journal and not told:
+                if in_journal and not told and self._words != _BEGUN:
                     told = True
                     _log.info("%s", self._words)
         if told:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from mocapd.app.daemon.task_pool import Share, Task
 from mocapd.kernels.kernel_table import KernelRow, callees_of_rows, read_table, rows_of
+from mocapd.kernels.locator import KernelLocator
 
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
@@ -91,6 +92,10 @@ def _needed(rows: tuple[KernelRow, ...], stage: str) -> frozenset[int]:
 
 def _compile(row: KernelRow, _tell: Share) -> None:
     row.dispatcher.compile(row.arguments)
+    function = row.dispatcher.py_func
+    locator = KernelLocator.from_function(function, function.__code__.co_filename)
+    if locator is not None:
+        locator.remove_old(time.time())
 
 
 def _make_database(config: "Config", tell: Share) -> None:

@@ -4,7 +4,10 @@ import multiprocessing
 import time
 from pathlib import Path
 
-from mocapd.app.daemon.cache_warmup import Preparation, preparing_apart
+import pytest
+
+from mocapd.app.daemon import cache_warmup
+from mocapd.app.daemon.cache_warmup import Preparation
 from mocapd.app.daemon.early_start import EarlyStart
 from mocapd.app.daemon.first_start_tasks import begins_early, first_start_tasks
 from mocapd.app.daemon.session_change import PREPARED
@@ -54,15 +57,18 @@ def test_later_tasks_come_last_and_the_first_are_told_to_be_over(tmp_path: Path)
         return Task("all", 1.0 + 9.0 * is_later, work, is_later=is_later)
 
     tasks = [noting("later ", True), noting("first ", False)]
-    assert run_tasks(
-        tasks, 1, lambda _: None, 1.0, lambda: noting("told ", False).work(lambda _: None)
-    )
+
+    def told() -> None:
+        noting("told ", False).work(lambda _: None)
+
+    assert run_tasks(tasks, 1, lambda _: None, 1.0, told)
     assert said.read_text() == "first told later "
 
 
-def test_waiting_ends_when_a_stream_can_begin(tmp_path: Path) -> None:
+def test_waiting_ends_when_a_stream_can_begin(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What is left goes on, and ends with the block."""
-    from mocapd.app.daemon import cache_warmup
 
     def prepare(_config: Config, tell: cache_warmup.Tell) -> None:
         tell("compiling 40 %")
@@ -70,15 +76,13 @@ def test_waiting_ends_when_a_stream_can_begin(tmp_path: Path) -> None:
         tell("compiling 90 %")
         time.sleep(600.0)
 
-    before, cache_warmup.prepare_apart = cache_warmup.prepare_apart, prepare
-    try:
-        with preparing_apart(Config(cache_dir=tmp_path)) as preparation:
-            preparation.wait()
-            assert not preparation.is_over
-            assert eventually(lambda: preparation.newest() == "compiling 90 %", 60.0)
-    finally:
-        cache_warmup.prepare_apart = before
-    assert preparation.is_over
+    monkeypatch.setattr(cache_warmup, "prepare_apart", prepare)
+    with cache_warmup.preparing_apart(Config(cache_dir=tmp_path)) as preparation:
+        preparation.wait()
+        over = [preparation.is_over]
+        assert eventually(lambda: preparation.newest() == "compiling 90 %", 60.0)
+    over.append(preparation.is_over)
+    assert over == [False, True]
     assert preparation.newest() == ""
 
 
