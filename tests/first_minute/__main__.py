@@ -11,6 +11,7 @@ processor that everything runs with, by systemd-run, as root.
 
 import argparse
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -56,7 +57,9 @@ class Start:
     environment_s: float = float("nan")
     first_s: float = float("nan")
     prepared_s: float = float("nan")
-    told: list[tuple[float, float]] = field(default_factory=list)  # when [s], share 0..1
+    told: list[tuple[float, float]] = field(
+        default_factory=list
+    )  # when [s], what was said to be left [s]
 
 
 class Demo:
@@ -82,9 +85,10 @@ class Demo:
             self.env["PYTHONPATH"] = str(clone)
             self._command = [*before, str(environment / "bin" / "mocapd"), "demo"]
 
-    def start(self) -> Start:
-        """Until somebody is tracked; then it is ended."""
+    def start(self, prepares: bool) -> Start:
+        """Until somebody is tracked and, where it `prepares`, everything is prepared; then it is ended."""
         began_s, seen = time.monotonic(), Start()
+        self._client, marks = None, self._marks()
         process = subprocess.Popen(
             self._command, cwd=self.clone, env=self.env, start_new_session=True
         )
@@ -96,28 +100,33 @@ class Demo:
                     and (self.clone / ".venv" / "ready").exists()
                 ):
                     seen.environment_s = now_s
-                if seen.prepared_s != seen.prepared_s and self._is_prepared():
+                if seen.prepared_s != seen.prepared_s and self._marks() > marks:
                     seen.prepared_s = now_s
                 self._hear(seen, now_s)
-                if self._tracks():
+                if seen.first_s != seen.first_s and self._tracks():
                     seen.first_s = time.monotonic() - began_s
+                is_prepared = seen.prepared_s == seen.prepared_s
+                if seen.first_s == seen.first_s and (is_prepared or not prepares):
                     break
                 time.sleep(_LOOK_S)
         finally:
+            if self._client is not None:
+                self._client.close()
             os.killpg(process.pid, signal.SIGINT)
             process.wait(30.0)
         return seen
 
-    def _is_prepared(self) -> bool:
-        return (self._home / ".cache" / "mocapd" / "prepared").exists()
+    def _marks(self) -> int:
+        """How often something was prepared."""
+        path = self._home / ".cache" / "mocapd" / "prepared"
+        return len(path.read_text().split()) if path.exists() else 0
 
     def _hear(self, seen: Start, now_s: float) -> None:
-        """The mean of the shares that `mocapd status` tells."""
+        """How long `mocapd status` says that it still takes."""
         for daemon in running_daemons([self._runtime], ()).daemons:
-            words = daemon.status.preparing.replace(";", ",").replace(":", ",").split(",")
-            shares = [float(one.split()[-2]) / 100.0 for one in words if one.endswith("%")]
-            if shares:
-                seen.told.append((now_s, min(shares)))
+            found = re.search(r"about (\d+) (s|minutes) left", daemon.status.preparing)
+            if found is not None:
+                seen.told.append((now_s, int(found[1]) * (1.0 if found[2] == "s" else 60.0)))
 
     def _tracks(self) -> bool:
         try:
@@ -130,12 +139,14 @@ class Demo:
 
 
 def progress_gap(told: list[tuple[float, float]], end_s: float) -> float:
-    """The largest gap between the share that was told and the share of the time that had gone, after the first third."""
-    if not told:
-        return float("nan")
-    begin_s = told[0][0]
-    true = [((when_s - begin_s) / max(end_s - begin_s, 1e-9), share) for when_s, share in told]
-    return max((abs(share - at) for at, share in true if at > 1.0 / 3.0), default=0.0)
+    """The largest gap between the share that was told, by the time that was left, and the share of the time that had gone,
+    after the first third."""
+    gaps = [0.0]
+    for when_s, left_s in told:
+        gone_s, all_s = when_s - told[0][0], end_s - told[0][0]
+        if all_s / 3.0 < gone_s < all_s:
+            gaps.append(abs(gone_s / (gone_s + left_s) - gone_s / all_s))
+    return max(gaps)
 
 
 def loop_times() -> str:
@@ -170,9 +181,9 @@ def main() -> int:
         subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
         demo = Demo(clone, home, arguments.port, arguments.quota, arguments.environment)
         before = loop_times()
-        first, second = demo.start(), demo.start()
+        first, second = demo.start(prepares=True), demo.start(prepares=False)
         change_a_kernel(clone)
-        changed = demo.start()
+        changed = demo.start(prepares=True)
         after = loop_times()
     gap = progress_gap(first.told, first.prepared_s)
     sys.stdout.write(
