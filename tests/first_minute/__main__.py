@@ -10,6 +10,7 @@ processor that everything runs with, by systemd-run, as root.
 """
 
 import argparse
+import math
 import os
 import re
 import signal
@@ -88,33 +89,35 @@ class Demo:
     def start(self, prepares: bool) -> Start:
         """Until somebody is tracked and, where it `prepares`, everything is prepared; then it is ended."""
         began_s, seen = time.monotonic(), Start()
-        self._client, marks = None, self._marks()
+        marks = self._marks()
         process = subprocess.Popen(
             self._command, cwd=self.clone, env=self.env, start_new_session=True
         )
         try:
             while time.monotonic() - began_s < _PATIENCE_S and process.poll() is None:
                 now_s = time.monotonic() - began_s
-                if (
-                    seen.environment_s != seen.environment_s
-                    and (self.clone / ".venv" / "ready").exists()
-                ):
+                if math.isnan(seen.environment_s) and (self.clone / ".venv" / "ready").exists():
                     seen.environment_s = now_s
-                if seen.prepared_s != seen.prepared_s and self._marks() > marks:
+                if math.isnan(seen.prepared_s) and self._marks() > marks:
                     seen.prepared_s = now_s
                 self._hear(seen, now_s)
-                if seen.first_s != seen.first_s and self._tracks():
+                if math.isnan(seen.first_s) and self._tracks():
                     seen.first_s = time.monotonic() - began_s
-                is_prepared = seen.prepared_s == seen.prepared_s
-                if seen.first_s == seen.first_s and (is_prepared or not prepares):
+                is_prepared = not math.isnan(seen.prepared_s)
+                if not math.isnan(seen.first_s) and (is_prepared or not prepares):
                     break
                 time.sleep(_LOOK_S)
         finally:
-            if self._client is not None:
-                self._client.close()
+            self._let_go()
             os.killpg(process.pid, signal.SIGINT)
             process.wait(30.0)
         return seen
+
+    def _let_go(self) -> None:
+        """Of the daemon that ends."""
+        if self._client is not None:
+            self._client.close()
+            self._client = None
 
     def _marks(self) -> int:
         """How often something was prepared."""
