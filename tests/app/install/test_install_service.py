@@ -247,12 +247,12 @@ def test_the_commands_say_what_they_do(clean_env: dict[str, str], tmp_path: Path
     made = mocapd_here(clean_env, "install-service", "--root", root)
     assert made.code == 0, made.err
     assert f"{root / UNIT} " in made.out
-    assert made.out.count(" made\n") == 8
+    assert made.out.count(" made\n") == 9
     (root / UNIT).write_text("[Service]\n")
     again = mocapd_here(clean_env, "install-service", "--root", root)
     assert "yours, left alone" in again.out
     assert "move your changes into a drop-in" in again.err
     gone = mocapd_here(clean_env, "uninstall-service", "--root", root)
-    assert gone.out.count(" removed\n") == 6
+    assert gone.out.count(" removed\n") == 7
     both = mocapd_here(clean_env, "install-service", "--root", root, "--user")
     assert (both.code, both.err.count("\n")) == (2, 1)
