@@ -13,6 +13,7 @@ import argparse
 import math
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -58,6 +59,7 @@ class Start:
     environment_s: float = float("nan")
     first_s: float = float("nan")
     prepared_s: float = float("nan")
+    cpu_s: float = float("nan")
     told: list[tuple[float, float]] = field(
         default_factory=list
     )  # when [s], what was said to be left [s]
@@ -89,7 +91,7 @@ class Demo:
     def start(self, prepares: bool) -> Start:
         """Until somebody is tracked and, where it `prepares`, everything is prepared; then it is ended."""
         began_s, seen = time.monotonic(), Start()
-        marks = self._marks()
+        marks, cpu_s = self._marks(), _children_cpu_s()
         process = subprocess.Popen(
             self._command, cwd=self.clone, env=self.env, start_new_session=True
         )
@@ -111,6 +113,7 @@ class Demo:
             self._let_go()
             os.killpg(process.pid, signal.SIGINT)
             process.wait(30.0)
+            seen.cpu_s = _children_cpu_s() - cpu_s
         return seen
 
     def _let_go(self) -> None:
@@ -139,6 +142,11 @@ class Demo:
         except MocapdError:
             return False
         return body is not None and body.tracked
+
+
+def _children_cpu_s() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def progress_gap(told: list[tuple[float, float]], end_s: float) -> float:
@@ -194,6 +202,7 @@ def main() -> int:
         f"| environment | {first.environment_s:.1f} s |\n"
         f"| everything compiled | {first.prepared_s:.1f} s |\n"
         f"| `make demo` to the first tracked person | {first.first_s:.1f} s |\n"
+        f"| processor time of the first start until then, of all processes | {first.cpu_s:.0f} s |\n"
         f"| second start | {second.first_s:.1f} s |\n"
         f"| start after a change of one kernel | {changed.first_s:.1f} s |\n"
         f"| progress: largest gap after the first third | {100 * gap:.0f} % |\n"
