@@ -134,6 +134,7 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
     """Also where that is killed, and cannot end its children."""
     program = (
         "import os, sys, time\n"
+        "from pathlib import Path\n"
         "from mocapd.app.daemon import cache_warmup\n"
         "from mocapd.config.sections import Config\n"
         "def work(config, tell):\n"
@@ -146,7 +147,7 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
         f"with cache_warmup.preparing_apart(Config(cache_dir={str(tmp_path)!r})) as one:\n"
         "    sys.stdin.readline()\n"
     )
-    program = program.replace("cache_dir='", "cache_dir=cache_warmup.Path('").replace("'))", "')))")
+    program = program.replace("cache_dir='", "cache_dir=Path('").replace("'))", "')))")
     with subprocess.Popen(
         [sys.executable, "-c", program],
         stdin=subprocess.PIPE,
