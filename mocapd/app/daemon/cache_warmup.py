@@ -4,6 +4,7 @@ import logging
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -11,7 +12,6 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING
 
-from mocapd.app.terminal.logs import stderr_is_journal
 from mocapd.child_process import end_with_parent
 from mocapd.errors import MocapdError
 from mocapd.file_lock import one_at_a_time
@@ -58,12 +58,12 @@ class Preparation:
     def wait(self, tell: Tell = _quiet) -> None:
         """Until a stream can begin, or it is over, well or not; `tell` hears where it stands, in words for people."""
         began_s, told = time.monotonic(), False
-        in_journal = stderr_is_journal()  # elsewhere the preparation itself has bars or lines
+        has_bars = sys.stderr.isatty()  # the preparation's own, which say it better
         while not self.is_over and not self._is_ready:
             self._words = self._hear(self._words, _LOOK_S)
             if time.monotonic() - began_s > FIRST_AFTER_S:
                 tell(self._words)
-                if in_journal and not told and self._words != _BEGUN:
+                if not has_bars and not told and self._words != _BEGUN:
                     told = True
                     _log.info("%s", self._words)
         if told:
@@ -140,7 +140,7 @@ def _run_tasks(config: "Config", tell: Tell) -> bool:
     processes = min(_MOST_PROCESSES, len(os.sched_getaffinity(0)), len(tasks))
     pace = machine_pace()
     total_s = pace * (sum(task.seconds for task in tasks) / processes + _OPENING_S)
-    headline = f"the first start prepares what is kept for later ones: {_about(total_s)}, once"
+    headline = f"compiling the tracker, and making what later starts find: {_about(total_s)}, once"
     with ProgressBars() as bars:
         bars.begin(headline)
 
