@@ -168,10 +168,11 @@ def _progress_text(progress: "Progress") -> str:
     return f"once on this machine: {', '.join(open_shares)}; {_about(progress.left_s)} left"
 
 
-def _open_once(config: "Config", _tell: Tell) -> bool:
+def _open_once(config: "Config", tell: Tell) -> bool:
     """For trackers whose kernels no table knows: build it once, in a process of its own. Whether all ended well."""
     from mocapd.capture.kinds.source_kinds import is_simulated
 
+    tell("compiling the tracker, once on this machine")
     # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
     # it tells at once what is wrong with them
     simulated = any(is_simulated(camera.source) for camera in config.camera)
