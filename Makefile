@@ -28,7 +28,6 @@ env clients: STAMP = $(READY)
 env clients: STAMPS = $(READY)
 env: LOCKS := --requirement locks/run.txt --requirement locks/build.txt
 env: PROJECT := .[print]
-env: QUICKLY := false
 env: ## make or renew the environment in .venv
 dev: STAMP = $(READY)-dev
 dev: STAMPS = $(READY) $(READY)-dev
@@ -37,7 +36,7 @@ dev: PROJECT := .[all,dev]
 clients: LOCKS := --requirement locks/clients.txt
 clients: PROJECT := .[all,dev,clients]
 # uv, itself from the lock, takes a fifth of pip's time; where it gets nowhere (an index of one's own), pip goes on.
-dev clients: QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
+QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
 	$(PIP_INSTALL) $(BY_HASH) --requirement $(VENV)/uv.txt && \
 	$(BIN)/python -m uv --no-config --no-cache pip install --quiet --python $(BIN)/python $(BY_HASH)
 dev: ## the same with the developers' tools
@@ -48,7 +47,7 @@ env dev clients:
 			"or name it: make demo PYTHON=/path/to/python3" >&2; exit 1; fi
 	@want="$$(pwd) $$(cat pyproject.toml locks/*.txt | cksum)"; \
 	if [ "$$(cat $(STAMP) 2>/dev/null)" = "$$want" ] && $(BIN)/python -c '' 2>/dev/null; then exit 0; fi; \
-	echo "make: preparing $(VENV) with $(PYTHON) (once, a minute or two)" >&2; \
+	echo "make: preparing $(VENV) with $(PYTHON) (once, about a quarter of a minute)" >&2; \
 	rm -f $(READY) $(READY)-dev; \
 	case "$$(cat $(VENV)/made-in 2>/dev/null)" in "$$(pwd)") ;; *) rm -rf $(VENV);; esac; \
 	$(BIN)/python -c '' 2>/dev/null || { rm -rf $(VENV); "$(PYTHON)" -m venv $(VENV); } || { \

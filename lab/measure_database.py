@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.geometry import rotations
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database, render
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, render
 from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, unpack
-from mocapd.shirt.pose_database.idmap_distance_kernels import nearest_exact
-from mocapd.shirt.pose_database.idmap_index_kernels import farthest_point_radii
+from mocapd.shirt.pose_database.idmap_distance import nearest_exact
 from mocapd.shirt.pose_database.pose_sampling import PoseSet, poses_from_cube, random_cube
 from mocapd.types import Bytes, Floats, Ints, Pose
 
@@ -79,11 +78,15 @@ def pose_errors(queries: PoseSet, poses: PoseSet, best: Ints, stature_m: float) 
 
 
 def farthest_apart(maps: Bytes, count: int, database: PoseDatabase) -> Ints:
-    """Indices (count,) of the packed maps that lie farthest apart, by the database's own vectors."""
-    radii = np.empty(len(maps), np.float32)
+    """Indices (count,) of the packed maps that lie farthest apart, by the database's own vectors: from the one nearest
+    to the mean on, always the one that is farthest from all before."""
     vectors = database.index.projection.vectors(maps)
-    farthest_point_radii(vectors, np.array([0, len(maps)]), radii)
-    return np.argsort(-radii, kind="stable")[:count]
+    chosen = [int(((vectors - vectors.mean(axis=0)) ** 2).sum(axis=1).argmin())]
+    gap = np.full(len(vectors), np.inf)
+    while len(chosen) < count:
+        gap = np.minimum(gap, ((vectors - vectors[chosen[-1]]) ** 2).sum(axis=1))
+        chosen.append(int(gap.argmax()))
+    return np.array(chosen)
 
 
 def dispersion_row(name: str, distance: NDArray[np.float64], errors: Floats) -> str:
@@ -136,11 +139,9 @@ def main() -> int:
     say("| poses | queries | nearest, mean [px²] | 95 % | worst | ten nearest, mean |")
     say(" arm joints [cm] | 95 % |\n|---|---|---|---|---|---|---|---|\n")
     drawn = random_poses(params.count, 5, params)
-    sobol = build_database(DatabaseParams(pool=1.0))
     made: dict[str, tuple[PoseSet, Bytes]] = {
         "random": (drawn, render(drawn, model, params, lambda _: None).packed_maps),
-        "Sobol": (_poses(sobol), sobol.index.packed_maps),
-        "Sobol, thinned (ours)": (_poses(database), database.index.packed_maps),
+        "Sobol (ours)": (_poses(database), database.index.packed_maps),
     }
     for name, (poses, packed) in made.items():
         for kind, picked in sets.items():

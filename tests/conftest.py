@@ -15,12 +15,17 @@ import pytest
 import tomli_w
 from hypothesis import settings
 
+from mocapd.app.libraries import LOCATORS
+
 if TYPE_CHECKING:  # numba takes a second to import, and most tests need none of it
     from mocapd.shirt.pose_database.database import PoseDatabase
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
 ABSENT = "../shared is not beside this checkout: {} is missing"
+
+# Before numba is imported: what daemons and tests compile is kept once for both.
+os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = LOCATORS
 
 # No example is judged by how long it took: this machine may be busy.
 settings.register_profile("mocapd", deadline=None, derandomize=True, print_blob=True)
@@ -58,13 +63,13 @@ def cache_home(pytestconfig: pytest.Config) -> Path:
 @pytest.fixture(scope="session")
 def pose_database(cache_home: Path) -> "PoseDatabase":
     """A small pose database, built once."""
-    return kept_database(cache_home, count=3000, pool=1.2, cells=32)
+    return kept_database(cache_home, count=3000, cells=32)
 
 
 @pytest.fixture(scope="session")
 def smaller_database(cache_home: Path) -> "PoseDatabase":
     """One of a third of the poses, for pictures that need no more."""
-    return kept_database(cache_home, count=1000, pool=1.1, cells=16)
+    return kept_database(cache_home, count=1000, cells=16)
 
 
 def kept_database(cache_home: Path, **params: Any) -> "PoseDatabase":

@@ -8,6 +8,12 @@ import mocapd
 from mocapd.boundary.folders import require_own_folder
 from mocapd.errors import CannotCreateError, PermissionDeniedError, mend_of
 
+# Of these numba takes the first that has a place for a function: the kernels' own, then its usual ones.
+LOCATORS = (
+    "mocapd.kernels.locator.KernelLocator,UserProvidedCacheLocator,InTreeCacheLocator,UserWideCacheLocator,"
+    "IPythonCacheLocator,ZipCacheLocator"
+)
+
 
 def prepare_libraries(cache_dir: Path) -> None:
     """Before anything imports numba. Raises CannotCreateError when the cache cannot be written,
@@ -26,6 +32,7 @@ def use_cache_dir(cache_dir: Path) -> None:
     that others could write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
     _own_folder(cache_dir)
+    os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = LOCATORS
     package = Path(mocapd.__file__).parent
     if not os.access(package, os.W_OK):
         numba = cache_dir / "numba"

@@ -48,11 +48,12 @@ class OriginKind:
     """What a kind of source knows of origins, whose names are addresses without a camera.
 
     cameras(origin): their names. open(origin, cache_dir, progress): it may be made first, and kept in the
-    cache. Both raise InputError or ConfigError.
+    cache. open_beginning: likewise, what can be had sooner, where that is another. All raise InputError or ConfigError.
     """
 
     cameras: Callable[[str], tuple[str, ...]]
     open: Callable[[str, Path, Progress], Origin]
+    open_beginning: Callable[[str, Path, Progress], Origin] | None = None
 
 
 def camera_address(origin: str, camera: str) -> str:

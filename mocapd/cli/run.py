@@ -3,7 +3,7 @@
 import faulthandler
 import logging
 import os
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -75,7 +75,8 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
         _log.warning("unsafe: %s", line)
 
     from mocapd.app.daemon.daemon_page import DaemonPage
-    from mocapd.app.daemon.initial_session import prepared_session
+    from mocapd.app.daemon.early_start import EarlyStart
+    from mocapd.app.daemon.initial_session import first_session
     from mocapd.app.daemon.main_loop import END_S, Signals, end_despite_work, run_daemon
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.daemon.session_change import SessionChange
@@ -100,16 +101,19 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             LastTrouble() as trouble,
             DaemonControl(path, config, outputs, trouble) as control,
             outputs,
+            ExitStack() as held,
         ):
-            session = prepared_session(config, outputs, notifier, control.open)
-            service = Service(config, session, outputs)
+            first = first_session(config, outputs, notifier, held, control.open, control.preparing)
+            service = Service(first.config, first.session, outputs)
             page = DaemonPage(service) if config.web.enabled else None
             change = SessionChange(service, read, signals, page, notifier)
             control.attach(service, change.reloads)
             with (
                 DecoderWarnings()
             ):  # a thread, so not before whatever is forked for the first start
-                code = run_daemon(service, signals, hint, (change, control, Supervision(notifier)))
+                early = EarlyStart(first.preparation, change, control.preparing)
+                hooks = (change, early, control, Supervision(notifier))
+                code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
     except SystemExit as end:  # told to end while the first session was still prepared
         code = end.code if isinstance(end.code, int) else 0
     finally:

@@ -27,6 +27,7 @@ class DaemonControl:
         self._config, self._outputs, self._trouble = config, outputs, trouble
         self._socket = ControlSocket(path, self._answer, self._died)
         self._service: Service | None = None
+        self._preparing = ""
         self._reloads = Reloads()
         self._death: BaseException | None = None
 
@@ -42,6 +43,14 @@ class DaemonControl:
             self._socket.open()
         except MocapdError as error:  # it tracks as well without
             _log.warning("`mocapd status` will not find this daemon: %s", error)
+
+    def preparing(self, text: str) -> None:
+        """Where preparations stand, in words for people; empty when they are over."""
+        self._preparing = text
+
+    def what_is_prepared(self) -> str:
+        """The newest that `preparing` was given."""
+        return self._preparing
 
     def attach(self, service: Service, reloads: Reloads) -> None:
         """There is a session."""
@@ -68,10 +77,12 @@ class DaemonControl:
         if service is None:
             if verb != "status":
                 raise _starting()
-            return starting_report(self._config, self._outputs, self._trouble.newest)
+            return starting_report(
+                self._config, self._outputs, self._trouble.newest, self._preparing
+            )
         match verb:
             case "status":
-                return status_report(service, self._trouble.newest)
+                return status_report(service, self._trouble.newest, self._preparing)
             case "recenter":
                 facing, outputs = service.recenter(), service.snapshot().outputs
                 return Recentered(facing.yaw_deg, tuple(outputs))

@@ -27,8 +27,10 @@ from mocapd.types import Tracking
 SILENT = "silent"  # a camera that counts as live and sends nothing
 
 
-def status_report(service: Service, last_trouble: Trouble | None) -> StatusReport:
-    """How the service fares now; from any thread."""
+def status_report(
+    service: Service, last_trouble: Trouble | None, preparing: str = ""
+) -> StatusReport:
+    """How the service fares now, and what is still prepared beside it; from any thread."""
     snapshot, session = service.snapshot(), service.session
     metrics, cameras = snapshot.metrics, service.camera_messages()
     return StatusReport(
@@ -52,13 +54,14 @@ def status_report(service: Service, last_trouble: Trouble | None) -> StatusRepor
         lost_reason=lost_reason_text(metrics.lost_reason),
         effort=metrics.effort.value,
         lag_median_ms=_measured(metrics.lag_ms.median),
+        preparing=preparing,
     )
 
 
 def starting_report(
-    config: Config, outputs: OpenOutputs, last_trouble: Trouble | None
+    config: Config, outputs: OpenOutputs, last_trouble: Trouble | None, preparing: str = ""
 ) -> StatusReport:
-    """The same while the outputs are open, and the first session is still prepared."""
+    """The same while the outputs are open, and the first session is still prepared; `preparing`: where that stands."""
     return StatusReport(
         version=mocapd.__version__,
         pid=os.getpid(),
@@ -76,6 +79,7 @@ def starting_report(
         cameras=(),
         outputs=_outputs({sink.name: sink.status() for sink in outputs.sinks}),
         last_trouble=last_trouble,
+        preparing=preparing,
     )
 
 

@@ -8,6 +8,7 @@ from mocapd.doctor.checks.system_checks import (
     check_config,
     check_daemons,
     check_libraries,
+    check_preparation,
     check_processor,
     check_whose,
 )
@@ -30,4 +31,5 @@ def examine(facts: Facts) -> tuple[Finding, ...]:
         *check_processor(facts.processor),
         check_clock(facts.clock),
         *check_libraries(facts.libraries),
+        check_preparation(facts.preparation),
     )

@@ -121,6 +121,14 @@ class LibraryFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class PreparationFacts:
+    """Whether kernels and pose database of this version are there (`done`), or are being made now (`under_way`)."""
+
+    done: bool
+    under_way: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Facts:
     """Everything that is looked at."""
 
@@ -135,3 +143,4 @@ class Facts:
     processor: ProcessorFacts
     clock: ClockFacts
     libraries: LibraryFacts
+    preparation: PreparationFacts

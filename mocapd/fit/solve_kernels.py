@@ -1,5 +1,7 @@
-"""One Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint limits and
-proportions. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`."""
+"""The system of one Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint
+limits and proportions. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`.
+
+numpy solves it: numba takes four seconds to compile a solver."""
 
 from typing import NamedTuple
 
@@ -28,7 +30,7 @@ class PosePriors(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def gauss_newton_step(
+def gauss_newton_system(
     H: Array,
     b: Array,
     root: Array,
@@ -39,8 +41,8 @@ def gauss_newton_step(
     priors: PosePriors,
     shape_offset: Array,
     shape_information: Array,
-) -> Array:
-    """The step (P,) that solves the normal equations of all terms at the pose root (3,), local (J,4).
+) -> tuple[Array, Array]:
+    """The normal equations of all terms at the pose root (3,), local (J,4): a matrix (P,P) and a right side (P,).
 
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
@@ -66,7 +68,4 @@ def gauss_newton_step(
         for j in range(P - n_pose):
             A[n_pose + i, n_pose + j] += shape_information[i, j]
             g[n_pose + i] += shape_information[i, j] * shape_offset[j]
-    step = np.linalg.solve(A, g)
-    for p in range(P):
-        g[p] = step[p]
-    return g
+    return A, g

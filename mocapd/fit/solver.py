@@ -20,7 +20,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, stepped
 from mocapd.fit.pose_prior import narrow_prior, wide_prior
-from mocapd.fit.solve_kernels import gauss_newton_step
+from mocapd.fit.solve_kernels import gauss_newton_system
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm
 from mocapd.fit.terms.depth_agreement import compared_depths
@@ -94,6 +94,7 @@ class Fitter:
         priors = self._narrow if self.is_narrow(prediction, views) else self._wide
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
+        known = np.ascontiguousarray(prediction.information)  # a slice would be another kernel
         for k in range(iterations):
             is_fine, body = k >= iterations - fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
@@ -108,10 +109,11 @@ class Fitter:
                 added = term.add(posed, body, held, pull)
                 cost += added
                 measured += added if term.is_measured else 0.0
-            step = gauss_newton_step(
+            A, g = gauss_newton_system(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, priors, prediction.factors - state.factors, prediction.information,
+                motion, priors, prediction.factors - state.factors, known,
             )  # fmt: skip
+            step = np.asarray(np.linalg.solve(A, g), dtype=np.float64)
             root_m, local_xyzw = stepped(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = (
                 np.clip(state.factors + step[n_pose:], *_FACTORS) if n_shape else state.factors

@@ -96,13 +96,13 @@ def plan_session(config: Config) -> SessionPlan:
     return plan
 
 
-def open_planned(plan: SessionPlan, progress: Progress) -> Session:
-    """The rest of `open_session`."""
+def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = False) -> Session:
+    """The rest of `open_session`; is_beginning: see `open_origin`."""
     cache_dir, tracker = plan.config.cache_dir, plan.config.tracker
     known, rig_source = plan.known, plan.rig_source
     if plan.assumes_rig:
         known, rig_source = replace(known, rig=_assumed_rig(plan.cameras[0])), "assumed"
-    origin = open_origin(plan.origin, cache_dir, progress) if plan.origin else None
+    origin = open_origin(plan.origin, cache_dir, progress, is_beginning) if plan.origin else None
     if origin is not None and plan.calibrated is None:
         known, rig_source = from_origin(origin).overlaid(known), rig_source or origin.rig_source
     inputs = camera_inputs(plan.cameras, known.rig, origin)

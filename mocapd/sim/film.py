@@ -6,7 +6,7 @@ The renderer is imported when a film is rendered: its kernels take longer to imp
 import hashlib
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +28,7 @@ from mocapd.types import Bytes, LabelledPicture
 if TYPE_CHECKING:
     from mocapd.sim.renderer import CameraRenderer
 
+BEGINNING_S = 2.0  # rendered in as much time, on one processor
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
 
@@ -59,9 +60,18 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     """
     key = film_key(scenario)
     path = cache_dir / f"sim-{scenario.name}-{key[:16]}.film"
+    count = round(scenario.loop_s * scenario.fps_hz)
     stored = read_or_make(
-        path, f"sim-{scenario.name}.lock", key, _FilmFile, lambda: _render(scenario, key, progress)
+        path,
+        f"sim-{scenario.name}.lock",
+        key,
+        _FilmFile,
+        lambda: _render(scenario, key, progress, count),
     )
+    return _film(scenario, stored)
+
+
+def _film(scenario: Scenario, stored: _FilmFile) -> Film:
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
@@ -70,6 +80,29 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     )
     frames = {name: tuple(jpegs) for name, jpegs in stored.frames.items()}
     return Film(scenario, stored.first, frames, setup)
+
+
+def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
+    """The first seconds of the film, for who cannot wait for all of it: they go forth and back, so that nobody leaps. Raises
+    CannotCreateError."""
+    key = film_key(scenario)
+    whole, path = (
+        cache_dir / f"sim-{scenario.name}-{key[:16]}.{ending}" for ending in ("film", "beginning")
+    )
+    if whole.exists():
+        return load_film(scenario, cache_dir, progress)
+    count = round(min(BEGINNING_S, scenario.loop_s) * scenario.fps_hz)
+    film = _film(
+        scenario,
+        read_or_make(
+            path,
+            f"sim-{scenario.name}-beginning.lock",
+            key,
+            _FilmFile,
+            lambda: _render(scenario, key, progress, count),
+        ),
+    )
+    return replace(film, frames={name: (*one, *one[-2:0:-1]) for name, one in film.frames.items()})
 
 
 def film_key(scenario: Scenario) -> str:
@@ -96,12 +129,11 @@ def encode_jpeg(pixels: Bytes, quality: int) -> bytes:
     return bytes(data)
 
 
-def _render(scenario: Scenario, key: str, progress: Progress | None) -> _FilmFile:
+def _render(scenario: Scenario, key: str, progress: Progress | None, n: int) -> _FilmFile:
     from mocapd.sim.renderer import camera_renderers
     from mocapd.sim.setup import setup_of
 
     renderers = camera_renderers(World(scenario))
-    n = round(scenario.loop_s * scenario.fps_hz)
     first = first_frame(scenario)
     frames: dict[str, list[bytes]] = {r.camera.name: [] for r in renderers}
     with ThreadPoolExecutor(len(renderers)) as pool:

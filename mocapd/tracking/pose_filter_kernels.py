@@ -90,7 +90,8 @@ def follow_bones(
         share = follows[j] * moving_share(way, speed_rad_s, memory[j], ticks, noise_rad)
         quat_exp(share * way[0], share * way[1], share * way[2], turn)
         quat_multiply(turn, expected, between)
-        expected[:] = between
+        for i in range(4):  # by numbers: numba takes seconds to compile an array's assignment
+            expected[i] = between[i]
         _turn_between(last, expected, scratch, between, way)
         most_rad = gap_s * (doubtful_rad_s + (sure_rad_s - doubtful_rad_s) * sure)
         length = np.sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])

@@ -17,6 +17,7 @@ from mocapd.doctor.checks.system_checks import (
     check_config,
     check_daemons,
     check_libraries,
+    check_preparation,
     check_processor,
 )
 from mocapd.doctor.facts import (
@@ -28,6 +29,7 @@ from mocapd.doctor.facts import (
     FolderFacts,
     LibraryFacts,
     PortFacts,
+    PreparationFacts,
     ProcessorFacts,
     UserFacts,
 )
@@ -227,3 +229,11 @@ def test_configuration_and_daemons() -> None:
     assert slow.verdict is WARN
     assert "saving effort: this machine is too slow" in slow.what
     assert "fps_hz" in slow.fix
+
+
+def test_whether_the_first_start_is_prepared() -> None:
+    waits = check_preparation(PreparationFacts(done=False))
+    assert waits.verdict is WARN
+    assert waits.fix == "mocapd prepare"
+    assert check_preparation(PreparationFacts(done=True)).verdict is OK
+    assert check_preparation(PreparationFacts(done=False, under_way=True)).verdict is OK

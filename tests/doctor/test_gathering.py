@@ -16,19 +16,22 @@ from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.config.sections import CameraSection, Config, WebSection
 from mocapd.doctor.checks.storage_checks import check_ports
 from mocapd.doctor.checks.system_checks import check_whose
-from mocapd.doctor.facts import UserFacts
+from mocapd.doctor.facts import PreparationFacts, UserFacts
 from mocapd.doctor.finding import Verdict
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import wanted_cameras
 from mocapd.doctor.gathering.folder_facts import folder_facts
 from mocapd.doctor.gathering.port_facts import port_facts
+from mocapd.doctor.gathering.preparation_facts import preparation_facts
 from mocapd.doctor.gathering.system_facts import (
     clock_facts,
     processor_facts,
     state_facts,
     user_facts,
 )
+from mocapd.file_lock import one_at_a_time
 from mocapd.outputs.output_table import ZenohSection
+from mocapd.session.prepared_marker import LOCK, remember
 from tests.calibration.test_calibration_file import pictures, saved_calibration
 from tests.cli.mocapd_process import Outcome, mocapd_here
 
@@ -179,3 +182,12 @@ def test_a_wrong_configuration_is_a_line_of_its_own(run: Run, empty_home: Path) 
     assert first.startswith("bad")
     assert "smoothing.preset" in first
     assert "one of: off" in first
+
+
+def test_what_is_prepared_now_or_was_is_found(tmp_path: Path) -> None:
+    config = Config(cache_dir=tmp_path / "cache")
+    assert preparation_facts(config) == PreparationFacts(done=False)
+    with one_at_a_time(config.cache_dir, LOCK):
+        assert preparation_facts(config) == PreparationFacts(done=False, under_way=True)
+    remember(config)
+    assert preparation_facts(config) == PreparationFacts(done=True)

@@ -4,6 +4,7 @@ The scene with the jacket, filmed at four times the usual rate, so that both cue
 leaves and comes back, and frames are dropped as on a machine that is too slow. Every output sends; a game and a page take.
 """
 
+import math
 import statistics
 import tempfile
 import time
@@ -25,9 +26,12 @@ LONGEST_SILENCE_S = 2.0
 def run(extent: Extent) -> Came:
     """See FaultRow."""
     wrong: list[str] = []
+    full = extent.share >= 1.0
+    # a short run is a test on a machine that may be busy with others: how fast it is there is not judged
+    longest_silence_s = LONGEST_SILENCE_S if full else math.inf
     with tempfile.TemporaryDirectory() as folder:
         # rendering an hour's frames takes minutes
-        scene = _fast_scene(Path(folder)) if extent.share >= 1.0 else extent.room
+        scene = _fast_scene(Path(folder)) if full else extent.room
         words = ("--capture", f"sim:{scene}", "--tracker", "auto")
         outputs = (
             "vmc.enabled=true",
@@ -38,7 +42,9 @@ def run(extent: Extent) -> Came:
         settings = [word for one in outputs for word in ("--set", one)]
         with faulty_daemon(Path(folder), *words, *settings) as daemon:
             daemon.until(lambda: daemon.bodies and daemon.pictures, "body and picture")
-            usage, bodies, pictures = _watch(daemon, extent.of(TIME_S, 10.0), wrong)
+            usage, bodies, pictures = _watch(
+                daemon, extent.of(TIME_S, 10.0), longest_silence_s, wrong
+            )
             if (code := daemon.end()) != 0:
                 wrong.append(f"exit code {code}")
             if "Traceback" in daemon.log:
@@ -53,7 +59,7 @@ def run(extent: Extent) -> Came:
         f"{bodies} messages and {pictures} pictures came; {at[1][0]:.0f} MB, {grown[0]:+.1f} MB, "
         f"{grown[1]:+.0f} threads, {grown[2]:+.0f} file descriptors since the warm-up"
     )
-    full = extent.share >= 1.0  # what is filled in a short run is the warm-up
+    # what is filled in a short run is the warm-up
     if any(
         more > most
         for more, most in zip(
@@ -72,7 +78,7 @@ def _fast_scene(folder: Path) -> Path:
 
 
 def _watch(
-    daemon: FaultyDaemon, time_s: float, wrong: list[str]
+    daemon: FaultyDaemon, time_s: float, longest_silence_s: float, wrong: list[str]
 ) -> tuple[list[tuple[float, int, int]], int, int]:
     """MB of its own, threads and descriptors at each look; how many messages and pictures came."""
     usage: list[tuple[float, int, int]] = []
@@ -85,7 +91,7 @@ def _watch(
         new = daemon.bodies[:]
         del daemon.bodies[: len(new)]
         for one in new:
-            if one.came_s - heard_s > LONGEST_SILENCE_S:
+            if one.came_s - heard_s > longest_silence_s:
                 wrong.append(f"silent for {one.came_s - heard_s:.1f} s")
             heard_s = one.came_s
         bodies += len(new)
@@ -94,8 +100,10 @@ def _watch(
         with daemon.usage.oneshot():
             now: psutil.Process = daemon.usage
             usage.append((_own_mb(now), now.num_threads(), now.num_fds()))
-    if time.monotonic() - heard_s > time_s / PARTS + LONGEST_SILENCE_S:
+    if time.monotonic() - heard_s > time_s / PARTS + longest_silence_s:
         wrong.append("silent at the end")
+    if bodies == 0:
+        wrong.append("nothing came")
     return usage, bodies, pictures
 
 

@@ -6,8 +6,9 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.app.daemon.cache_warmup import MARKER, prepare_apart
+from mocapd.app.daemon.cache_warmup import prepare_apart
 from mocapd.config.sections import Config
+from mocapd.session.prepared_marker import MARKER
 from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
@@ -20,7 +21,7 @@ from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.sim.small import TABLE, table
 
-_DATABASE = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+_DATABASE = DatabaseParams(count=60, cells=4, dimensions=8)
 
 
 class _MadeAnew(Exception):

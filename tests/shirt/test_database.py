@@ -36,7 +36,7 @@ from mocapd.types import Camera
 
 pytestmark = pytest.mark.kernels
 
-SMALL = DatabaseParams(count=1500, pool=1.4, cells=24)
+SMALL = DatabaseParams(count=1500, cells=24)
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +152,7 @@ def test_the_file_gives_back_what_was_written(database: PoseDatabase, tmp_path: 
 def test_an_unusable_file_is_rebuilt_and_the_reason_told(
     database: PoseDatabase, tmp_path: Path, damage: str
 ) -> None:
-    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     path = tmp_path / CACHE_NAME
     write_database(
         path, database, "of another version" if damage == "version" else content_hash(tiny)
@@ -184,7 +184,7 @@ def _begin_to_build(*_parts: object) -> NoReturn:
 
 def test_any_changed_byte_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The header was in no checksum: 1,137 of 5,001 changed files were tracebacks at each start."""
-    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     load_or_build(tmp_path, tiny)
     path = tmp_path / CACHE_NAME
     whole = path.read_bytes()
@@ -206,7 +206,7 @@ def test_any_changed_byte_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_link_in_place_of_the_lock_leads_nowhere(tmp_path: Path) -> None:
-    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     (tmp_path / "theirs").write_text("kept")
     (tmp_path / "cache").mkdir()
     (tmp_path / "cache" / LOCK_NAME).symlink_to(tmp_path / "theirs")
@@ -215,7 +215,7 @@ def test_a_link_in_place_of_the_lock_leads_nowhere(tmp_path: Path) -> None:
 
 
 def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
-    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     second_waits = threading.Event()
     with ThreadPoolExecutor(2) as pool:
 
@@ -232,7 +232,7 @@ def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
 
 
 def test_a_cache_that_cannot_be_written(tmp_path: Path) -> None:
-    tiny = DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8)
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     blocked = tmp_path / "a file, not a folder"
     blocked.write_text("")
     loaded = load_or_build(blocked / "cache", tiny)
@@ -254,6 +254,6 @@ def test_the_same_parameters_build_the_same_database(database: PoseDatabase) -> 
 
 def test_progress_reaches_the_end() -> None:
     seen: list[float] = []
-    build_database(DatabaseParams(count=60, pool=1.2, cells=4, dimensions=8), seen.append)
+    build_database(DatabaseParams(count=60, cells=4, dimensions=8), seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0

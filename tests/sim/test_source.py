@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import mocapd.sim.film
 from mocapd.capture.simulated.film_origin import FilmOrigin
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, CannotCreateError, ConfigError
-from mocapd.sim.film import Film, film_key, first_frame, load_film
+from mocapd.sim.film import Film, film_key, first_frame, load_beginning, load_film
 from tests.sim.small import renderers, scenario, table
 
 PERIOD_NS = 1e9 / 30
@@ -182,3 +183,13 @@ def test_an_unplugged_camera_is_lost_and_comes_back(cache: Path) -> None:
     alone = [i for i, one in enumerate(sets) if "left" not in one.frames]
     assert alone == list(range(9, 57))
     assert all("right" in one.frames for one in sets)
+
+
+def test_the_beginning_of_a_film_goes_forth_and_back_until_the_whole_is_there(
+    film: Film, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mocapd.sim.film, "BEGINNING_S", 0.2)
+    beginning = load_beginning(scenario(), tmp_path)
+    for name, frames in beginning.frames.items():
+        assert frames == (*film.frames[name][:6], *film.frames[name][4:0:-1])
+    assert load_beginning(scenario(), cache).frames == film.frames

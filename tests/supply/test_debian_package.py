@@ -97,6 +97,7 @@ def test_the_units_start_what_is_in_the_package(unpacked: Path) -> None:
         ("system/mocapd.service", "run"),
         ("system/mocapd@.service", "run"),
         ("system/mocapd-camera-node.service", "camera-node"),
+        ("system/mocapd-prepare.service", "prepare"),
         ("user/mocapd.service", "run"),
     ):
         assert f"{start} {command}\n" in (unpacked / "usr/lib/systemd" / unit).read_text()

@@ -66,7 +66,9 @@ def _locks_of(call: str) -> set[str]:
 def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_downloads(
     checkout: Checkout,
 ) -> None:
-    (packages, project), _ = checkout.make("env")
+    (uv, packages, project), _ = checkout.make("env")
+    assert "--require-hashes" in uv
+    assert packages.startswith("uv ")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
     assert _locks_of(packages) == {"locks/run.txt", "locks/build.txt"}
@@ -109,20 +111,26 @@ def test_uv_is_installed_as_the_lock_has_it(checkout: Checkout) -> None:
     assert "\n".join(lines) in (ROOT / "locks" / "dev.txt").read_text()
 
 
-def test_where_uv_gets_nowhere_pip_installs_the_lock(checkout: Checkout) -> None:
+@pytest.mark.parametrize(
+    ("target", "locks"),
+    [("dev", {"locks/dev.txt"}), ("env", {"locks/run.txt", "locks/build.txt"})],
+)
+def test_where_uv_gets_nowhere_pip_installs_the_lock(
+    checkout: Checkout, target: str, locks: set[str]
+) -> None:
     (checkout.folder / "uv-works").unlink()
-    (_, tried, packages, project), _ = checkout.make("dev")
+    (_, tried, packages, project), _ = checkout.make(target)
     assert tried.startswith("uv ")
     assert packages.startswith("install ")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
-    assert _locks_of(packages) == {"locks/dev.txt"}
+    assert _locks_of(packages) == locks
     assert "--no-deps" in project
 
 
 def test_of_a_python_that_the_lock_is_for_the_latest_gets_it_too(checkout: Checkout) -> None:
     checkout.set_version((3, 14, 0))
-    (packages, _), told = checkout.make("env")
+    (_, packages, _), told = checkout.make("env")
     assert "--require-hashes" in packages
     assert "pip chooses" not in told
 

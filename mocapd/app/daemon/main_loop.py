@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from types import FrameType
 from typing import Protocol
 
@@ -114,9 +114,14 @@ class LoopHook(Protocol):
 
 
 def run_daemon(
-    service: Service, signals: Signals, hint: str = "", hooks: Sequence[LoopHook] = ()
+    service: Service,
+    signals: Signals,
+    hint: str = "",
+    hooks: Sequence[LoopHook] = (),
+    remark: Callable[[], str] = str,
 ) -> int:
-    """Run until it ends; the exit code. Raises MocapdError when a named error killed a thread."""
+    """Run until it ends; the exit code. remark: what else the status line says. Raises MocapdError when a named error
+    killed a thread."""
     # a thread nobody watches must not die unseen either
     threading.excepthook = lambda args: service.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(service)
@@ -129,7 +134,7 @@ def run_daemon(
                 while not service.wait(SHOW_EVERY_S):
                     service.watch()
                     snapshot = service.snapshot()
-                    line.show(snapshot)
+                    line.show(snapshot, remark())
                     if ticks % TELL_EVERY == 0 or service.has_news(snapshot):
                         service.tell(snapshot)
                     ticks += 1

@@ -24,6 +24,7 @@ _log = logging.getLogger(__name__)
 
 SAVED = "a calibration was saved"
 ASKED = "told to read the configuration again"
+PREPARED = "everything is prepared"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +84,7 @@ class SessionChange:
         self.reloads = Reloads()
         self._notifier = notifier  # hears when a reload begins and ends
         self._preparation: _Preparation | None = None
-        self._why = ""
+        self._why = self._wish = ""
 
     def on_tick(self, snapshot: Snapshot) -> None:
         """See LoopHook."""
@@ -105,6 +106,10 @@ class SessionChange:
             if self._page is not None:
                 self._page.resume()
 
+    def ask(self, why: str) -> None:
+        """Prepare another session as soon as none is prepared; by the thread of the loop."""
+        self._wish = why
+
     def let_go(self) -> None:
         """See LoopHook."""
         self.reloads.close()
@@ -119,6 +124,9 @@ class SessionChange:
         elif self._signals.take_reload() | self.reloads.take():
             self._notifier.reloading()
             self._begin(ASKED)
+        elif self._wish:
+            why, self._wish = self._wish, ""
+            self._begin(why)
 
     def _begin(self, why: str) -> None:
         self._why = why

@@ -5,7 +5,12 @@ from pathlib import Path
 from mocapd.assets import systemd_path
 from mocapd.errors import ConfigError
 
-UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
+UNITS = (
+    "mocapd.service",
+    "mocapd@.service",
+    "mocapd-camera-node.service",
+    "mocapd-prepare.service",
+)
 USER_UNIT = "mocapd-user.service"
 EXAMPLE = "network.conf"
 SYSUSERS = "mocapd.sysusers"

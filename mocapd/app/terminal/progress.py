@@ -1,4 +1,5 @@
-"""Progress on stderr, for what takes long: bars on a terminal, else a plain line every ten seconds; none in the journal."""
+"""Progress on stderr, for what takes long: bars on a terminal, else a plain line for each part and each minute; none in the
+journal."""
 
 import sys
 import threading
@@ -17,8 +18,8 @@ from rich.progress import (
 
 from mocapd.app.terminal.logs import stderr_is_journal
 
-FIRST_AFTER_S = 5.0  # where there is no terminal; what takes less is not worth a line [s]
-TELL_EVERY_S = 10.0
+FIRST_AFTER_S = 2.0  # where there is no terminal; what takes less is not worth a line [s]
+TELL_EVERY_S = 60.0
 
 
 def say(line: str) -> None:
@@ -77,32 +78,50 @@ class ProgressBars:
         self._bars.update(self._tasks[what], completed=done, total=total)
 
     def begin(self, what: str) -> None:
-        """Without a terminal: say it when it takes long to come to the first part."""
-        if self._lines is None and not self._is_quiet and not self._console.is_terminal:
+        """What all of it is: a line above the bars, and without a terminal the first line, when it takes long."""
+        if self._is_quiet or self._lines is not None or self._tasks:
+            return
+        if self._console.is_terminal:
+            self._console.print(what)
+        else:
             self._lines = _Lines(what)
 
 
 class _Lines:
-    """Says where the newest of what is made stands, on its own time."""
+    """Says what begins, where it stands now and then, on its own time, and when each part is done."""
 
     def __init__(self, what: str) -> None:
         self._began_s, self._headline = time.monotonic(), what
-        self._newest = (what, 0, 1)  # replaced as a whole, so the thread needs no lock
+        self._parts: dict[str, tuple[int, int]] = {}
+        self._lock = threading.Lock()
         self._over = threading.Event()
         self._told = False
         self._thread = threading.Thread(target=self._run, name="progress", daemon=True)
         self._thread.start()
 
     def at(self, what: str, done: int, total: int) -> None:
-        """What the next line says."""
-        self._newest = what, done, total
+        """What the next line says of one part; a part that is done is said at once."""
+        with self._lock:
+            before = self._parts.get(what)
+            self._parts[what] = done, total
+        if self._told and before is not None and before[0] < before[1] and done >= total:
+            say(f"{what}: done after {self._spent_s():.0f} s")
 
     def end(self, well: bool) -> None:
-        """Say that it is done, if anything was said before."""
+        """Say what is done, if anything was said before."""
         self._over.set()
         self._thread.join()
         if self._told and well:
-            say(f"{self._newest[0]}: done after {time.monotonic() - self._began_s:.0f} s")
+            for what in self._unfinished():
+                say(f"{what}: done after {self._spent_s():.0f} s")
+
+    def _spent_s(self) -> float:
+        return time.monotonic() - self._began_s
+
+    def _unfinished(self) -> dict[str, tuple[int, int]]:
+        with self._lock:
+            parts = dict(self._parts) or {self._headline: (0, 1)}
+        return {what: part for what, part in parts.items() if part[0] < part[1]}
 
     def _run(self) -> None:
         if self._over.wait(FIRST_AFTER_S):
@@ -110,6 +129,8 @@ class _Lines:
         self._told = True
         say(self._headline)
         while not self._over.wait(TELL_EVERY_S):
-            what, done, total = self._newest
-            spent_s = time.monotonic() - self._began_s
-            say(f"{what}: {100 * done // max(1, total)} %, {spent_s:.0f} s so far")
+            parts = [
+                f"{what}: {100 * a // max(1, b)} %" for what, (a, b) in self._unfinished().items()
+            ]
+            if parts:
+                say(f"{', '.join(parts)}, {self._spent_s():.0f} s so far")

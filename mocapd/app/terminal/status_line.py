@@ -61,9 +61,9 @@ class StatusLine:
         if self._live is not None:
             self._live.stop()
 
-    def show(self, snapshot: Snapshot) -> None:
-        """Call it as often as the line shall change."""
-        self.say(lambda: status_text(snapshot))
+    def show(self, snapshot: Snapshot, remark: str = "") -> None:
+        """Call it as often as the line shall change; `remark` comes first."""
+        self.say(lambda: f"{remark} | {status_text(snapshot)}" if remark else status_text(snapshot))
 
     def say(self, text: Callable[[], str]) -> None:
         """Any other line, which is asked for when it is shown."""

@@ -25,6 +25,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
             f"{report.instance}, mocapd {report.version}, pid {report.pid}, up {duration(report.uptime_s)}",
         ),
         ("state", f"{_state(report)} ({report.tracker}, {report.tracking})"),
+        *((("preparing", report.preparing),) if report.preparing else ()),
         ("rate", _rate(report)),
         *((("effort", effort),) if (effort := effort_text(report.effort)) else ()),
         ("calibration", _calibration(report, now_unix_s)),

@@ -98,9 +98,14 @@ def cameras_of_origin(origin: str) -> tuple[str, ...]:
     return _origin_kind(origin).cameras(origin)
 
 
-def open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
-    """Everything that it knows. Raises InputError, ConfigError or CannotCreateError."""
-    return _origin_kind(origin).open(origin, cache_dir, progress)
+def open_origin(
+    origin: str, cache_dir: Path, progress: Progress, is_beginning: bool = False
+) -> Origin:
+    """Everything that it knows; `is_beginning`: what can be had soonest is enough. Raises InputError, ConfigError or
+    CannotCreateError."""
+    kind = _origin_kind(origin)
+    opened = kind.open_beginning if is_beginning and kind.open_beginning is not None else kind.open
+    return opened(origin, cache_dir, progress)
 
 
 def address_beside(folder: Path, address: str) -> str:

@@ -15,7 +15,7 @@ from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Sockets
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns, nanoseconds
-from mocapd.sim.film import Film, film_key, load_film
+from mocapd.sim.film import Film, film_key, load_beginning, load_film
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.world import is_out
 from mocapd.types import Frame, FrameSet, LabelledPicture, Rig
@@ -132,10 +132,12 @@ def open_film(
     cache_dir: Path,
     progress: Progress,
     sockets: Sockets | None = None,
+    is_beginning: bool = False,
 ) -> FilmOrigin:
-    """The scenario's film, rendered when it is not in the cache. Raises MocapdError."""
+    """The scenario's film, or the beginning of it, rendered when it is not in the cache. Raises MocapdError."""
     what = "rendering the simulated webcams"
     if not any(cache_dir.glob(f"*{film_key(scenario)[:16]}*")):
         progress(what, 0, 1)  # something to see while the renderer is compiled
-    film = load_film(scenario, cache_dir, lambda done, total: progress(what, done, total))
+    load = load_beginning if is_beginning else load_film
+    film = load(scenario, cache_dir, lambda done, total: progress(what, done, total))
     return FilmOrigin(address, film, sockets)

@@ -3,6 +3,7 @@
 `sim:SCENARIO@FILE.json#CAMERA` sits in a simulated USB socket, from which it is plugged out by changing that file.
 """
 
+from functools import partial
 from pathlib import Path
 
 from mocapd.assets import asset_path
@@ -64,7 +65,9 @@ def _cameras(origin: str) -> tuple[str, ...]:
     return tuple(camera.name for camera in load_scenario(_scenario_path(origin)).cameras)
 
 
-def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
+def _open_origin(
+    origin: str, cache_dir: Path, progress: Progress, is_beginning: bool = False
+) -> Origin:
     # what draws is imported for such cameras only: it takes a second
     from mocapd.capture.simulated.film_origin import open_film
     from mocapd.capture.simulated.sockets import Sockets
@@ -72,7 +75,8 @@ def _open_origin(origin: str, cache_dir: Path, progress: Progress) -> Origin:
 
     _, file = _split(origin)
     sockets = Sockets(user_path(file)) if file else None
-    return open_film(origin, load_scenario(_scenario_path(origin)), cache_dir, progress, sockets)
+    scenario = load_scenario(_scenario_path(origin))
+    return open_film(origin, scenario, cache_dir, progress, sockets, is_beginning)
 
 
 SIM = SourceKind(
@@ -80,5 +84,5 @@ SIM = SourceKind(
     matches=_matches,
     open=_open,
     is_simulated=True,
-    origin=OriginKind(_cameras, _open_origin),
+    origin=OriginKind(_cameras, _open_origin, partial(_open_origin, is_beginning=True)),
 )

@@ -7,6 +7,7 @@ from mocapd.doctor.facts import (
     ClockFacts,
     ConfigFacts,
     LibraryFacts,
+    PreparationFacts,
     ProcessorFacts,
     StateFacts,
     UserFacts,
@@ -101,3 +102,16 @@ def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
     else:
         has = "not installed, and not needed" if facts.vrchat_fix else "installed"
         yield ok("vrchat", f"the extra that finds it is {has}")
+
+
+def check_preparation(facts: PreparationFacts) -> Finding:
+    """Whether the next start takes seconds."""
+    about = "first start"
+    if facts.done:
+        return ok(about, "kernels and pose database are prepared: a start takes seconds")
+    if facts.under_way:
+        return ok(
+            about,
+            "kernels and pose database are being prepared; a start before the end waits for them",
+        )
+    return warn(about, "the next start compiles kernels for about a minute, once", "mocapd prepare")

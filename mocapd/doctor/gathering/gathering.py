@@ -8,6 +8,7 @@ from mocapd.doctor.gathering.camera_facts import camera_facts
 from mocapd.doctor.gathering.folder_facts import folder_facts
 from mocapd.doctor.gathering.library_facts import library_facts
 from mocapd.doctor.gathering.port_facts import port_facts
+from mocapd.doctor.gathering.preparation_facts import preparation_facts
 from mocapd.doctor.gathering.system_facts import (
     clock_facts,
     processor_facts,
@@ -33,4 +34,5 @@ def gathered(effective: Effective, trouble: FactTrouble | None) -> Facts:
         processor=processor_facts(),
         clock=clock_facts(),
         libraries=library_facts(config),
+        preparation=preparation_facts(config),
     )

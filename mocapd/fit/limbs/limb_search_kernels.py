@@ -87,7 +87,10 @@ def pose_arm(
             if i < chain.shape[0] - 1:
                 quat_multiply(G[i - 1], hypothesis[i], G[i])
             else:
-                G[i] = G[i - 1]
+                for a in range(
+                    4
+                ):  # by numbers: numba takes seconds to compile an array's assignment
+                    G[i, a] = G[i - 1, a]
             for a in range(3):
                 J[i, a] = J[i - 1, a]
                 for b in range(3):

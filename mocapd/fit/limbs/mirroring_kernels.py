@@ -60,7 +60,10 @@ def mirrored_in_depth(
                 shortest_turn(bones[k], flipped[k], turn)
                 quat_multiply(turn, globals_xyzw[k], turned[k])
             else:
-                turned[k] = globals_xyzw[k]
+                for i in range(
+                    4
+                ):  # by numbers: numba takes seconds to compile an array's assignment
+                    turned[k, i] = globals_xyzw[k, i]
         for k in range(2):
             quat_inverse(parent_xyzw if k == 0 else turned[0], inverse)
             quat_multiply(inverse, turned[k], out[n, k])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
@@ -22,7 +23,6 @@ from mocapd.shirt.pose_database.idmap_index import (
     fit_projection,
     nearest_centre,
 )
-from mocapd.shirt.pose_database.idmap_index_kernels import farthest_point_radii
 from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS, render_poses
 from mocapd.shirt.pose_database.key_poses import ARMS, TORSOS
 from mocapd.shirt.pose_database.pose_sampling import (
@@ -33,7 +33,7 @@ from mocapd.shirt.pose_database.pose_sampling import (
 )
 from mocapd.types import Bytes, Camera, Floats, Ints, Singles
 
-VERSION = 1  # of what the code makes of the parameters; raise it when that changes
+VERSION = 2  # of what the code makes of the parameters; raise it when that changes
 _POWER = 11  # poses are drawn in pieces of 2**11
 _CHUNK = 2000
 _FITTED = 8000  # poses that the descriptor's axes are fitted to
@@ -48,7 +48,6 @@ class DatabaseParams:
     """How the database is made; all of it enters the content hash."""
 
     count: int = 80_000
-    pool: float = 1.5  # candidates drawn per pose kept
     seed: int = 2011
     stature_m: float = 1.75
     focal_px: float = 650.0
@@ -186,7 +185,7 @@ def render(
 
     def draw(part: slice) -> None:
         render_poses(
-            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], body, model.skin,
+            poses.local_xyzw[part], poses.camera_from_root_xyzw[part], body, plain(model.skin),
             model.triangles, colour, is_shirt, model.parents, params.focal_px, params.distance_m,
             out.packed_maps[part], out.root_m[part], out.side_rad[part],
         )  # fmt: skip
@@ -202,47 +201,41 @@ def build_database(
     progress: Progress = lambda _: None,
     map_chunks: MapChunks = map,
 ) -> PoseDatabase:
-    """Draw a pool of poses, render it, and keep the `count` that lie farthest apart.
+    """Draw poses, render them, and index what they look like.
 
     progress(0..1) is called now and then. Deterministic whatever `map_chunks` does.
     """
     pool = _pool(params, lambda f: progress(0.12 * f))
     model = build_model(params.stature_m)
-    drawn = render(pool, model, params, lambda f: progress(0.12 + 0.70 * f), map_chunks)
+    drawn = render(pool, model, params, lambda f: progress(0.12 + 0.74 * f), map_chunks)
     stride = max(1, len(pool) // _FITTED)
     projection = fit_projection(drawn.packed_maps[::stride], params.dimensions)
     vectors = np.empty((len(pool), params.dimensions), np.float32)
     for a in range(0, len(pool), _CHUNK):
         vectors[a : a + _CHUNK] = projection.vectors(drawn.packed_maps[a : a + _CHUNK])
-    progress(0.92)
+    progress(0.94)
     centres = cluster(vectors[::stride], params.cells, _LLOYD_ROUNDS, params.seed)
     owner = nearest_centre(vectors, centres)
     order = np.argsort(owner, kind="stable")
-    start = np.searchsorted(owner[order], np.arange(params.cells + 1))
-    progress(0.94)
-    radii = np.empty(len(pool), np.float32)
-    farthest_point_radii(vectors[order], start, radii)
-    keep = np.sort(np.argsort(-radii, kind="stable")[: params.count])
-    kept = order[keep]
     progress(1.0)
     return PoseDatabase(
-        local_xyzw=pool.local_xyzw[kept],
-        camera_from_root_xyzw=pool.camera_from_root_xyzw[kept],
-        root_m=drawn.root_m[kept],
-        side_rad=drawn.side_rad[kept],
+        local_xyzw=pool.local_xyzw[order],
+        camera_from_root_xyzw=pool.camera_from_root_xyzw[order],
+        root_m=drawn.root_m[order],
+        side_rad=drawn.side_rad[order],
         index=IdMapIndex(
             projection=projection,
             centres=centres,
-            start=np.searchsorted(owner[kept], np.arange(params.cells + 1)),
-            vectors=vectors[kept],
-            packed_maps=drawn.packed_maps[kept],
+            start=np.searchsorted(owner[order], np.arange(params.cells + 1)),
+            vectors=vectors[order],
+            packed_maps=drawn.packed_maps[order],
         ),
     )
 
 
 def _pool(params: DatabaseParams, progress: Progress) -> PoseSet:
-    """The first count * pool poses of the sequence that are possible."""
-    wanted = int(params.count * params.pool)
+    """The first `count` poses of the sequence that are possible."""
+    wanted = params.count
     local = np.empty((wanted, N_JOINTS, 4), np.float32)
     root = np.empty((wanted, 4), np.float32)
     cube = LowDispersionCube(params.seed)

@@ -129,25 +129,39 @@ def to_points(
 
 
 @njit(cache=True, nogil=True)
-def nearest_exact(
+def one_way_distances(
     query: Bytes,
     maps: Bytes,
     candidates: NDArray[np.int64],
+    to_query: Singles,
+    one_way: NDArray[np.float64],
+) -> None:
+    """Fill one_way (C,): from each of maps[candidates] to `query`, of which to_query (N_IDS,SIZE,SIZE) are the squared
+    distances; one look-up a pixel."""
+    squared_distances(query, to_query)
+    table = to_query.reshape(N_IDS, SIZE * SIZE)
+    is_empty = True
+    for y in range(SIZE):
+        for x in range(SIZE):
+            is_empty &= query[y, x] == 0
+    for n in range(candidates.shape[0]):
+        d = from_packed(maps[candidates[n]], table)
+        one_way[n] = d if d >= 0.0 else (0.0 if is_empty else MISSING)
+
+
+@njit(cache=True, nogil=True)
+def nearest_in_order(
+    query: Bytes,
+    maps: Bytes,
+    candidates: NDArray[np.int64],
+    one_way: NDArray[np.float64],
     best: NDArray[np.int64],
     distance: NDArray[np.float64],
 ) -> None:
-    """The k = len(best) nearest of maps[candidates] to `query` (SIZE,SIZE), nearest first.
-
-    maps (N, SIZE*SIZE/2) packed. The direction that is one table look-up a pixel comes first, and the
-    other only where the first alone does not exceed the k-th best. best holds indices into `maps`, -1
-    where there are fewer than k candidates.
-    """
+    """See `nearest_exact`; candidates in the order of one_way (C,), their distances to the query."""
     k = best.shape[0]
     best[:] = -1
     distance[:] = np.inf
-    to_query = np.empty((N_IDS, SIZE, SIZE), np.float32)
-    squared_distances(query, to_query)
-    table = to_query.reshape(N_IDS, SIZE * SIZE)
     xs, ys = np.empty(SIZE * SIZE, np.float32), np.empty(SIZE * SIZE, np.float32)
     other_xs, other_ys = np.empty(SIZE * SIZE, np.float32), np.empty(SIZE * SIZE, np.float32)
     start, other_start = np.empty(N_IDS + 1, np.int64), np.empty(N_IDS + 1, np.int64)
@@ -155,14 +169,7 @@ def nearest_exact(
     unpacked = np.empty((SIZE, SIZE), np.uint8)
     flat = unpacked.reshape(-1)
     sort_by_colour(query, xs, ys, start)
-
-    one_way = np.empty(candidates.shape[0])
     for n in range(candidates.shape[0]):
-        d = from_packed(maps[candidates[n]], table)
-        one_way[n] = MISSING if d < 0.0 else d
-        if d < 0.0 and start[N_IDS] == 0:
-            one_way[n] = 0.0
-    for n in np.argsort(one_way):
         if one_way[n] >= distance[k - 1]:
             break
         packed = maps[candidates[n]]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, pack
 from mocapd.shirt.pose_database.idmap_descriptor_kernels import LENGTH, describe_packed
-from mocapd.shirt.pose_database.idmap_distance_kernels import nearest_exact
+from mocapd.shirt.pose_database.idmap_distance import nearest_exact
 from mocapd.shirt.pose_database.idmap_index_kernels import scan_cells
 from mocapd.types import Bytes, Ints, Singles
 

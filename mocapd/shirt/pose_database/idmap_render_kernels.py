@@ -1,10 +1,12 @@
 """Drawing the shirt of a pose as a 40x40 id map, many poses in a row."""
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays
+from mocapd.body.arrays import SkinArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
 from mocapd.body.shaping import Shaped
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_window, pack, resample
@@ -50,8 +52,9 @@ def render_poses(
     K = np.array([[focal_px, 0.0, 0.0], [0.0, focal_px, 0.0], [0.0, 0.0, 1.0]])
     identity, no_lens, zero = np.eye(3), np.zeros(5), np.zeros(2)
     t, root = np.zeros(3), np.zeros(3)
-    posed = PosedJoints(rest, R, joints, turned)
-    camera = CameraArrays(identity, t, K, no_lens)
+    # without their names, as the tracker calls that kernel: each form is compiled for itself
+    posed: Any = (rest, R, joints, turned)
+    camera: Any = (identity, t, K, no_lens)
     for n in range(local_xyzw.shape[0]):
         for j in range(J):  # by numbers: numba takes five seconds to compile an array's assignment
             for i in range(4):

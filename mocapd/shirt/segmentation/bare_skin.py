@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mocapd.body.arrays import PosedJoints
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry.camera_model import project
-from mocapd.shirt.segmentation import shirt_appearance_kernels as kernels
+from mocapd.shirt.segmentation import shirt_appearance
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 Disc = tuple[float, float, float]  # x, y, radius [work px]
@@ -98,12 +98,9 @@ def whitening(sums: Floats, cloth_sd: float, noise_sd: float, shading_sd: float)
     """affine (3,4) for `classify`, of skin; far from every pixel while it is not known."""
     if sums[0] < _SEEN_PX:
         return NOWHERE
-    mean, covariance = np.empty((1, 3)), np.empty((1, 3, 3))
-    kernels.gaussians(
+    mean, covariance = shirt_appearance.camera_gaussians(
         np.eye(3), np.zeros((1, 4)), 1.0, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)),
-        cloth_sd, noise_sd, shading_sd, mean, covariance,
+        cloth_sd, noise_sd, shading_sd,
     )  # fmt: skip
-    out = np.empty((1, 3, 4), np.float32)
-    kernels.whitening(mean, covariance, out)
-    affine: Singles = out[0]
+    affine: Singles = shirt_appearance.whitening(mean, covariance)[0]
     return affine

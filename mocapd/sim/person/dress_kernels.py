@@ -50,7 +50,9 @@ def covered(x: Floats | float, reach_m: float, level: float) -> Floats | float:
 
 
 @njit(cache=True, nogil=True)
-def _woven(of: Floats, n: int, cloth: int, along: float, across: float, rgb: Floats) -> None:
+def _woven(
+    of: Floats, n: int, cloth: int | np.int64, along: float, across: float, rgb: Floats
+) -> None:
     """The cloth's colour where the stripes run across `along` [m]."""
     pattern, period = of[n, cloth + _PATTERN], of[n, cloth + _PERIOD]
     share = 0.0
@@ -118,9 +120,9 @@ def surface_colour(
     collar = neck < 0.030**2 and z > of[n, NECK_Z]
     if under_jacket != FLAT and not collar and covered(x, of[n, REACH], level) > 0.0:
         if under_jacket == SLEEVE:
-            _woven(of, n, JACKET, abs(x), z, rgb)
+            _woven(of, n, np.int64(JACKET), abs(x), z, rgb)
         else:
-            _woven(of, n, JACKET, y, x, rgb)
+            _woven(of, n, np.int64(JACKET), y, x, rgb)
         if under_jacket == TRUNK and abs(x) < _ZIP_M and z > of[n, NECK_Z]:
             for c in range(3):
                 rgb[c] = 0.02 + 0.2 * rgb[c]
@@ -128,7 +130,7 @@ def surface_colour(
     if rule == FACE:
         _head(of, n, x, y, z, rgb)
     elif rule == TRUNK:
-        _woven(of, n, TOP, y, x, rgb)
+        _woven(of, n, np.int64(TOP), y, x, rgb)
         if of[n, TOP + _PATTERN] == PRINT and _printed(of, n, x, y, z):
             for c in range(3):
                 rgb[c] = of[n, TOP + _SECOND + c]
@@ -136,9 +138,9 @@ def surface_colour(
             for c in range(3):
                 rgb[c] = of[n, SKIN + c]
     elif rule == SLEEVE:
-        _woven(of, n, TOP, abs(x), z, rgb)
+        _woven(of, n, np.int64(TOP), abs(x), z, rgb)
         if abs(x) > of[n, SLEEVE_END]:
             for c in range(3):
                 rgb[c] = of[n, SKIN + c]
     elif rule == LEG:
-        _woven(of, n, TROUSERS, x, y, rgb)
+        _woven(of, n, np.int64(TROUSERS), x, y, rgb)

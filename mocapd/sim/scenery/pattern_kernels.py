@@ -8,7 +8,7 @@ from mocapd.types import Floats
 
 
 @njit(cache=True, nogil=True)
-def hash01(x: int, y: int, seed: int) -> float:
+def hash01(x: int, y: int | np.int64, seed: int) -> float:
     """A number 0..1 that depends on three integers alone (two rounds of the Murmur3 finaliser)."""
     h = np.uint32(x) * np.uint32(0x9E3779B1) ^ np.uint32(y) * np.uint32(0x85EBCA77)
     h = np.uint32(h ^ (np.uint32(seed) * np.uint32(0xC2B2AE3D)))
@@ -35,8 +35,8 @@ def value_noise(u: float, v: float, seed: int) -> float:
 def _poster(u: float, v: float, seed: int, rgb: Floats) -> None:
     """Discs and a stripe of strong colours on paper; u, v in 0..1 over the sheet."""
     for k in range(7):
-        cu, cv = hash01(k, 1, seed), hash01(k, 2, seed)
-        radius = 0.10 + 0.22 * hash01(k, 3, seed)
+        cu, cv = hash01(k, np.int64(1), seed), hash01(k, np.int64(2), seed)
+        radius = 0.10 + 0.22 * hash01(k, np.int64(3), seed)
         if (u - cu) ** 2 + 1.8 * (v - cv) ** 2 < radius * radius:
             for c in range(3):
                 rgb[c] = 0.04 + 0.75 * hash01(k, 4 + c, seed) ** 2

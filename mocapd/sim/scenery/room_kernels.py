@@ -73,7 +73,7 @@ def _blocked(
 
 
 @njit(cache=True, nogil=True)
-def _face(shapes: Floats, p: int, hit: Floats, normal: Floats, uv: Floats) -> None:
+def _face(shapes: Floats, p: int | np.int64, hit: Floats, normal: Floats, uv: Floats) -> None:
     """Normal (3,) in the world and place on the face, uv = u_m, v_m [m], u, v in 0..1."""
     px, py, pz = hit[0] - shapes[p, 0], hit[1] - shapes[p, 1], hit[2] - shapes[p, 2]
     c, s = shapes[p, 6], shapes[p, 7]
@@ -116,7 +116,8 @@ def cast_room(
             u = np.float64(directions[y, x, 0])
             v = np.float64(directions[y, x, 1])
             w = np.float64(directions[y, x, 2])
-            best, near = -1, _FAR
+            best: int | np.int64 = np.int64(-1)
+            near = _FAR
             for g in range(len(casts)):
                 if _passes(ball, g, origin[0], origin[1], origin[2], u, v, w):
                     for p in range(first[g], first[g + 1]):

@@ -10,11 +10,12 @@ from pathlib import Path
 import psutil
 import pytest
 
-from mocapd.app.daemon.cache_warmup import MARKER, database_beside
+from mocapd.app.daemon.cache_warmup import database_beside
 from mocapd.app.terminal import progress
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.config.sections import Config
 from mocapd.session import tracker_setup
+from mocapd.session.prepared_marker import MARKER
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
@@ -133,9 +134,10 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
     """Also where that is killed, and cannot end its children."""
     program = (
         "import os, sys, time\n"
+        "from pathlib import Path\n"
         "from mocapd.app.daemon import cache_warmup\n"
         "from mocapd.config.sections import Config\n"
-        "def work(config):\n"
+        "def work(config, tell):\n"
         "    print(os.getpid(), flush=True)\n"
         "    cache_warmup._all_end_well(config, (deep,))\n"
         "def deep(config):\n"
@@ -145,7 +147,7 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
         f"with cache_warmup.preparing_apart(Config(cache_dir={str(tmp_path)!r})) as one:\n"
         "    sys.stdin.readline()\n"
     )
-    program = program.replace("cache_dir='", "cache_dir=cache_warmup.Path('").replace("'))", "')))")
+    program = program.replace("cache_dir='", "cache_dir=Path('").replace("'))", "')))")
     with subprocess.Popen(
         [sys.executable, "-c", program],
         stdin=subprocess.PIPE,

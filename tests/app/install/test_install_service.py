@@ -73,7 +73,14 @@ def test_another_interpreter_renews_the_units_alone(tmp_path: Path) -> None:
     install(InstallTarget(root=tmp_path, python=Path("/old/bin/python")))
     done = install(InstallTarget(root=tmp_path, python=Path("/new/bin/python")))
     renewed = {one.path.name for one in done if one.outcome is Outcome.RENEWED}
-    assert renewed == {"mocapd.service", "mocapd@.service", "mocapd-camera-node.service"}
+    assert renewed == {
+        *(
+            "mocapd.service",
+            "mocapd@.service",
+            "mocapd-camera-node.service",
+            "mocapd-prepare.service",
+        )
+    }
     assert "ExecStart=/new/bin/python -P" in (tmp_path / UNIT).read_text()
 
 
@@ -185,7 +192,7 @@ def test_a_folder_where_the_unit_belongs_is_refused_by_name(tmp_path: Path) -> N
 def test_the_machines_own_has_each_file_once_and_says_what_comes_next() -> None:
     places = of_machine()
     paths = [one.path for one in files(places, Path("/opt/m/bin/python"))]
-    assert len(paths) == len({*paths}) == 7
+    assert len(paths) == len({*paths}) == 8
     assert all(path.is_relative_to("/etc") for path in paths)
     fresh = [InstallStep(path, Outcome.MADE, False) for path in paths]
     steps = "\n".join(next_steps(InstallTarget(), fresh))
@@ -240,12 +247,12 @@ def test_the_commands_say_what_they_do(clean_env: dict[str, str], tmp_path: Path
     made = mocapd_here(clean_env, "install-service", "--root", root)
     assert made.code == 0, made.err
     assert f"{root / UNIT} " in made.out
-    assert made.out.count(" made\n") == 8
+    assert made.out.count(" made\n") == 9
     (root / UNIT).write_text("[Service]\n")
     again = mocapd_here(clean_env, "install-service", "--root", root)
     assert "yours, left alone" in again.out
     assert "move your changes into a drop-in" in again.err
     gone = mocapd_here(clean_env, "uninstall-service", "--root", root)
-    assert gone.out.count(" removed\n") == 6
+    assert gone.out.count(" removed\n") == 7
     both = mocapd_here(clean_env, "install-service", "--root", root, "--user")
     assert (both.code, both.err.count("\n")) == (2, 1)

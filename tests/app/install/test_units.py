@@ -13,7 +13,12 @@ from mocapd.app.install.installing import InstallTarget, install
 from mocapd.config.effective import load_config
 
 TIGHT_ENOUGH = "20"  # in tenths: 2.0 of 10, "OK"
-UNITS = ("mocapd.service", "mocapd@.service", "mocapd-camera-node.service")
+UNITS = (
+    "mocapd.service",
+    "mocapd@.service",
+    "mocapd-prepare.service",
+    "mocapd-camera-node.service",
+)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +53,13 @@ def said(*words: str | Path, env: dict[str, str] | None = None) -> tuple[int, st
 
 
 @pytest.mark.parametrize(
-    "unit", ["mocapd.service", "mocapd@hall.service", "mocapd-camera-node.service"]
+    "unit",
+    [
+        "mocapd.service",
+        "mocapd@hall.service",
+        "mocapd-prepare.service",
+        "mocapd-camera-node.service",
+    ],
 )
 def test_systemd_has_nothing_to_complain_of(analyze: str, package: Path, unit: str) -> None:
     path = package / "usr/lib/systemd/system" / unit
@@ -106,6 +117,11 @@ def test_no_unit_takes_the_machines_memory(package: Path, unit: str) -> None:
     assert found == {"MemoryMax": "2G", "TasksMax": "512", "LimitNOFILE": "4096"}
 
 
+def test_what_prepares_is_the_daemons_user_with_the_daemons_cache(package: Path) -> None:
+    folder, own = package / "usr/lib/systemd/system", ("User", "CacheDirectory", "StateDirectory")
+    assert settings_of(folder / UNITS[2], own) == settings_of(folder / UNITS[0], own)
+
+
 def settings_of(unit: Path, names: tuple[str, ...]) -> dict[str, str]:
     """Those of these settings that the unit has."""
     lines = (line.partition("=") for line in unit.read_text().splitlines())
@@ -115,7 +131,7 @@ def settings_of(unit: Path, names: tuple[str, ...]) -> dict[str, str]:
 def test_the_units_start_the_mocapd_that_installed_them(package: Path) -> None:
     for path in package.glob("usr/lib/systemd/*/mocapd*.service"):
         (started,) = re.findall(r"^ExecStart=(.*)$", path.read_text(), re.MULTILINE)
-        command = "camera-node" if "camera-node" in path.name else "run"
+        command = path.stem.removeprefix("mocapd-") if "-" in path.stem else "run"
         assert started == f"{sys.executable} -P -m mocapd.cli.main {command}"
         shown = said(*started.split()[:-1], "version")
         assert shown[0] == 0, shown[1]

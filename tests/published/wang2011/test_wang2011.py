@@ -119,7 +119,7 @@ def frame_set(
 
 @pytest.fixture(scope="module")
 def database() -> PoseDatabase:
-    return build_database(DatabaseParams(count=4000, pool=1.2, cells=32))
+    return build_database(DatabaseParams(count=4000, cells=32))
 
 
 def tracker(database: PoseDatabase, params: Params | None = None) -> Stepping:

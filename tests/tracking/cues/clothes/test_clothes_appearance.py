@@ -128,13 +128,18 @@ def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
     assert worn.label.max() <= max(Region)
 
 
+def unlooked(drawn: Bytes) -> Singles:
+    """The odds of a picture that the network did not look at."""
+    return np.zeros(drawn.shape, np.float32)
+
+
 def test_colours_are_expected_as_dim_as_the_background_became() -> None:
     appearance, _, drawn = learned()
     dim, _ = dressed(0.5)
     shifted = region_distances(np.roll(drawn, 12, axis=1))
     before = before_of(drawn)
     appearance.relight(np.full(3, 0.5))
-    ids = appearance.classify(dim, before, shifted, np.ones_like(drawn))
+    ids = appearance.classify(dim, before, shifted, np.ones_like(drawn), unlooked(drawn))
     assert np.mean(ids[drawn == Region.FOOT] == Region.FOOT) > 0.9
 
 
@@ -144,26 +149,37 @@ def test_a_pose_that_disagrees_does_not_teach() -> None:
     wrong = np.where(drawn == Region.FOOT, Region.TRUNK, drawn).astype(np.uint8)
     for _ in range(200):
         ids = appearance.classify(
-            picture, before_of(drawn), region_distances(drawn), np.ones_like(drawn)
+            picture, before_of(drawn), region_distances(drawn), np.ones_like(drawn), unlooked(drawn)
         )
         appearance.learn(picture, wrong, before_of(drawn), ids)
     assert appearance.overlap(Region.TRUNK, Region.FOOT) < 0.05
 
 
-@pytest.mark.parametrize(("what", "on_floor", "is_body"), [
-    (BEFORE, 1, True), (SHADOW, 1, False), (CLOTH_OR_SHADOW, 1, False), (CLOTH_OR_SHADOW, 0, True),
-])  # fmt: skip
-def test_a_dark_pixel_is_a_shadow_on_the_floor_and_cloth_elsewhere(
-    what: int, on_floor: int, is_body: bool
-) -> None:
+def is_body(what: int, on_floor: int, person_odds: float) -> bool:
+    """Of a dark pixel 6 px from the body."""
     table = np.full((N_CLASSES, N_BINS), 5.0, np.float32)
     distance = np.full((N_CLASSES - 1, 1, 1), 6.0, np.float32)
     out = np.empty((1, 1), np.uint8)
     classify_regions(
         np.zeros((1, 1, 3), np.uint8), np.full((1, 1), what, np.uint8), distance, table, 0.25, 40.0, 26.0,
-        1e6, 0.5, 8.0, (1.5, 4.0), 0.75, 4.0, np.full((1, 1), on_floor, np.uint8), out,
+        1e6, 0.5, 8.0, (1.5, 4.0), 0.75, 4.0, np.full((1, 1), on_floor, np.uint8),
+        np.full((1, 1), person_odds, np.float32), 1.0, 3.0, out,
     )  # fmt: skip
-    assert bool(out[0, 0]) == is_body
+    return bool(out[0, 0])
+
+
+@pytest.mark.parametrize(("what", "on_floor", "body"), [
+    (BEFORE, 1, True), (SHADOW, 1, False), (CLOTH_OR_SHADOW, 1, False), (CLOTH_OR_SHADOW, 0, True),
+])  # fmt: skip
+def test_a_dark_pixel_is_a_shadow_on_the_floor_and_cloth_elsewhere(
+    what: int, on_floor: int, body: bool
+) -> None:
+    assert is_body(what, on_floor, 0.0) == body
+
+
+def test_where_the_network_sees_the_person_a_likely_shadow_is_cloth() -> None:
+    assert is_body(CLOTH_OR_SHADOW, 1, 5.0)
+    assert not is_body(CLOTH_OR_SHADOW, 1, -5.0)
 
 
 def test_the_table_is_the_smoothed_share_of_each_class() -> None:

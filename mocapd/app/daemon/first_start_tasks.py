@@ -1,0 +1,111 @@
+"""What a first start makes, as tasks: compiled kernels, the film of simulated webcams, the pose database."""
+
+import time
+from functools import partial
+from typing import TYPE_CHECKING
+
+from mocapd.app.daemon.task_pool import Share, Task
+from mocapd.kernels.kernel_table import KernelRow, callees_of_rows, read_table, rows_of
+from mocapd.kernels.locator import KernelLocator
+
+if TYPE_CHECKING:
+    from mocapd.config.sections import Config
+
+COMPILING, DATABASE, FILM = "compiling", "pose database", "film"
+# by tracker, the stages of the table (lab/kernel_seconds.py) that it needs
+_STAGES = {
+    "auto": ("shirt", "clothes", "auto"),
+    "shirt": ("shirt",),
+    "markerless": ("clothes",),
+}
+_LOOP = 50_000
+TABLE_LOOP_S = 0.0028  # `loop_s` there
+_DATABASE_S, _FILM_S, _BEGINNING_S = (
+    20.0,
+    11.0,
+    3.0,
+)  # on the table's machine, without their kernels
+
+
+def loop_s() -> float:
+    """Seconds of CPU that a fixed loop takes: what machines are compared by."""
+    return min(_timed_loop_s() for _ in range(5))
+
+
+def machine_pace() -> float:
+    """How much longer this machine takes than the one that the table was made on."""
+    return loop_s() / TABLE_LOOP_S
+
+
+def _timed_loop_s() -> float:
+    began_s = time.thread_time()
+    sum(i * i for i in range(_LOOP))
+    return time.thread_time() - began_s
+
+
+def has_tasks(tracker: str) -> bool:
+    """Whether the table knows what this tracker compiles."""
+    return tracker in _STAGES
+
+
+def begins_early(config: "Config") -> bool:
+    """Whether the stream begins with what is ready first: the person of simulated webcams, by the shirt alone, in the
+    first seconds of the film. Real cameras were set up with a tracker that is compiled by then."""
+    from mocapd.capture.kinds.source_kinds import is_simulated
+
+    simulated = any(is_simulated(camera.source) for camera in config.camera)
+    return simulated and config.tracker.name == "auto"
+
+
+def first_start_tasks(config: "Config") -> list[Task]:
+    """All that this configuration needs and that may be missing. Imports the kernels."""
+    from mocapd.capture.kinds.source_kinds import is_simulated
+    from mocapd.trackers.registry import TRACKERS, has_caches
+
+    name, stages = config.tracker.name, list(_STAGES[config.tracker.name])
+    has_film = any(is_simulated(camera.source) for camera in config.camera)
+    has_database = bool(TRACKERS[name].caches) and not has_caches(name, config.cache_dir)
+    stages += ["film"] * has_film + ["database"] * has_database
+    first = {"shirt", "film", "database"} if begins_early(config) else set(stages)
+    rows = rows_of(read_table(), stages)
+    tasks = [
+        Task(COMPILING, row.seconds, partial(_compile, row), after, not row.stages & first)
+        for row, after in zip(rows, callees_of_rows(rows), strict=True)
+    ]
+    if has_database:
+        making = partial(_make_database, config)
+        tasks.append(Task(DATABASE, _DATABASE_S, making, _needed(rows, "database"), tells=True))
+    if has_film:
+        needed = _needed(rows, "film")
+        if begins_early(config):
+            beginning = partial(_make_film, config, is_beginning=True)
+            tasks.append(Task(FILM, _BEGINNING_S, beginning, needed, tells=True))
+            needed |= {len(tasks) - 1}
+        whole = partial(_make_film, config)
+        tasks.append(Task(FILM, _FILM_S, whole, needed, begins_early(config), tells=True))
+    return tasks
+
+
+def _needed(rows: tuple[KernelRow, ...], stage: str) -> frozenset[int]:
+    return frozenset(i for i, row in enumerate(rows) if stage in row.stages)
+
+
+def _compile(row: KernelRow, _tell: Share) -> None:
+    row.dispatcher.compile(row.arguments)
+    function = row.dispatcher.py_func
+    locator = KernelLocator.from_function(function, function.__code__.co_filename)
+    if locator is not None:
+        locator.remove_old(time.time())
+
+
+def _make_database(config: "Config", tell: Share) -> None:
+    from mocapd.session.tracker_setup import make_caches
+
+    make_caches(config.tracker.name, config.cache_dir, lambda _, done, of: tell(done / of))
+
+
+def _make_film(config: "Config", tell: Share, is_beginning: bool = False) -> None:
+    from mocapd.capture.kinds.source_kinds import open_origin, origin_of
+
+    for origin in {origin_of(camera.source) for camera in config.camera}:
+        open_origin(origin, config.cache_dir, lambda _, done, of: tell(done / of), is_beginning)

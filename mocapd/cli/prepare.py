@@ -1,0 +1,46 @@
+"""`mocapd prepare`"""
+
+import typer
+
+from mocapd.cli.options import ConfigOption, SetOption, effective_config
+
+
+def add_to(app: typer.Typer) -> None:
+    """Make it a command."""
+    app.command("prepare")(prepare)
+
+
+def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
+    """Make now what the first start would make: compiled kernels and the pose database.
+
+    About a minute, once on a machine and after an upgrade that changed them; a start then takes seconds. The Debian
+    package does so in the background when it is installed. `mocapd doctor` says whether it is done.
+
+    Example: mocapd prepare
+    """
+    from mocapd.app.libraries import prepare_libraries
+    from mocapd.app.terminal.logs import set_up_logs
+    from mocapd.errors import ConfigError, UnavailableError
+
+    effective = effective_config(config, settings).config
+    set_up_logs(effective.log_level)
+    prepare_libraries(effective.cache_dir)
+
+    from mocapd.app.daemon.cache_warmup import prepare_apart
+    from mocapd.app.daemon.first_start_tasks import has_tasks
+    from mocapd.session.prepared_marker import is_prepared
+
+    if not has_tasks(effective.tracker.name):
+        raise ConfigError(
+            f"the tracker {effective.tracker.name!r} is prepared by its first start alone",
+            "tracker.name",
+            "start it, or prepare auto, shirt or markerless",
+        )
+    prepare_apart(effective)
+    if not is_prepared(effective):
+        raise UnavailableError(
+            "not everything could be prepared",
+            str(effective.cache_dir),
+            "see what `mocapd run` says",
+        )
+    print("prepared: the next start takes seconds")

@@ -1,0 +1,68 @@
+"""What this code was prepared for before: a line for each in a file of the cache folder."""
+
+import hashlib
+import logging
+import platform
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mocapd
+from mocapd.boundary.files import read_text
+from mocapd.capture.kinds.source_kinds import is_simulated
+from mocapd.errors import InputError
+from mocapd.whole_file import whole_file
+
+if TYPE_CHECKING:
+    from mocapd.config.sections import Config
+
+MARKER = "prepared"
+LOCK = "prepared.lock"  # held by who prepares
+REMEMBERED = 8
+_MOST_BYTES = 1 << 16
+
+_log = logging.getLogger(__name__)
+
+
+def is_prepared(config: "Config", what: str = "") -> bool:
+    """Whether this code, with this tracker, was prepared; `what`: only a part, everything when empty. False where the
+    marker cannot be read: then all is prepared once more."""
+    return _fingerprint(config, what) in _remembered(config.cache_dir / MARKER)
+
+
+def remember(config: "Config", what: str = "") -> None:
+    """It is prepared. A marker that cannot be written is a warning."""
+    marker, now = config.cache_dir / MARKER, _fingerprint(config, what)
+    done = _remembered(marker)
+    if now in done:
+        return
+    try:
+        with whole_file(marker) as partial:
+            partial.write_text("\n".join([*done[1 - REMEMBERED :], now]) + "\n", "utf-8")
+    except OSError as error:
+        _log.warning(
+            "%s cannot be written (%s): the next start prepares everything again",
+            *(marker, error.strerror),
+        )
+
+
+def _remembered(marker: Path) -> list[str]:
+    try:
+        return read_text(marker, _MOST_BYTES).split()
+    except InputError:
+        return []
+
+
+def _fingerprint(config: "Config", what: str) -> str:
+    """Of everything that compiled code and caches depend on."""
+    package = Path(mocapd.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*.py")):
+        stat = path.stat()
+        digest.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
+    # what draws simulated webcams is compiled for them alone
+    tracker = config.tracker.name
+    if any(is_simulated(camera.source) for camera in config.camera):
+        tracker += " simulated"
+    digest.update(f"{platform.python_version()} {version('numba')} {tracker}{what}".encode())
+    return digest.hexdigest()

@@ -1,0 +1,114 @@
+"""A first start whose stream begins before everything is prepared."""
+
+import multiprocessing
+import time
+from pathlib import Path
+
+import pytest
+
+from mocapd.app.daemon import cache_warmup
+from mocapd.app.daemon.cache_warmup import Preparation
+from mocapd.app.daemon.early_start import EarlyStart
+from mocapd.app.daemon.first_start_tasks import begins_early, first_start_tasks
+from mocapd.app.daemon.session_change import PREPARED
+from mocapd.app.daemon.task_pool import Share, Task, run_tasks
+from mocapd.config.sections import CameraSection, Config, TrackerSection
+from tests.outputs.frames import eventually
+
+SIMULATED = (
+    CameraSection("cam0", "sim:living_room#cam0"),
+    CameraSection("cam1", "sim:living_room#cam1"),
+)
+REAL = (CameraSection("left", "/dev/video0"), CameraSection("right", "/dev/video2"))
+
+
+def test_the_demo_waits_for_the_shirt_and_real_cameras_for_everything(tmp_path: Path) -> None:
+    demo = Config(cache_dir=tmp_path, camera=SIMULATED)
+    tasks = first_start_tasks(demo)
+    later = {i for i, task in enumerate(tasks) if task.is_later}
+    assert begins_early(demo)
+    assert {tasks[i].what for i in later} == {"compiling", "film"}
+    assert all(task.is_later or not task.after & later for task in tasks)
+    first_s = sum(task.seconds for task in tasks if not task.is_later)
+    assert first_s < 0.85 * sum(task.seconds for task in tasks)
+    for config in (
+        Config(cache_dir=tmp_path, camera=REAL),
+        Config(cache_dir=tmp_path, camera=SIMULATED, tracker=TrackerSection("markerless")),
+    ):
+        assert not begins_early(config)
+        assert not any(task.is_later for task in first_start_tasks(config))
+
+
+def test_what_is_there_is_not_made_again(tmp_path: Path) -> None:
+    config = Config(cache_dir=tmp_path, camera=REAL)
+    assert any(task.what == "pose database" for task in first_start_tasks(config))
+    (tmp_path / "pose_database.bin").touch()
+    assert {task.what for task in first_start_tasks(config)} == {"compiling"}
+
+
+def test_later_tasks_come_last_and_the_first_are_told_to_be_over(tmp_path: Path) -> None:
+    said = tmp_path / "said"
+
+    def noting(name: str, is_later: bool) -> Task:
+        def work(_tell: Share) -> None:
+            with said.open("a") as out:
+                out.write(name)
+
+        return Task("all", 1.0 + 9.0 * is_later, work, is_later=is_later)
+
+    tasks = [noting("later ", True), noting("first ", False)]
+
+    def told() -> None:
+        noting("told ", False).work(lambda _: None)
+
+    assert run_tasks(tasks, 1, lambda _: None, 1.0, told)
+    assert said.read_text() == "first told later "
+
+
+def test_waiting_ends_when_a_stream_can_begin(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is left goes on, and ends with the block."""
+
+    def prepare(_config: Config, tell: cache_warmup.Tell) -> None:
+        tell("compiling 40 %")
+        tell(cache_warmup._READY)
+        tell("compiling 90 %")
+        time.sleep(600.0)
+
+    monkeypatch.setattr(cache_warmup, "prepare_apart", prepare)
+    with cache_warmup.preparing_apart(Config(cache_dir=tmp_path)) as preparation:
+        preparation.wait()
+        over = [preparation.is_over]
+        assert eventually(lambda: preparation.newest() == "compiling 90 %", 60.0)
+    over.append(preparation.is_over)
+    assert over == [False, True]
+    assert preparation.newest() == ""
+
+
+class Change:
+    """Stands for the session's change."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+
+    def ask(self, why: str) -> None:
+        self.asked.append(why)
+
+
+def test_the_whole_tracker_is_asked_for_once_when_all_is_prepared() -> None:
+    child = multiprocessing.get_context("fork").Process(target=time.sleep, args=(600.0,))
+    child.start()
+    change, told = Change(), list[str]()
+    early = EarlyStart(Preparation(child), change, told.append)  # type: ignore[arg-type]
+    early.on_tick(None)  # type: ignore[arg-type]
+    assert change.asked == []
+    assert told[-1]
+    child.kill()
+    child.join()
+    for _ in range(3):
+        early.on_tick(None)  # type: ignore[arg-type]
+    assert change.asked == [PREPARED]
+    assert told[-1] == ""
+    EarlyStart(Preparation(None), change, told.append).on_tick(None)  # type: ignore[arg-type]
+    assert change.asked == [PREPARED]

@@ -1,0 +1,153 @@
+"""Which compiled code is still good, and the table of what a first start compiles."""
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+
+from mocapd.body.arrays import SkinArrays
+from mocapd.body.posing_kernels import quat_exp
+from mocapd.errors import MalformedError
+from mocapd.kernels.kernel_table import callees_of_rows, read_table, rows_of
+from mocapd.kernels.locator import KernelLocator
+from mocapd.kernels.type_codes import decode, encode
+
+typeof: Any = numba.typeof  # it carries no types
+
+CALLEE = """\
+from numba import njit
+SCALE = {scale}
+@njit(cache=True)
+def scaled(x):
+    '''{words}'''
+    return {term} * SCALE
+"""
+CALLER = """\
+from numba import njit
+from mocapd.callee_kernels import scaled
+@njit(cache=True{option})
+def twice(x):
+    return 2.0 * scaled(x)
+"""
+PROGRAM = """\
+import sys
+from pathlib import Path
+folder, cache = Path(sys.argv[1]), Path(sys.argv[2])
+from mocapd.app.libraries import use_cache_dir
+import os
+os.environ["NUMBA_CACHE_DIR"] = str(cache / "numba")
+use_cache_dir(cache)
+import mocapd
+import mocapd.kernels.locator as locator
+mocapd.__path__.append(str(folder))
+locator._PACKAGE = folder
+from mocapd.caller_kernels import twice
+from mocapd.kernels.compile_events import compile_events
+with compile_events() as compiled:
+    print(twice(3.0), *sorted(one.function for one in compiled if one.module.startswith("mocapd.")))
+"""
+
+
+class Kernels:
+    """Two modules of kernels, one of which calls the other, as an upgrade may change them."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.cache = folder / "mocapd", folder / "cache"
+        self.folder.mkdir()
+
+    def said(
+        self, scale: int = 1, words: str = "", term: str = "x", option: str = "", above: str = ""
+    ) -> str:
+        (self.folder / "callee_kernels.py").write_text(
+            above + CALLEE.format(scale=scale, words=words, term=term)
+        )
+        (self.folder / "caller_kernels.py").write_text(CALLER.format(option=option))
+        command = [sys.executable, "-c", PROGRAM, str(self.folder), str(self.cache)]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path) -> None:
+    """Also where the callee is of another file, or only a constant or an option differs; words change nothing."""
+    kernels = Kernels(tmp_path)
+    assert kernels.said() == "6.0 scaled twice"
+    assert kernels.said(words="Other words.", above="# a comment\n\n") == "6.0"
+    assert kernels.said(scale=2) == "12.0 scaled twice"
+    assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
+    assert kernels.said(option=", fastmath=True") == "6.0 twice"
+    assert kernels.said() == "6.0"  # an earlier version's is there still
+
+
+def test_code_of_versions_that_are_gone_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a month: until then a checkout may come back to them."""
+    monkeypatch.setattr(numba.core.config, "CACHE_DIR", str(tmp_path))
+    function = quat_exp.py_func
+    locator = KernelLocator.from_function(function, function.__code__.co_filename)
+    assert locator is not None
+    folder = Path(locator.get_cache_path())
+    own = folder / f"posing_kernels.quat_exp-{locator.get_disambiguator()}.py311.nbi"
+    names = (
+        "posing_kernels.quat_exp-29.py311.nbi",
+        "posing_kernels.quat_exp-29.py311.1.nbc",
+        "posing_kernels.quat_log-9.py311.nbi",
+    )
+    for path in (own, *(folder / name for name in names)):
+        path.touch()
+    locator.remove_old(time.time() + 29 * 86400.0)
+    assert len([*folder.iterdir()]) == 4
+    locator.remove_old(time.time() + 31 * 86400.0)
+    assert {path.name for path in folder.iterdir()} == {own.name, names[2]}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        *(
+            1.5,
+            3,
+            True,
+            None,
+            np.float32(1),
+            np.zeros((2, 3)),
+            np.zeros(4, np.uint8),
+            np.zeros((4, 4))[:, ::2],
+        ),
+        *((1.0, 2), (np.zeros(2), np.zeros((2, 2), np.int32))),
+        SkinArrays(np.zeros((2, 2), np.int32), np.zeros((2, 2))),
+    ],
+    ids=repr,
+)
+def test_an_argument_type_comes_back_from_its_code(value: object) -> None:
+    assert decode(encode(typeof(value))) == typeof(value)
+
+
+@pytest.mark.parametrize(
+    "code", ["float65", "float64[2X]", {"named": "mocapd.body.arrays:Nobody", "of": []}, {}]
+)
+def test_a_code_that_names_nothing_is_an_error(code: object) -> None:
+    with pytest.raises(MalformedError):
+        decode(code)  # type: ignore[arg-type]
+
+
+def test_the_table_names_kernels_that_there_are_callees_first() -> None:
+    """Made by `python -m lab.kernel_seconds --write`: do that when a kernel of it is renamed or takes other arguments."""
+    rows = read_table()
+    for row in rows:
+        assert row.dispatcher.py_func.__name__ == row.function
+        assert row.arguments
+        assert 0.0 <= row.seconds < 60.0
+    after = callees_of_rows(rows)
+    callers = {
+        rows[i].function: {rows[j].function for j in earlier} for i, earlier in enumerate(after)
+    }
+    assert "quat_multiply" in callers["follow_bones"]
+    assert {"film", "database", "shirt", "clothes", "auto"} == {
+        stage for row in rows for stage in row.stages
+    }
+    assert 0 < len(rows_of(rows, ["shirt"])) < len(rows)
