@@ -92,13 +92,13 @@ class StatusReport(msgspec.Struct, frozen=True):
     """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
     lag_median_ms: how much older than that the pose of somebody who moves is, by the tracker's filter and smoothing;
     published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
-    tracked though somebody moves, and what they can do; mostly empty; effort: see messages.Health."""
+    tracked though somebody moves, and what they can do; mostly empty; effort, slowness: see messages.Health."""
 
     version: str
     pid: int
     instance: str
     state_dir: str
-    state: Literal["tracking", "nobody", "starting", "blind"]
+    state: Literal["tracking", "nobody", "slow", "starting", "blind"]
     tracker: str
     tracking: str
     rate_hz: float
@@ -115,3 +115,4 @@ class StatusReport(msgspec.Struct, frozen=True):
     schema: str = STATUS
     effort: str = "full"
     lag_median_ms: float | None = None
+    slowness: str = ""

@@ -17,6 +17,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.latency_histogram import LatencyHistogram
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
+from mocapd.pipeline.slowness import Slowness
 from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
@@ -97,6 +98,7 @@ class TinyHost:
         self.why_not = ""
         self.begun = 0
         self.tracks = True
+        self.slowness: Slowness | None = None
         self.skeleton = standard_skeleton(1.75)
         self._state_dir = state_dir
         self._died: list[BaseException] = []
@@ -164,6 +166,7 @@ class TinyHost:
         metrics = Metrics(
             *(29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}),
             latency_counts=latencies.counts(),
+            slowness=self.slowness,
         )
         lost = "/dev/video2: gone -- plug it in again"
         status = {

@@ -34,6 +34,9 @@ def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
         told = f"{one.instance} (pid {one.pid}) is running"
         if one.state == "blind":
             yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
+        elif one.slowness:
+            what, _, fix = one.slowness.partition(" -- ")
+            yield bad("daemon", f"{told}: {what}", fix)
         elif one.effort in EFFORT_TROUBLE:
             what, fix = EFFORT_TROUBLE[one.effort]
             yield warn("daemon", f"{told}: {what}", fix)

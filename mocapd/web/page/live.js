@@ -12,6 +12,7 @@ const TRACKING = {
 const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
 
 function tracking(figures) {
+  if (figures.slowness) return [capital(figures.slowness.replace(" -- ", ". Mend: ")), "failed"];
   if (figures.tracking === "lost" && figures.lost_reason) {
     return [`Nobody is tracked: ${figures.lost_reason}`, "working"];
   }
@@ -144,6 +145,10 @@ export class Live {
     for (const plot of this.plots) plot.destroy();
     this.root.replaceChildren();
   }
+}
+
+function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
 function number(value) {

@@ -16,7 +16,10 @@ from goalkeeper.core.match import Match, MatchRules, Phase
 from goalkeeper.render import pictures
 from goalkeeper.render.panda_space import PANDA_FROM_GOAL, to_panda
 from goalkeeper.sound import synth
+from goalkeeper.streams.sighting import StreamState
 from tests.clients.goalkeeper.test_match import AT_HAND, AimedShooter, play, playing, t_pose
+
+OK = StreamState()
 
 
 def test_the_goals_frame_is_turned_and_not_mirrored() -> None:
@@ -33,17 +36,28 @@ def test_the_goals_frame_is_turned_and_not_mirrored() -> None:
 def test_words_follow_the_match() -> None:
     match = Match(MatchRules(), AimedShooter(AT_HAND))
     match.tick(None)
-    assert "stretch both arms" in hud_text(match, "", "", "", None).message
-    assert hud_text(match, "", "no mocapd there", "", None).message == "no mocapd there"
+    assert "stretch both arms" in hud_text(match, "", OK, "", None).message
+    assert (
+        hud_text(match, "", StreamState("no mocapd there"), "", None).message == "no mocapd there"
+    )
     play(match, t_pose(), 0.7)
-    assert hud_text(match, "", "", "", None).big == "3"
+    assert hud_text(match, "", OK, "", None).big == "3"
     match = playing(AT_HAND)
-    text = hud_text(match, "60 Hz", "", "SAVED", None)
+    text = hud_text(match, "60 Hz", OK, "SAVED", None)
     assert (text.clock, text.score, text.streak, text.popup) == ("2:00", "0", "0 : 0", "SAVED")
     play(match, None, 1.0)
-    text = hud_text(match, "", "", "", None)
+    text = hud_text(match, "", OK, "", None)
     assert (match.phase, text.big) == (Phase.PAUSED, "PAUSE")
     assert "tracking lost" in text.message
+
+
+def test_a_slow_machine_is_not_blamed_on_the_player() -> None:
+    slow = StreamState(slow="too slow: 95 % of the frame sets are skipped -- close other programs")
+    match = playing(AT_HAND)
+    assert "tracking is slow" in hud_text(match, "60 Hz", slow, "", None).foot
+    play(match, None, 1.0)
+    text = hud_text(match, "", slow, "", None)
+    assert text.message == "tracking is slow: close other programs"
 
 
 def test_a_save_is_shown_for_a_moment() -> None:

@@ -71,9 +71,9 @@ class Game:
         if any(isinstance(event, RoundOver) for event in events):
             today = datetime.date.today().isoformat()
             self._placed = keep_round(self._parts.scores, self.match.score, today)
-        trouble = self._parts.stream.state().trouble
+        state = self._parts.stream.state()
         text = hud_text(
-            self.match, self._foot(now_s), trouble, self._popups.text(now_s), self._placed
+            self.match, self._foot(now_s), state, self._popups.text(now_s), self._placed
         )
         self._seen.update(self.match, Moving(now_s, now_s - self._last_s, self.view), text)
         self._last_s = now_s

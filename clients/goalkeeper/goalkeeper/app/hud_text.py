@@ -2,8 +2,9 @@
 
 from goalkeeper.app.high_scores import Placed
 from goalkeeper.core.events import Conceded, Event, Saved
-from goalkeeper.core.match import Match, Phase
+from goalkeeper.core.match import LOST, Match, Phase
 from goalkeeper.render.hud_lines import HudText
+from goalkeeper.streams.sighting import StreamState
 
 POPUP_S = 1.1
 _KEYS = "V view   P pause   C calibrate   F fullscreen   Esc quit"
@@ -33,19 +34,25 @@ class Popups:
         return self._text if now_s < self._until_s else ""
 
 
-def hud_text(match: Match, foot: str, trouble: str, popup: str, placed: Placed | None) -> HudText:
-    """foot: rate and latency; trouble: of the stream; placed: the table of high scores once the round is over."""
+def hud_text(
+    match: Match, foot: str, stream: StreamState, popup: str, placed: Placed | None
+) -> HudText:
+    """foot: rate and latency; stream: how it fares; placed: the table of high scores once the round is over."""
     score, phase = match.score, match.phase
     minutes, seconds = divmod(int(match.left_s + 0.999), 60)
     times = f"  x{score.multiplier}" if score.multiplier > 1 else ""
     big = message = table = ""
     if phase is Phase.CALIBRATING:
         done = round(100 * match.finder.progress)
-        message = trouble or _ASK_FOR_T + (f"  {done} %" if done else "")
+        message = stream.trouble or _slow(stream)
+        message = message or _ASK_FOR_T + (f"  {done} %" if done else "")
     elif phase is Phase.COUNTDOWN:
         big = str(max(match.counted, 1))
     elif phase is Phase.PAUSED:
-        big, message = "PAUSE", trouble or match.pause_reason
+        lost = _slow(stream) if match.pause_reason == LOST else ""
+        big, message = "PAUSE", stream.trouble or lost or match.pause_reason
+    elif phase is Phase.PLAYING and stream.slow:
+        foot = f"tracking is slow   {foot}"
     elif phase is Phase.REPLAY:
         message = "BEST SAVE"
     elif phase is Phase.OVER:
@@ -62,6 +69,12 @@ def hud_text(match: Match, foot: str, trouble: str, popup: str, placed: Placed |
         level=match.difficulty.level,
         table=table,
     )
+
+
+def _slow(stream: StreamState) -> str:
+    """For the player, what helps against too few poses: they did not leave the view."""
+    fix = stream.slow.partition(" -- ")[2]
+    return f"tracking is slow: {fix or stream.slow}" if stream.slow else ""
 
 
 def _table(match: Match, placed: Placed | None) -> str:

@@ -22,6 +22,7 @@ from goalkeeper.render.stage import Renderer, Stage, StageParams, open_stage
 from goalkeeper.streams.demo_script import demo_scenario
 from goalkeeper.streams.person_stream import PersonStream
 from goalkeeper.streams.scripted_shooter import ScriptedShooter
+from goalkeeper.streams.sighting import StreamState
 from mocapd.errors import CannotCreateError, MocapdError
 
 _TICKS_A_PICTURE = 2
@@ -64,7 +65,7 @@ class _Session:
         if self.match.phase is Phase.OVER:
             placed = with_round((), self.match.score, _DATE)
         popup = self._popups.text(self._now_s)
-        text = hud_text(self.match, _FOOT, "", popup, placed)
+        text = hud_text(self.match, _FOOT, StreamState(), popup, placed)
         dt_s = _TICKS_A_PICTURE * TICK_S
         self._seen.update(self.match, Moving(self._now_s, dt_s, view), text)
 
