@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, ViewportSize, expect
 
 from mocapd.config.web_params import Params
 from mocapd.pipeline.slowness import Slowness
@@ -13,6 +13,10 @@ from tests.browser.conftest import problems_of
 from tests.web.tiny_host import TinyHost
 
 WAIT_MS = 120_000
+SIZES: dict[str, ViewportSize] = {
+    "desk": {"width": 1280, "height": 657},
+    "phone": {"width": 390, "height": 844},
+}
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +42,23 @@ def page(browser: Browser, server: WebServer) -> Iterator[Page]:
         expect(one.locator("#tracking")).to_have_text("Tracking", timeout=WAIT_MS)
         yield one
         assert heard == []
+
+
+def show_pictures(host: TinyHost) -> None:
+    """Of both cameras."""
+    for camera in ("cam0", "cam1"):
+        host.show(camera, 120)
+
+
+def test_figure_and_listeners_read_well(page: Page, host: TinyHost, pictures: Path) -> None:
+    show_pictures(host)
+    expect(page.locator("#live-outputs")).to_contain_text("Not sent", timeout=WAIT_MS)
+    expect(page.locator("#live-outputs")).not_to_contain_text("Refused")
+    page.wait_for_timeout(800)
+    for name, size in SIZES.items():
+        page.set_viewport_size(size)
+        page.wait_for_timeout(700)
+        page.screenshot(path=pictures / f"live-{name}.png")
 
 
 def test_a_machine_that_is_too_slow_is_said_with_what_helps(

@@ -98,6 +98,9 @@ class TinyHost:
         self.why_not = ""
         self.begun = 0
         self.tracks = True
+        self.tracked: FrameSet | None = (
+            None  # what the newest body is of; None: the newest pictures
+        )
         self.slowness: Slowness | None = None
         self.skeleton = standard_skeleton(1.75)
         self._state_dir = state_dir
@@ -151,7 +154,13 @@ class TinyHost:
             confidence,
             uncertainty_m=uncertainty_m,
         )
-        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, FrameSet(now_ns, {}))
+        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, self._frames(now_ns))
+
+    def _frames(self, now_ns: int) -> FrameSet:
+        if self.tracked is not None or self.hub is None:
+            return self.tracked or FrameSet(now_ns, {})
+        newest = {name: self.hub.newest(name) for name in self.hub.names}
+        return FrameSet(now_ns, {name: one for name, one in newest.items() if one is not None})
 
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:

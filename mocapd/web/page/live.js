@@ -53,7 +53,7 @@ export class Live {
     ]);
     this.cameras.id = "live-cameras";
     make(root, "h2", "", "Who listens");
-    this.outputs = table(root, ["Output", "Listeners", "Sent", "Refused", "Details"]);
+    this.outputs = table(root, ["Output", "Listeners", "Sent", "Not sent", "Details"]);
     this.outputs.id = "live-outputs";
     this.socket = new Socket(
       "live",
