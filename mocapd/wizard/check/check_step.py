@@ -2,7 +2,8 @@
 
 Its commands are `check_verbs.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
-`lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before).
+`lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before), next_command (see
+CheckSettings), has_shirt.
 """
 
 from collections.abc import Mapping
@@ -165,6 +166,8 @@ class CheckStep:
                 "rate_hz": None if metrics is None else round(metrics.rate_hz, 1),
                 "verdicts": [verdict_json(one) for one in self._verdicts],
                 "saved": self._saved or None,
+                "next_command": self._settings.next_command,
+                "has_shirt": self._context.draft.has_shirt,
             },
         )
 

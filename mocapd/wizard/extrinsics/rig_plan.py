@@ -3,7 +3,9 @@
 import numpy as np
 
 from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, WorldExtrinsics
+from mocapd.calibrate.extrinsics.seen_floor import CELL_M, rig_advice, seen_floor
 from mocapd.calibration.board_spec import centre_m
+from mocapd.errors import Problem
 from mocapd.geometry.camera_model import camera_from_world, centre
 from mocapd.types import Rig
 from mocapd.wizard.step import Json
@@ -20,8 +22,15 @@ def plan_of(extrinsics: SceneExtrinsics, made: WorldExtrinsics) -> dict[str, Jso
 
 
 def plan_of_cameras(rig: Rig) -> dict[str, Json]:
-    """The cameras alone."""
+    """The cameras, and the floor that two of them see a person on: cells by their middle x, z [m]."""
+    seen = seen_floor(rig)
     return {
+        "cell_m": CELL_M,
+        "seen_m": np.round(seen.cells_m, 2).tolist(),
+        "size_m": [round(one, 1) for one in seen.size_m],
+        "area_m2": round(seen.area_m2, 1),
+        "baseline_m": round(seen.baseline_m, 2),
+        "angle_deg": round(seen.angle_deg) if np.isfinite(seen.angle_deg) else None,
         "cameras": [
             {
                 "id": camera.name,
@@ -32,8 +41,13 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
                 ),
             }
             for camera in rig.cameras
-        ]
+        ],
     }
+
+
+def advice_of(rig: Rig | None) -> tuple[Problem, ...]:
+    """What would make the rig better."""
+    return () if rig is None else rig_advice(seen_floor(rig), len(rig.cameras))
 
 
 def quality_of(made: WorldExtrinsics) -> dict[str, Json]:
