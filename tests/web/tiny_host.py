@@ -7,17 +7,20 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.outputs.base import SinkStatus
-from mocapd.pipeline.body_hub import BodySample
+from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.latency_histogram import LatencyHistogram
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.pipeline.slowness import Slowness
+from mocapd.service.body_recorder import BodyRecorder
+from mocapd.service.recordings import Recordings
 from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
@@ -96,7 +99,10 @@ class TinyHost:
         self.rig: Rig | None = Rig(ring(cameras))
         self.wizard: Wizard | None = None
         self.why_not = ""
-        self.begun = 0
+        self.begun = self.recentered = 0
+        self.bodies = BodyHub()
+        self.made: Recordings | None = Recordings(state_dir / "recordings", self._recorder)
+        self.mountings: dict[str, Mounting] = {}
         self.tracks = True
         self.tracked: FrameSet | None = (
             None  # what the newest body is of; None: the newest pictures
@@ -162,6 +168,20 @@ class TinyHost:
         newest = {name: self.hub.newest(name) for name in self.hub.names}
         return FrameSet(now_ns, {name: one for name, one in newest.items() if one is not None})
 
+    @property
+    def recordings(self) -> Recordings | None:
+        return self.made
+
+    def recenter(self) -> None:
+        if not self.tracks:
+            raise UnavailableError(
+                "nobody is seen whose forward could be told", "the daemon", "stand in view"
+            )
+        self.recentered += 1
+
+    def _recorder(self, path: Path) -> BodyRecorder:
+        return BodyRecorder(self.bodies, path, self.known(), "pc")
+
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:
             return None
@@ -187,7 +207,10 @@ class TinyHost:
             for i, name in enumerate(self.hub.names)
         }
         return Snapshot(
-            metrics, status, {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")}
+            metrics,
+            status,
+            {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")},
+            self.mountings,
         )
 
     def stop(self) -> None:

@@ -208,8 +208,10 @@ function drawScale(pen, [x, , z], colour) {
 function label(pen, text, x, y, colour) {
   pen.context.fillStyle = colour;
   pen.context.font = `600 ${13 * pen.unit}px system-ui, sans-serif`;
-  pen.context.textAlign = "center";
-  pen.context.fillText(text, x, y - 6 * pen.unit);
+  pen.context.textAlign = "left";
+  const across = pen.context.measureText(text).width;
+  const left = Math.min(Math.max(4 * pen.unit, x - across / 2), pen.context.canvas.width - across - 4 * pen.unit);
+  pen.context.fillText(text, left, y - 6 * pen.unit);
 }
 
 function drawBody(pen, body, parents, colour) {
