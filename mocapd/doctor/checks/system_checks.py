@@ -12,6 +12,7 @@ from mocapd.doctor.facts import (
     UserFacts,
 )
 from mocapd.doctor.finding import Finding, bad, ok, warn
+from mocapd.extras import reinstall_command
 from mocapd.service.health import EFFORT_TROUBLE
 
 FEWEST_CORES = 2
@@ -92,7 +93,7 @@ def check_clock(facts: ClockFacts) -> Finding:
 def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
     """Whether everything can be imported."""
     for name, why in facts.broken.items():
-        yield bad("library", f"{name}: {why}", "install mocapd anew: pipx reinstall mocapd")
+        yield bad("library", f"{name}: {why}", f"install it anew: {reinstall_command()}")
     versions = ", ".join(f"{name} {version}" for name, version in facts.versions.items())
     yield ok("python", f"{facts.python}; {versions}")
     if facts.wants_vrchat and facts.vrchat_fix:
