@@ -1,7 +1,7 @@
 """The commands that our pages print to install something, and a container in which each runs.
 
-`python -m tests.supply.install_lines` runs every block in a copy of the checkout, with a home, a path and a folder for temporary
-files of its own, and prints what each took; it asks the package index.
+`python -m tests.supply.install_lines` runs every block in a copy of the checkout, with a home, a path and a folder for
+temporary files of its own, and prints what each took; it asks the package index.
 """
 
 import os
@@ -20,6 +20,7 @@ INSTALLS = re.compile(r"\b(?:pip|pipx|uv pip) (?:install|inject)\b")
 FROM_INDEX = {"eclipse-zenoh", "msgspec", "python-osc", "torch", "onnx", "numpy"}
 _BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 _TIMEOUT_S = 900.0
+_OF_INDEX = re.compile(r"PIP_|UV_|SSL_|\w+_proxy$", re.IGNORECASE)  # how the index is reached
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +33,13 @@ class Line:
 
 def blocks() -> list[tuple[str, str]]:
     """Page and text of each block of commands in which something is installed by pip."""
-    found = []
-    for pattern in PAGES:
-        for path in sorted(ROOT.glob(pattern)):
-            for text in _BLOCK.findall(path.read_text(encoding="utf-8")):
-                if INSTALLS.search(text):
-                    found.append((path.relative_to(ROOT).as_posix(), text))
-    return found
+    pages = [path for pattern in PAGES for path in sorted(ROOT.glob(pattern))]
+    return [
+        (path.relative_to(ROOT).as_posix(), text)
+        for path in pages
+        for text in _BLOCK.findall(path.read_text(encoding="utf-8"))
+        if INSTALLS.search(text)
+    ]
 
 
 def lines() -> list[Line]:
@@ -72,11 +73,7 @@ def run(page: str, text: str) -> tuple[int, float, str]:
             ["git", "-C", ROOT, "archive", "HEAD"], capture_output=True, check=True
         )
         subprocess.run(["tar", "-x", "-C", checkout], input=archive.stdout, check=True)
-        kept = {
-            name: value
-            for name, value in os.environ.items()
-            if name.startswith(("PIP_", "UV_", "SSL_")) or name.lower().endswith("_proxy")
-        }
+        kept = {name: value for name, value in os.environ.items() if _OF_INDEX.match(name)}
         env = kept | {
             "HOME": str(home),
             "TMPDIR": str(home),

@@ -17,7 +17,12 @@ OF_DIST = re.compile(r"dist/(mocapd|mocapd_client|mocapd_goalkeeper)-\*\.whl")
 
 @pytest.mark.parametrize("line", lines(), ids=lambda line: f"{line.page}: {line.command}")
 def test_a_printed_line_installs_from_a_path_a_wheel_or_what_the_index_has(line: Line) -> None:
-    words = shlex.split(line.command.replace('"$(ls ', "").replace(")[", "["), comments=True)
+    command = (
+        line.command.replace('"$(ls ', "")
+        .replace(')[print]"', "[print]")
+        .replace(')[vrchat]"', "[vrchat]")
+    )
+    words = shlex.split(command, comments=True)
     verb = next(i for i, word in enumerate(words) if word in ("install", "inject"))
     named = [word for word in words[verb + 1 :] if not word.startswith("-")]
     if "inject" in words:

@@ -102,8 +102,7 @@ def _in_picture(camera: Camera, at_px: Floats, margin: float) -> Bools:
     """(N,) of (N,2); margin: by which a point may be outside, as a share of the picture."""
     size_px = np.array(camera.size_px, dtype=float)
     low, high = at_px >= -margin * size_px, at_px < (1.0 + margin) * size_px
-    inside: Bools = np.logical_and(low, high).all(axis=1, keepdims=True)[:, 0]
-    return inside
+    return np.asarray(np.all(low & high, axis=1), dtype=np.bool_)
 
 
 def _widest_pair(rig: Rig, cells_m: Floats) -> tuple[float, float]:
