@@ -89,4 +89,4 @@ def _write_tar(path: Path, files: dict[str, bytes]) -> None:
 
 if __name__ == "__main__":
     for made in pack(Path(sys.argv[1])):
-        print(made)
+        sys.stdout.write(f"{made}\n")
