@@ -100,7 +100,7 @@ def _bones(body_m: Floats, names: tuple[str, ...]) -> list[tuple[Floats, Floats]
     return [
         (body_m[names.index(parent)], body_m[child])
         for child, name in enumerate(names)
-        if (parent := PARENT_OF[name]) in names
+        if (parent := PARENT_OF.get(name, "")) in names
     ]
 
 
@@ -120,7 +120,7 @@ def avatar(body_m: Floats | None, names: tuple[str, ...]) -> Bytes:
 def _draw_body(canvas: Bytes, body_m: Floats, names: tuple[str, ...]) -> None:
     parts = []
     for child, name in enumerate(names):
-        parent = PARENT_OF[name]
+        parent = PARENT_OF.get(name, "")
         if parent not in names:
             continue
         radius_m = next((r for key, r in _RADII_M.items() if key in name), 0.085)
