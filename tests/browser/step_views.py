@@ -8,7 +8,7 @@ import numpy as np
 from mocapd.calibrate.extrinsics.seen_floor import rig_advice, seen_floor
 from mocapd.errors import Problem
 from mocapd.types import Rig
-from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
+from mocapd.wizard.extrinsics.rig_plan import area_shapes, plan_of_cameras
 from mocapd.wizard.step import Json, StepState, StepView
 from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard_view import WizardView
@@ -96,7 +96,8 @@ def room(state: StepState = StepState.WAITING, stage: str = "floor") -> StepView
         "The room is known. Go on." if done else "Lay the board flat on the floor where both cameras see it.",
         1.0 if done else 0.8,
         advice,
-        details={
+        area_shapes(PAIR) if done else {},
+        {
             "method": "board", "methods": ["board", "wearer"], "stage": stage, "solving": False, "moments": 9,
             "enough": 12, "names": {name: name for name in NAMES}, "can_solve": False, "at_rest": True,
             "pairs": [{"a": "cam0", "b": "cam1", "shared": 9}], "can_skip_floor": True, "floor_known": done,

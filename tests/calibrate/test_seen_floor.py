@@ -6,7 +6,7 @@ import pytest
 from mocapd.calibrate.extrinsics.seen_floor import rig_advice, seen_floor
 from mocapd.geometry.camera_model import project
 from mocapd.types import Rig
-from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
+from mocapd.wizard.extrinsics.rig_plan import area_shapes, plan_of_cameras
 from tests.geometry.rigs import looking_at
 
 
@@ -53,3 +53,15 @@ def test_the_page_gets_the_figures_in_metres() -> None:
     assert len(plan["seen_m"]) > 50  # type: ignore[arg-type]
     alone = plan_of_cameras(Rig(pair(3.0, 3.0).cameras[:1]))
     assert (alone["baseline_m"], alone["angle_deg"]) == (0.0, None)
+
+
+def test_the_area_is_drawn_into_each_picture_with_its_size() -> None:
+    rig = pair(3.0, 3.0)
+    shapes, seen = area_shapes(rig), seen_floor(rig)
+    assert set(shapes) == {"left", "right"}
+    for camera in rig.cameras:
+        outline, text = shapes[camera.name]
+        assert text.text == f"{seen.size_m[0]:.1f} x {seen.size_m[1]:.1f} m"
+        at_px = np.array(outline.at_px)
+        assert ((at_px >= 0) & (at_px < camera.size_px)).all(), "it is floor that the camera sees"
+    assert area_shapes(None) == {}

@@ -13,7 +13,8 @@ Bools = NDArray[np.bool_]
 
 CELL_M = 0.2
 _REACH_M = 5.0  # the floor is looked at so far from the world's origin, each way
-_HEIGHTS_M = (0.05, 1.0, 1.85)  # of a person who stands
+LOWEST_M = 0.05  # of a person, above the floor
+_HEIGHTS_M = (LOWEST_M, 1.0, 1.85)  # of a person who stands
 _FARTHEST_M = 6.0  # beyond, a person is too small in the picture of a usual webcam
 _FOLD_MARGIN = 0.25  # by which lens distortion draws a point inwards at most
 SMALL_M2 = 2.0

@@ -28,7 +28,9 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
-OLDEST_NS = 200_000_000  # of a body that is drawn over the newest picture: arms move 20 cm in that time
+OLDEST_NS = (
+    200_000_000  # of a body that is drawn over the newest picture: arms move 20 cm in that time
+)
 
 
 class BodyStep:

@@ -15,8 +15,8 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.extrinsics.extrinsics_verbs import ROOM, Method
 from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
-from mocapd.wizard.extrinsics.rig_plan import advice_of
-from mocapd.wizard.step import StepState, StepView
+from mocapd.wizard.extrinsics.rig_plan import advice_of, area_shapes
+from mocapd.wizard.step import Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 
@@ -59,6 +59,7 @@ class ExtrinsicsStep:
         self._method: ExtrinsicsMethod = METHODS["board"](context)
         self._advised_rig: Rig | None = None
         self._advised: tuple[Problem, ...] = ()
+        self._area: Mapping[str, tuple[Shape, ...]] = {}
 
     def enter(self) -> None:
         """See Step."""
@@ -91,17 +92,18 @@ class ExtrinsicsStep:
         view = self._method.view()
         methods = list(METHODS) if self._context.draft.has_shirt else ["board"]
         details = {**view.details, "method": self._method_name, "methods": methods}
-        problems = (
-            (*view.problems, *self._advice()) if view.state is StepState.DONE else view.problems
-        )
-        return replace(view, details=details, problems=problems)
+        if view.state is not StepState.DONE:
+            return replace(view, details=details)
+        self._advise()
+        problems = (*view.problems, *self._advised)
+        return replace(view, details=details, problems=problems, overlays=self._area)
 
-    def _advice(self) -> tuple[Problem, ...]:
-        """What would make the rig better; it is worked out once a rig."""
+    def _advise(self) -> None:
+        """What would make the rig better, and the play area in the pictures; it is worked out once a rig."""
         rig = self._context.draft.rig
         if rig is not self._advised_rig:
             self._advised_rig, self._advised = rig, advice_of(rig)
-        return self._advised
+            self._area = area_shapes(rig)
 
     def leave(self) -> None:
         """See Step."""
