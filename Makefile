@@ -104,13 +104,16 @@ load: dev ## many camera nodes, streams and subscribers on this machine: print w
 	@$(BIN)/python -m tests.load
 
 # hatchling is of locks/build.txt; where pip chose the versions it is not there yet.
-dist: env ## build the wheel and the source distribution into dist/
+dist: env ## build wheel and source distribution, and what is handed on of the clients, into dist/
 	@$(BIN)/python -c 'import hatchling' 2>/dev/null || $(PIP_INSTALL) hatchling
 	rm -rf dist
 	$(BIN)/python -m hatchling build
+	cd clients/python && $(abspath $(BIN))/python -m hatchling build -t wheel -d $(abspath dist)
+	cd clients/goalkeeper && $(abspath $(BIN))/python -m hatchling build -t wheel -d $(abspath dist)
+	$(BIN)/python clients/pack.py dist
 
 deb: dist ## make a Debian package of it, with all that it runs on, for this machine's python3
-	deb/build.sh $(BIN)/python dist/*.whl dist
+	deb/build.sh $(BIN)/python dist/mocapd-*.whl dist
 
 vm-test: deb ## as root: install the package on a real kernel with two USB webcams, pull, freeze, kill, remove (needs ../shared/vm)
 	tests/vm/vm_test.sh $(BIN)/python dist/mocapd_*.deb

@@ -26,7 +26,7 @@ from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
-from mocapd.outputs.messages import RestSkeleton, decode_rest_skeleton
+from mocapd.outputs.messages import Health, RestSkeleton, decode_health, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
 
@@ -137,6 +137,11 @@ class Link:
         return keys.skeleton(self.instance, self.person)
 
     @property
+    def health_key(self) -> str:
+        """The key of the health messages."""
+        return keys.health(self.instance)
+
+    @property
     def rest_key(self) -> str:
         """The key of the rest skeleton."""
         return keys.rest_skeleton(self.instance, self.person)
@@ -158,7 +163,11 @@ class Client:
             self._subscriber = self._opened.enter_context(
                 self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(_KEPT))
             )
+            self._healths = self._opened.enter_context(
+                self._session.declare_subscriber(link.health_key, zenoh.handlers.RingChannel(1))
+            )
             hold_session(self._session, self._subscriber, owner=self)
+        self._health: Health | None = None
         self._rest_key = link.rest_key
         self._predictor: PosePredictor | None = None  # from the first `predict` on
         # a thread left waiting in Zenoh would abort the interpreter's exit
@@ -202,6 +211,16 @@ class Client:
         for sample in samples:
             return decode_rest_skeleton(sample.payload.to_bytes(), str(sample.encoding))
         return None
+
+    def health(self) -> Health | None:
+        """How the daemon fares, as it said last, about once a second; None before the first time. `slowness` is one line
+        while it is too slow for its cameras. Never waits. Raises InputError when what comes is none of this version."""
+        with zenoh_call():
+            samples = list(iter(self._healths.try_recv, None))
+        if samples:
+            newest = samples[-1]
+            self._health = decode_health(newest.payload.to_bytes(), str(newest.encoding))
+        return self._health
 
     def __iter__(self) -> Iterator[Body]:
         """Every newest body, waiting for ever: also while the daemon restarts."""

@@ -30,6 +30,17 @@ def require_extra(extra: str, where: str, otherwise: str = "") -> None:
         )
 
 
+def reinstall_command() -> str:
+    """What installs this mocapd anew, from the wheel that `make dist` builds in a checkout."""
+    wheel, prefix = "dist/mocapd-*.whl", Path(sys.prefix)
+    if (prefix / "pipx_metadata.json").is_file():
+        return f"pipx install --force {wheel}"
+    python = shlex.quote(sys.executable)
+    if find_spec("pip") is None:
+        return f"uv pip install --python {python} --reinstall {wheel}"
+    return f"{python} -m pip install --force-reinstall {wheel}"
+
+
 def install_command(extra: str) -> str:
     """The shell command that adds the library to the environment of this mocapd.
 

@@ -1,14 +1,24 @@
-"""Which modules the small install carries: `mocapd.client` and what it imports, found by reading them."""
+"""Which modules the small install carries: `mocapd.client`, what our own game stands on, and what these import, found by
+reading them. Those for the game import libraries that the game brings."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 PACKAGE = "mocapd"
-ENTRY = "mocapd.client"
+ENTRIES = (
+    "mocapd.client",
+    # of clients/goalkeeper: recordings, the demo's person, files
+    "mocapd.outputs.mcap.recording_reader",
+    "mocapd.sim.world",
+    "mocapd.child_process",
+    "mocapd.geometry",
+    "mocapd.whole_file",
+)
+ASSETS = ("scenarios/living_room.toml", "body_proportions.json")
 
 
 class ClientModules(BuildHookInterface):  # type: ignore[type-arg]
@@ -19,14 +29,17 @@ class ClientModules(BuildHookInterface):  # type: ignore[type-arg]
         here = Path(self.root)
         unpacked = (here / PACKAGE).is_dir()  # an sdist, which carries them beside this file
         top = here if unpacked else here.parents[1]
-        for path in modules_of(ENTRY, top):
+        for path in modules_of(ENTRIES, top):
             build_data["force_include"][str(path)] = path.relative_to(top).as_posix()
+        calib = here / PACKAGE / "calib" if unpacked else top / "calib"
+        for name in ASSETS:
+            build_data["force_include"][str(calib / name)] = f"{PACKAGE}/calib/{name}"
 
 
-def modules_of(entry: str, top: Path) -> list[Path]:
-    """The files below `top` that importing `entry` may load, with the packages they are in."""
+def modules_of(entries: Iterable[str], top: Path) -> list[Path]:
+    """The files below `top` that importing these may load, with the packages they are in."""
     found: dict[str, Path] = {}
-    waiting = [entry]
+    waiting = list(entries)
     while waiting:
         name = waiting.pop()
         path = _file_of(name, top)

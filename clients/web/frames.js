@@ -1,7 +1,7 @@
 // The connection to a running mocapd: frames as they come, and in words how it fares. It comes back by itself.
 //
 //   const frames = new Frames(address, { onRest, onFrame, onState, onIgnored });
-//   onState({ name, text }): connecting, live, nobody, quiet, unreachable or unusable, when it changes
+//   onState({ name, text }): connecting, live, nobody, slow, quiet, unreachable or unusable, when it changes
 //   onIgnored(count, why): messages that could not be used
 //   frames.close();
 
@@ -18,6 +18,7 @@ export class Frames {
     this.ignored = 0;
     this.state = "";
     this.text = "";
+    this.slowness = ""; // why tracking is too slow
     this.closed = false;
     this.heardMs = performance.now();
     this.watch = setInterval(() => this.#look(), LOOK_EVERY_MS);
@@ -52,7 +53,7 @@ export class Frames {
   }
 
   #hear(data) {
-    const { frame, rest, ignored, version } = read(data);
+    const { frame, rest, slowness, ignored, version } = read(data);
     if (version !== undefined) {
       this.heardMs = performance.now();
       this.#say("unusable", `This mocapd speaks ${version}, the page reads ${SKELETON}: bring both to the same version.`);
@@ -60,11 +61,14 @@ export class Frames {
       this.#ignore(ignored);
     } else if (rest !== undefined) {
       this.told.onRest(rest);
+    } else if (slowness !== undefined) {
+      this.slowness = slowness;
     } else if (frame !== undefined) {
       this.heardMs = performance.now();
       this.socket.send(JSON.stringify({ seen: frame.seq })); // so that none waits in a buffer while we are slow
       if (frame.broken > 0) this.#ignore(`${frame.broken} joints of a frame are no numbers`);
-      if (frame.joints.size > 0) this.#say("live", "Frames are coming.");
+      if (this.slowness) this.#say("slow", `Tracking is slow. It is ${this.slowness}.`);
+      else if (frame.joints.size > 0) this.#say("live", "Frames are coming.");
       else this.#say("nobody", "Nobody is seen.");
       this.told.onFrame(frame);
     }

@@ -44,7 +44,7 @@ function connect(address) {
     },
     onState: ({ name, text }) => {
       say(name, text);
-      if (name !== "live" && name !== "nobody") newest = null;
+      if (!["live", "nobody", "slow"].includes(name)) newest = null;
     },
     onIgnored: (count, why) => {
       shown("ignored").hidden = false;

@@ -2,11 +2,12 @@
 
 export const SKELETON = "mocapd.Skeleton.v1";
 export const REST = "mocapd.Skeleton.Rest.v1";
+export const HEALTH = "mocapd.Health.v1";
 const FAMILY = /^mocapd\.Skeleton(\.Rest)?\.v/;
 const LARGEST = 1e6; // of any number of a joint
 const LONGEST = 1 << 20; // characters of a message; a frame has 6,000
 
-// One of {rest}, {frame}, {ignored: why}, {version: the schema of another version}, {} for what is of no interest.
+// One of {rest}, {frame}, {slowness: why tracking is too slow, or empty}, {ignored: why}, {version: the schema of another version}, {} for what is of no interest.
 // frame: seq, tracking, captureUnixMs and joints, a Map of {p, r, l, c} by VRM 1.0 bone name; broken: how many joints
 // were left out, as one of their numbers is none.
 export function read(data) {
@@ -20,6 +21,7 @@ export function read(data) {
   const schema = isObject(tree) ? tree.schema : undefined;
   if (schema === SKELETON) return readFrame(tree);
   if (schema === REST) return readRest(tree);
+  if (schema === HEALTH) return { slowness: typeof tree.slowness === "string" ? tree.slowness.slice(0, 300) : "" };
   if (typeof schema !== "string") return { ignored: "no message of mocapd" };
   return FAMILY.test(schema) ? { version: schema.slice(0, 60) } : {}; // others may be added
 }

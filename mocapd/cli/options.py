@@ -10,6 +10,24 @@ from mocapd.errors import MocapdError, UsageError
 if TYPE_CHECKING:
     from mocapd.config.effective import Effective
 
+
+def complete_setting(incomplete: str) -> list[str]:
+    """What --set may go on with at Tab: keys, and the values of one that has few."""
+    from mocapd.config.effective import known_keys
+
+    key, has_value, _ = incomplete.partition("=")
+    if not has_value:
+        return [f"{name}=" for name in known_keys() if name.startswith(key)]
+    return [f"{key}={one}" for one in ("true", "false") if _is_switch(key)]
+
+
+def _is_switch(key: str) -> bool:
+    from mocapd.config.effective import known_keys
+
+    found = known_keys().get(key)
+    return found is not None and isinstance(found.default, bool)
+
+
 ConfigOption = Annotated[
     Path | None,
     typer.Option("--config", help="Config file to read instead of the usual one.", metavar="FILE"),
@@ -17,7 +35,10 @@ ConfigOption = Annotated[
 SetOption = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", help="Set one config key, e.g. --set zenoh.port=7448.", metavar="KEY=VALUE"
+        "--set",
+        help="Set one config key, e.g. --set zenoh.port=7448.",
+        metavar="KEY=VALUE",
+        autocompletion=complete_setting,
     ),
 ]
 CameraOption = Annotated[

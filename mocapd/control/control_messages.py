@@ -92,14 +92,14 @@ class StatusReport(msgspec.Struct, frozen=True):
     """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
     lag_median_ms: how much older than that the pose of somebody who moves is, by the tracker's filter and smoothing;
     published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
-    tracked though somebody moves, and what they can do; mostly empty; effort: see messages.Health; preparing: what a first
-    start still prepares, for people."""
+    tracked though somebody moves, and what they can do; mostly empty; effort, slowness: see messages.Health; preparing: what
+    a first start still prepares, for people."""
 
     version: str
     pid: int
     instance: str
     state_dir: str
-    state: Literal["tracking", "nobody", "starting", "blind"]
+    state: Literal["tracking", "nobody", "slow", "starting", "blind"]
     tracker: str
     tracking: str
     rate_hz: float
@@ -117,3 +117,4 @@ class StatusReport(msgspec.Struct, frozen=True):
     effort: str = "full"
     lag_median_ms: float | None = None
     preparing: str = ""
+    slowness: str = ""

@@ -18,7 +18,7 @@ from mocapd.control.control_messages import (
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus
 from mocapd.service.fitness import fitness_of
-from mocapd.service.health import lost_reason_text
+from mocapd.service.health import lost_reason_text, slowness_text
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service
 from mocapd.session.session import Session
@@ -55,6 +55,7 @@ def status_report(
         effort=metrics.effort.value,
         lag_median_ms=_measured(metrics.lag_ms.median),
         preparing=preparing,
+        slowness=slowness_text(metrics.slowness),
     )
 
 

@@ -54,6 +54,13 @@ class Health(CountingMessage, frozen=True):
             description="how much of its work the tracker does: `full`, `saving` or `least` on a machine that is too slow"
         ),
     ] = "full"
+    slowness: Annotated[
+        str,
+        Meta(
+            description="one line for people: that a large share of the frame sets is skipped, why, and what helps; empty "
+            "while tracking keeps up. Games say `tracking is slow` while it is not empty"
+        ),
+    ] = ""
 
 
 class CameraStatus(CountingMessage, frozen=True):
@@ -179,6 +186,11 @@ def subject(message: StateMessage) -> tuple[str, str]:
             return message.schema, str(person)
         case _:
             return message.schema, ""
+
+
+def decode_health(payload: bytes, encoding: str) -> Health:
+    """A payload back to a Health; fields of later additions to v1 are skipped. Raises InputError."""
+    return decode_message(payload, encoding, Health, HEALTH)
 
 
 def decode_rest_skeleton(payload: bytes, encoding: str) -> RestSkeleton:

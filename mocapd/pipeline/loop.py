@@ -12,6 +12,8 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.effort_control import EffortControl
 from mocapd.pipeline.idle_collection import IdleCollection
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
+from mocapd.pipeline.other_programs import OtherPrograms
+from mocapd.pipeline.slowness import SlownessWatch
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.tracking.base import EffortTracker, Track, Tracker
 from mocapd.tracking.doubt import doubted
@@ -56,6 +58,7 @@ class PipelineLoop:
         self._began_ns: int | None = None  # the step that runs
         self._recorder = MetricsRecorder()
         self._effort = EffortControl()
+        self._slowness, self._others = SlownessWatch(), OtherPrograms()
         # A daemon thread: a kernel that hangs must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
 
@@ -120,7 +123,10 @@ class PipelineLoop:
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         now_ns = monotonic_ns()
         self._recorder.published(frames, body, step_ns, now_ns, track.lost_reason)
-        self._spare(frames, number, now_ns - start_ns, now_ns)
+        busy_ns = now_ns - start_ns
+        others = self._others.share(now_ns)
+        self._recorder.judged(self._slowness.tracked(number, busy_ns, now_ns, others))
+        self._spare(frames, number, busy_ns, now_ns)
 
     def _spare(self, frames: FrameSet, number: int, busy_ns: int, now_ns: int) -> None:
         """Choose the effort for the next frame set, after the number-th took busy_ns."""

@@ -8,6 +8,7 @@ from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
+from mocapd.pipeline.slowness import Slowness
 from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
@@ -32,7 +33,8 @@ class Metrics:
     published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
     was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
     since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
-    has come round, with frames or without; effort: how much of its work the tracker does.
+    has come round, with frames or without; effort: how much of its work the tracker does;
+    slowness: that a large share of the frame sets is skipped lately, and why.
     """
 
     rate_hz: float
@@ -50,6 +52,7 @@ class Metrics:
     lost_reason: LostReason | None = None
     effort: Effort = Effort.FULL
     lag_ms: Percentiles = field(default_factory=lambda: percentiles(()))
+    slowness: Slowness | None = None
 
 
 class MetricsRecorder:
@@ -69,6 +72,7 @@ class MetricsRecorder:
         self._tracker = ""
         self._lost_reason: LostReason | None = None
         self._effort = Effort.FULL
+        self._slowness: Slowness | None = None
 
     def published(
         self,
@@ -102,6 +106,11 @@ class MetricsRecorder:
         with self._lock:
             self._effort = effort
 
+    def judged(self, slowness: Slowness | None) -> None:
+        """Whether the tracker keeps up with the frame sets."""
+        with self._lock:
+            self._slowness = slowness
+
     def turned(self) -> None:
         """The pipeline's thread has come round."""
         with self._lock:
@@ -116,6 +125,7 @@ class MetricsRecorder:
             tracking, tracker, turns = self._tracking, self._tracker, self._turns
             latencies, lost_reason = self._latencies.counts(), self._lost_reason
             effort, lag = self._effort, self._lag_ms.samples()
+            slowness = self._slowness
         return Metrics(
             rate_hz=rate_hz,
             published=published,
@@ -135,4 +145,5 @@ class MetricsRecorder:
             lost_reason=lost_reason,
             effort=effort,
             lag_ms=percentiles(lag),
+            slowness=slowness,
         )

@@ -11,6 +11,7 @@ from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureSta
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
+from mocapd.pipeline.slowness import Slowness
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
@@ -56,14 +57,23 @@ def health_message(
             OutputHealth(name, s.sent, s.refused, s.listeners, s.detail)
             for name, s in outputs.items()
         ),
-        detail=detail or lost_reason_text(metrics.lost_reason) or effort_text(metrics.effort.value),
+        detail=detail
+        or slowness_text(metrics.slowness)
+        or lost_reason_text(metrics.lost_reason)
+        or effort_text(metrics.effort.value),
         effort=metrics.effort.value,
+        slowness=slowness_text(metrics.slowness),
     )
 
 
 def lost_reason_text(reason: LostReason | None) -> str:
     """One line for people; empty for none."""
     return "" if reason is None else f"{reason.what} -- {reason.fix}"
+
+
+def slowness_text(slowness: Slowness | None) -> str:
+    """One line for people; empty while the tracker keeps up."""
+    return "" if slowness is None else f"{slowness.what} -- {slowness.fix}"
 
 
 def effort_text(effort: str) -> str:

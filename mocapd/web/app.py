@@ -24,6 +24,8 @@ from mocapd.web.links.picture_link import picture_link
 from mocapd.web.links.recording_link import RecordingLink
 from mocapd.web.links.wizard_link import WizardLink
 from mocapd.web.metrics_access import PATH as METRICS_PATH
+from mocapd.web.recording_routes import RecordingRoutes
+from mocapd.web.request_body import BodyTooLongError, read_body
 from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
 from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
@@ -37,7 +39,6 @@ MEDIA_TYPES = {
     ".svg": "image/svg+xml",
     ".png": "image/png",
 }
-LONGEST_BODY = 64 << 10  # of a request [bytes]
 MOST_SOCKETS = 24  # WebSockets at once; a window has three
 _PNG = b"\x89PNG"
 
@@ -76,6 +77,7 @@ class _Routes:
             Route("/picture/{key:path}", self._picture),
             Route("/status", self._status),
             Route("/setup", self._setup, methods=["POST"]),
+            *RecordingRoutes(self._host).routes(),
             WebSocketRoute("/ws", self._wizard_link),
             WebSocketRoute("/pictures", self._pictures),
             WebSocketRoute("/live", self._live),
@@ -120,9 +122,9 @@ class _Routes:
     async def _setup(self, request: Request) -> Response:
         """Begin a setup, or go on with the one there is; with {step}, at that step."""
         try:
-            body = await _body(request)
+            body = await read_body(request)
             asked = decode_json(body or b"{}", SetupRequest)
-        except _TooLongError:
+        except BodyTooLongError:
             # the rest is not waited for
             return PlainTextResponse("that is too much", 413, headers={"connection": "close"})
         except MalformedError as error:
@@ -176,20 +178,6 @@ class _Routes:
             await run()
         finally:
             self._sockets -= 1
-
-
-class _TooLongError(Exception):
-    """A body is longer than anything we are asked for."""
-
-
-async def _body(request: Request) -> bytes:
-    """Raises _TooLongError as soon as it is known, and ClientDisconnect."""
-    body = bytearray()
-    async for part in request.stream():
-        body += part
-        if len(body) > LONGEST_BODY:
-            raise _TooLongError
-    return bytes(body)
 
 
 def _refused(error: MocapdError) -> Response:

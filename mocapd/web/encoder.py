@@ -1,17 +1,21 @@
 """Pictures as JPEG, only when somebody asks, and once for everybody who asks for the same.
 
+A picture that a body is drawn over is the newest one that the tracker has a pose for, so that the two fit at any rate.
+
 What a camera delivers as JPEG is handed on as it is to whoever asks for its whole width."""
 
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
 
 from mocapd.boundary.pictures import is_plain_jpeg
+from mocapd.clock import nanoseconds
 from mocapd.errors import MalformedError
+from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Bytes, Frame
 from mocapd.web.links.socket_link import MOST_HZ
@@ -19,19 +23,22 @@ from mocapd.web.links.socket_link import MOST_HZ
 NARROWEST_PX, WIDTH_STEP_PX = 64, 32
 JPEG_QUALITY = 75
 WAIT_S = 1.0  # how long a new frame is waited for [s]
+POSE_AGE_S = 2.0  # a tracker that takes longer does not hold up the pictures [s]
 _LOOK_EVERY_S = 0.01
 _MOST_WIDTHS = 16  # of one camera that are kept
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """One frame as JPEG. size_px: of the camera's whole frame, not of the JPEG."""
+    """One frame as JPEG. size_px: of the camera's whole frame, not of the JPEG; body: what was tracked in it, None where
+    nothing was, or nobody asked."""
 
     camera: str
     seq: int
     t_ns: int
     size_px: tuple[int, int]
     jpeg: bytes
+    body: BodySample | None = None
 
 
 @dataclass(slots=True)
@@ -44,56 +51,78 @@ class _Newest:
 class PictureEncoder:
     """Used within one event loop; encodes in `executor`. `encoded` counts what it has encoded."""
 
-    def __init__(self, hub: Callable[[], FrameHub | None], executor: Executor) -> None:
+    def __init__(
+        self,
+        hub: Callable[[], FrameHub | None],
+        executor: Executor,
+        body: Callable[[], BodySample | None] = lambda: None,
+    ) -> None:
         self.encoded = 0
-        self._hub, self.executor = hub, executor
-        self._newest: dict[tuple[str, int], _Newest] = {}
+        self._hub, self._body, self.executor = hub, body, executor
+        self._newest: dict[tuple[str, int, bool], _Newest] = {}
 
-    async def picture(self, camera: str, width_px: int, after_seq: int | None) -> Picture | None:
-        """The camera's newest frame, other than the one with `after_seq` that is known already.
+    async def picture(
+        self, camera: str, width_px: int, after_seq: int | None, with_body: bool = False
+    ) -> Picture | None:
+        """The camera's newest frame, other than the one with `after_seq` that is known already; with_body: the newest
+        with a pose, unless that is older than POSE_AGE_S.
 
         At most `width_px` wide and never wider than the camera's; None when no such frame comes in
         time. No camera and width is encoded more often than MOST_HZ.
         """
         width_px = max(NARROWEST_PX, -(-width_px // WIDTH_STEP_PX) * WIDTH_STEP_PX)
-        newest = self._slot(camera, width_px)
+        newest = self._slot(camera, width_px, with_body)
         loop = asyncio.get_running_loop()
         async with newest.lock:
             before, due_s = newest.picture, newest.made_s + 1.0 / MOST_HZ
             if before is not None and before.seq != after_seq and loop.time() < due_s:
                 return before
             await asyncio.sleep(due_s - loop.time())
-            frame = await self._frame(camera, after_seq)
-            if frame is None:
+            found = await self._frame(camera, after_seq, with_body)
+            if found is None:
                 return None
+            frame, body = found
             if before is None or frame.seq != before.seq or frame.t_ns != before.t_ns:
                 newest.made_s = loop.time()
                 before = delivered(frame, width_px)
                 if before is None:
                     before = await loop.run_in_executor(self.executor, encode, frame, width_px)
                     self.encoded += 1
-                newest.picture = before
+                newest.picture = before = replace(before, body=body)
             return before
 
-    def _slot(self, camera: str, width_px: int) -> _Newest:
-        found = self._newest.pop((camera, width_px), None) or _Newest()
+    def _slot(self, camera: str, width_px: int, with_body: bool) -> _Newest:
+        found = self._newest.pop((camera, width_px, with_body), None) or _Newest()
         while len(self._newest) >= _MOST_WIDTHS:
             del self._newest[next(iter(self._newest))]  # the one that was not asked for the longest
-        self._newest[camera, width_px] = found
+        self._newest[camera, width_px, with_body] = found
         return found
 
-    async def _frame(self, camera: str, after_seq: int | None) -> Frame | None:
-        """The first frame that is another; looked for, not waited for: at MOST_HZ it is there."""
+    async def _frame(
+        self, camera: str, after_seq: int | None, with_body: bool
+    ) -> tuple[Frame, BodySample | None] | None:
+        """The first frame that is another, and what was tracked in it; looked for, not waited for: at MOST_HZ it is
+        there."""
         loop = asyncio.get_running_loop()
         until_s = loop.time() + WAIT_S
         while True:
             hub = self._hub()
             frame = hub.newest(camera) if hub is not None else None
+            posed = self._posed(frame) if with_body and frame is not None else None
+            frame = frame if posed is None else posed.frames.frames[camera]
             if frame is not None and frame.seq != after_seq:
-                return frame
+                return frame, posed
             if loop.time() > until_s:
                 return None
             await asyncio.sleep(_LOOK_EVERY_S)
+
+    def _posed(self, newest: Frame) -> BodySample | None:
+        """The newest body, where it has a pose and was tracked in a frame of this camera not long before the newest."""
+        body = self._body()
+        seen = None if body is None else body.frames.frames.get(newest.camera)
+        if body is None or body.body.joints_m is None or seen is None:
+            return None
+        return body if newest.t_ns - seen.t_ns <= nanoseconds(POSE_AGE_S) else None
 
 
 def delivered(frame: Frame, width_px: int) -> Picture | None:

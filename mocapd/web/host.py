@@ -5,6 +5,7 @@ from typing import Protocol
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.recordings import Recordings
 from mocapd.service.service import Snapshot
 from mocapd.types import Rig
 from mocapd.wizard.wizard import Wizard
@@ -38,6 +39,15 @@ class Host(Protocol):
 
     def body(self) -> BodySample | None:
         """The newest body; None before the first, or when nothing tracks."""
+        ...
+
+    @property
+    def recordings(self) -> Recordings | None:
+        """What the page records; None where nothing is tracked for long."""
+        ...
+
+    def recenter(self) -> None:
+        """What the person faces is forward from now on. Raises UnavailableError when nobody is seen."""
         ...
 
     def snapshot(self) -> Snapshot | None:

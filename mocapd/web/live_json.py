@@ -8,7 +8,7 @@ import numpy as np
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.geometry.camera_model import centre, rays
-from mocapd.service.health import effort_text, lost_reason_text
+from mocapd.service.health import effort_text, lost_reason_text, slowness_text
 from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
@@ -65,6 +65,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
         "tracking": metrics.tracking.value,
         "lost_reason": lost_reason_text(metrics.lost_reason),
         "effort": effort_text(metrics.effort.value),
+        "slowness": slowness_text(metrics.slowness),
         "rate_hz": metrics.rate_hz,
         "published": metrics.published,
         "sets_made": metrics.sets_made,

@@ -61,7 +61,7 @@ class WebServer:
         self._place = place
         self._token = secrets.token_urlsafe(24)
         self._executor = ThreadPoolExecutor(1, thread_name_prefix="web-encode")
-        self.encoder = PictureEncoder(lambda: host.hub, self._executor)
+        self.encoder = PictureEncoder(lambda: host.hub, self._executor, host.body)
         self._server: uvicorn.Server | None = None
         self._thread: threading.Thread | None = None
 

@@ -38,6 +38,28 @@ DRAWN = """async ({ scene, body }) => {
 }"""
 
 
+# What is written on the canvas, and where, of a body before one camera.
+TEXTS = """async () => {
+    const { StickFigure } = await import(new URL("page/stick_figure.js", location.href.split("?")[0]).href);
+    const place = document.createElement("div");
+    place.style.width = "800px";
+    document.body.append(place);
+    const figure = new StickFigure(place);
+    const corners_m = [[-0.2, 1.2, -0.2], [0.2, 1.2, -0.2], [0.2, 1.0, -0.2], [-0.2, 1.0, -0.2]];
+    const camera = { name: "cam0", centre_m: [0, 1.1, -0.5], corners_m };
+    figure.setScene({ cameras: [camera], parents: [-1] });
+    const texts = [];
+    const context = figure.canvas.getContext("2d");
+    context.fillText = (text, x, y) => texts.push({ text, x, y });
+    figure.setBody({ tracking: "live", joints_m: [[0, 0.9, 0]], confidence: [1], uncertainty_m: [0.01] });
+    const see = figure.eye(figure.canvas.width, figure.canvas.height);
+    const corners = corners_m.map(see);
+    figure.destroy();
+    place.remove();
+    return { texts, corners };
+}"""
+
+
 @pytest.fixture(scope="module")
 def page(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     """The page of a daemon that tracks the upper body, at its live view."""
@@ -93,6 +115,26 @@ def at_middle_of(at: Floats, change: Floats, one: str, other: str) -> float:
     """The most covered pixel within 4 px of the middle between two joints."""
     x, y, _ = np.rint((at[INDEX[one]] + at[INDEX[other]]) / 2.0).astype(int)
     return float(change[y - 4 : y + 5, x - 4 : x + 5].max())
+
+
+def test_the_figure_is_framed_on_the_body_wherever_it_stands(page: Page) -> None:
+    for off_m in (0.0, 3.0):
+        body = upper_body()
+        body["joints_m"] = [[x + off_m, y, z - off_m] for x, y, z in body["joints_m"]]
+        at, change = drawn(page, body)
+        height, width = change.shape
+        hips = at[INDEX["hips"]]
+        assert abs(hips[0] - width / 2) < 0.02 * width
+        assert 0.35 * height < hips[2] < 0.5 * height, "a metre of the body"
+        assert (at[:, 1] > 0.02 * height).all(), "raised hands are in the picture"
+        assert (at[:, 1] < 0.95 * height).all()
+
+
+def test_a_cameras_name_is_beside_its_symbol_and_the_floor_has_a_scale(page: Page) -> None:
+    told = page.evaluate(TEXTS)
+    assert {one["text"] for one in told["texts"]} == {"cam0", "1 m"}
+    (name,) = [one for one in told["texts"] if one["text"] == "cam0"]
+    assert name["y"] < min(y for _, y, _ in told["corners"]), "above all of it"
 
 
 LEG_BONES = [

@@ -100,6 +100,8 @@ def on_path(tmp_path: Path) -> dict[str, str]:
         ("mocapd re", {"record", "replay", "reload", "recenter"}),
         ("mocapd watch --j", {"--json"}),
         ("mocapd completion ", {"bash", "zsh", "fish"}),
+        ("mocapd run --set zenoh.po", {"zenoh.port="}),
+        ("mocapd export --to b", {"bvh"}),
     ],
 )
 def test_bash_offers_what_fits(on_path: dict[str, str], typed: str, offered: set[str]) -> None:

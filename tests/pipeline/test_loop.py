@@ -195,6 +195,23 @@ def test_a_tracker_that_is_too_slow_is_stepped_with_less_effort_which_metrics_te
     assert run.loop.metrics().effort is tracker.effort is Effort.SAVING
 
 
+def test_metrics_tell_that_most_frame_sets_are_skipped() -> None:
+    tracker = WaitingTracker()
+    run = Run(tracker)
+    run.loop.start()
+    for step in range(6):
+        for _ in range(10):
+            run.feed()
+        assert tracker.entered.acquire(timeout=60.0)
+        tracker.let_go.release()
+        run.wait_for(lambda step=step: len(run.out) > step)  # type: ignore[misc]
+    tracker.let_go.release(10)
+    assert run.loop.stop(20.0)
+    slowness = run.loop.metrics().slowness
+    assert slowness is not None
+    assert slowness.skipped > 0.8
+
+
 def test_metrics_before_the_first_frame_are_there_and_empty() -> None:
     run = Run(CannedTracker())
     metrics = run.loop.metrics()

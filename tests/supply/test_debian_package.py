@@ -110,6 +110,7 @@ def test_everything_around_the_program_is_placed(unpacked: Path) -> None:
     for path in (
         *("usr/lib/sysusers.d/mocapd.conf", "usr/lib/udev/rules.d/70-mocapd-webcams.rules"),
         *("usr/share/man/man1/mocapd.1.gz", "usr/share/bash-completion/completions/mocapd"),
+        *("usr/share/doc/mocapd/setup.md", "usr/share/doc/mocapd/images/setup_room.jpg"),
         *("usr/share/doc/mocapd/copyright", "usr/share/doc/mocapd/examples/network.conf.example"),
     ):
         assert (unpacked / path).stat().st_size > 0

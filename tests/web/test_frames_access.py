@@ -20,6 +20,7 @@ from mocapd.clock import NS_PER_S
 from mocapd.config.web_params import Params
 from mocapd.errors import InputError
 from mocapd.outputs import messages, wire
+from mocapd.pipeline.slowness import Slowness
 from mocapd.web.games.frames_access import FILE_NAME, FramesAccess
 from mocapd.web.games.frames_link import MOST_GAMES, UNREAD
 from mocapd.web.runtime_file import Place, running
@@ -85,6 +86,18 @@ def test_an_allowed_site_with_the_key_gets_rest_and_frames_of_the_wire(
     assert set(frames[0].joints) == set(rest.names)
     assert [frame.seq for frame in frames] == [0, 1]
     assert frames[0].joints["leftHand"].p[1] > 1.0, "the canned person waves"
+
+
+def test_a_site_hears_that_tracking_is_too_slow(
+    host: TinyHost, server: WebServer, place: Place
+) -> None:
+    host.slowness = Slowness(0.95, 1.5, 30.0, 640.0)
+    with opened(address_of(server, place), SITE) as link:
+        found = [str(link.recv(PATIENCE_S)) for _ in range(3)]
+    (health,) = [one for one in found if messages.HEALTH in one]
+    told = messages.decode_health(health.encode(), wire.JSON_MIME)
+    assert told.slowness.startswith("too slow: 95 %")
+    assert (told.instance, told.pid, told.outputs) == ("", 0, ())
 
 
 def test_a_site_is_told_no_name_of_this_machine_and_no_picture(

@@ -11,9 +11,9 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
-from mocapd.clock import NS_PER_S
+from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.geometry.camera_model import project
-from mocapd.types import Bytes
+from mocapd.types import Bytes, FrameSet
 from mocapd.web.links.socket_link import MOST_HZ
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, connect
@@ -212,9 +212,30 @@ def test_the_body_is_drawn_where_the_camera_sees_it(host: TinyHost, pictures: Pi
     assert frame.pixels.shape == (480, 640, 3)
 
 
-def test_a_body_that_lags_does_not_hold_pictures_up(host: TinyHost, pictures: Pictures) -> None:
-    host.show("cam0", 1, t_ns=2**62)
-    assert pictures.picture("cam0")[0]["shapes"]
+def test_of_a_slow_tracker_the_picture_is_shown_that_its_pose_is_of(
+    host: TinyHost, pictures: Pictures
+) -> None:
+    """Over a newer picture arms that move would be drawn where they were."""
+    t_ns = monotonic_ns()
+    tracked = host.show("cam0", 1, t_ns=t_ns)
+    host.tracked = FrameSet(t_ns, {"cam0": tracked})
+    host.show("cam0", 20, t_ns=t_ns + NS_PER_S)
+    header, jpeg = pictures.picture("cam0")
+    assert (header["seq"], header["t_ns"]) == (1, t_ns)
+    assert header["shapes"]
+    assert decoded(jpeg).mean() == pytest.approx(1, abs=2)
+
+
+def test_over_a_picture_in_which_nobody_was_tracked_nothing_is_drawn(
+    host: TinyHost, pictures: Pictures
+) -> None:
+    t_ns = monotonic_ns()
+    host.tracked = FrameSet(t_ns, {"cam0": host.show("cam0", 1, t_ns=t_ns)})
+    host.show("cam0", 200, t_ns=t_ns + 5 * NS_PER_S)  # the tracker hangs
+    host.show("cam1", 7, t_ns=t_ns)  # takes no part in the pose
+    for camera, seq in (("cam0", 200), ("cam1", 7)):
+        header, _ = pictures.picture(camera)
+        assert (header["seq"], header["shapes"]) == (seq, [])
 
 
 def test_during_a_setup_the_steps_own_shapes_are_drawn(host: TinyHost, pictures: Pictures) -> None:

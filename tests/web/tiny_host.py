@@ -7,16 +7,20 @@ import numpy as np
 
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
+from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.outputs.base import SinkStatus
-from mocapd.pipeline.body_hub import BodySample
+from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.latency_histogram import LatencyHistogram
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
+from mocapd.pipeline.slowness import Slowness
+from mocapd.service.body_recorder import BodyRecorder
+from mocapd.service.recordings import Recordings
 from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
@@ -95,8 +99,15 @@ class TinyHost:
         self.rig: Rig | None = Rig(ring(cameras))
         self.wizard: Wizard | None = None
         self.why_not = ""
-        self.begun = 0
+        self.begun = self.recentered = 0
+        self.bodies = BodyHub()
+        self.made: Recordings | None = Recordings(state_dir / "recordings", self._recorder)
+        self.mountings: dict[str, Mounting] = {}
         self.tracks = True
+        self.tracked: FrameSet | None = (
+            None  # what the newest body is of; None: the newest pictures
+        )
+        self.slowness: Slowness | None = None
         self.skeleton = standard_skeleton(1.75)
         self._state_dir = state_dir
         self._died: list[BaseException] = []
@@ -149,7 +160,27 @@ class TinyHost:
             confidence,
             uncertainty_m=uncertainty_m,
         )
-        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, FrameSet(now_ns, {}))
+        return BodySample(Track(state, mean_shape(1.75)), self.skeleton, self._frames(now_ns))
+
+    def _frames(self, now_ns: int) -> FrameSet:
+        if self.tracked is not None or self.hub is None:
+            return self.tracked or FrameSet(now_ns, {})
+        newest = {name: self.hub.newest(name) for name in self.hub.names}
+        return FrameSet(now_ns, {name: one for name, one in newest.items() if one is not None})
+
+    @property
+    def recordings(self) -> Recordings | None:
+        return self.made
+
+    def recenter(self) -> None:
+        if not self.tracks:
+            raise UnavailableError(
+                "nobody is seen whose forward could be told", "the daemon", "stand in view"
+            )
+        self.recentered += 1
+
+    def _recorder(self, path: Path) -> BodyRecorder:
+        return BodyRecorder(self.bodies, path, self.known(), "pc")
 
     def snapshot(self) -> Snapshot | None:
         if not self.tracks:
@@ -164,6 +195,7 @@ class TinyHost:
         metrics = Metrics(
             *(29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}),
             latency_counts=latencies.counts(),
+            slowness=self.slowness,
         )
         lost = "/dev/video2: gone -- plug it in again"
         status = {
@@ -175,7 +207,10 @@ class TinyHost:
             for i, name in enumerate(self.hub.names)
         }
         return Snapshot(
-            metrics, status, {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")}
+            metrics,
+            status,
+            {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")},
+            self.mountings,
         )
 
     def stop(self) -> None:

@@ -63,6 +63,7 @@ def check_step(context: FakeContext) -> CheckStep:
         ({"match": 0.5}, {}, Grade.DOUBTFUL, "step Colour"),
         ({"match": 0.2}, {}, Grade.BAD, "step Colour"),
         ({}, {"lost": 20}, Grade.DOUBTFUL, "USB port"),
+        ({}, {"late": 20}, Grade.DOUBTFUL, "come too late"),
         ({}, {"rate_hz": 15.0}, Grade.DOUBTFUL, "15 pictures a second"),
     ],
 )
@@ -75,6 +76,18 @@ def test_a_camera_is_judged_by_its_worst_figure(
         assert grade is Grade.GOOD
     else:
         assert says in f"{verdict.problem.what} {verdict.problem.fix}"
+
+
+@pytest.mark.parametrize("figures", [{"lost": 60}, {"late": 60}, {"rate_hz": 12.0}])
+def test_usb_is_not_blamed_where_this_machine_is_too_slow(figures: dict[str, Any]) -> None:
+    slow = ("too slow: 80 % of the frame sets are skipped", "close other programs")
+    verdict = camera_verdict("cam0", measures(), replace(ALL_ARRIVE, slow=slow, **figures))
+    assert verdict.problem is not None
+    assert "this machine is too slow" in verdict.problem.what
+    assert verdict.problem.fix == "close other programs"
+    late = camera_verdict("cam0", measures(), replace(ALL_ARRIVE, late=60))
+    assert late.problem is not None
+    assert "USB" not in late.problem.fix, "they came: only later than the others'"
 
 
 def test_a_camera_that_saw_nobody_is_bad_and_has_no_figures() -> None:

@@ -147,7 +147,7 @@ def _viewer() -> ModuleType:
         from mocapd_analysis.viewer import page
     except ModuleNotFoundError as error:
         raise UnavailableError(
-            f"the viewer needs {error.name}", fix="pip install 'viser>=1.1,<2'"
+            f"the viewer needs {error.name}", fix=f"{sys.executable} -m pip install 'viser>=1.1,<2'"
         ) from None
     return page
 

@@ -1,8 +1,6 @@
 """`python -m goalkeeper`"""
 
-import sys
-
-from goalkeeper.app.main import main
+from goalkeeper.app.script import script
 
 if __name__ == "__main__":
-    sys.exit(main())
+    script()

@@ -62,6 +62,8 @@ class DaemonPage:
 
     def let_go(self) -> None:
         """The service is about to end; never blocks for long."""
+        if self._host is not None:
+            self._host.close()
         if self._server is not None:
             self._server.let_go()
         self.rest()

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from mocapd.wizard.step_names import StepName
 
 
-def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
-    """The cameras of the configuration, else all that are plugged in. Raises MocapdError."""
+def webcam_host(config: "Config", step: "StepName | None", following: str) -> OwnHost:
+    """The cameras of the configuration, else all that are plugged in; following: the command to run afterwards. Raises
+    MocapdError."""
     from mocapd.capture.webcam.webcam_listing import list_cameras
     from mocapd.wizard.cameras.found_cameras import (
         configured_cameras,
@@ -50,7 +51,7 @@ def webcam_host(config: "Config", step: "StepName | None") -> OwnHost:
         )
     return OwnHost(
         draft,
-        settings_of(config),
+        settings_of(config, following),
         config.state_dir,
         config.cache_dir,
         step,
@@ -81,15 +82,17 @@ def saved_draft(config: "Config", step: "StepName | None") -> Draft:
     return Draft()
 
 
-def settings_of(config: "Config") -> CheckSettings:
+def settings_of(config: "Config", following: str) -> CheckSettings:
     """How the daemon of this configuration tracks."""
     from mocapd.session.camera_inputs import bundler_params
 
-    return CheckSettings(config.tracker, config.smoothing.preset, bundler_params(config))
+    bundler = bundler_params(config)
+    return CheckSettings(config.tracker, config.smoothing.preset, bundler, following)
 
 
-def demo_host(config: "Config", step: "StepName | None") -> OwnHost:
-    """Simulated cameras, before which board and wearer do what each step asks for. Raises MocapdError."""
+def demo_host(config: "Config", step: "StepName | None", following: str) -> OwnHost:
+    """Simulated cameras, before which board and wearer do what each step asks for; following: see webcam_host. Raises
+    MocapdError."""
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.board_spec import BoardKind, BoardSpec
     from mocapd.session.setup_demo import open_demo
@@ -114,7 +117,7 @@ def demo_host(config: "Config", step: "StepName | None") -> OwnHost:
         )
     return OwnHost(
         replace(known, cameras=cameras),
-        settings_of(config),
+        settings_of(config, following),
         config.state_dir,
         config.cache_dir,
         step,

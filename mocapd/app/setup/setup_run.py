@@ -1,6 +1,7 @@
 """`mocapd calibrate` with its page: attached to the running daemon, or with cameras of its own."""
 
 import os
+import shlex
 import threading
 import time
 import traceback
@@ -97,7 +98,8 @@ def _alone(
     from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 
-    host = demo_host(config, step) if options.demo else webcam_host(config, step)
+    following = next_command(config.state_dir, usual=not (options.demo or options.own_place))
+    host = (demo_host if options.demo else webcam_host)(config, step, following)
     # a thread nobody watches must not die unseen either
     threading.excepthook = lambda args: host.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(host)
@@ -111,9 +113,9 @@ def _alone(
         while not host.wait(LOOK_EVERY_S) and time.monotonic() < until_s:
             if host.saved and until_s == float("inf"):
                 until_s = time.monotonic() + STAY_S
-                print(_what_next(config.state_dir, options), flush=True)
+                print(_what_next(config.state_dir, following), flush=True)
         if host.saved and until_s == float("inf"):  # ended in the moment it was saved
-            print(_what_next(config.state_dir, options), flush=True)
+            print(_what_next(config.state_dir, following), flush=True)
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR
@@ -124,13 +126,21 @@ def _alone(
     return signals.exit_code
 
 
-def _what_next(state_dir: Path, options: PageOptions) -> str:
+def next_command(state_dir: Path, *, usual: bool) -> str:
+    """What starts the daemon on what is saved there; usual: where it looks by itself."""
     from mocapd.calibration.calibration_file import FILE_NAME
 
-    path = state_dir / FILE_NAME
-    usual = not (options.demo or options.own_place)
-    command = "mocapd run" if usual else f"mocapd run --rig {path}"
-    return f"saved {path}; now: {command}"
+    return (
+        "mocapd run"
+        if usual
+        else shlex.join(["mocapd", "run", "--rig", str(state_dir / FILE_NAME)])
+    )
+
+
+def _what_next(state_dir: Path, following: str) -> str:
+    from mocapd.calibration.calibration_file import FILE_NAME
+
+    return f"saved {state_dir / FILE_NAME}; now: {following}"
 
 
 def _step(name: str | None) -> "StepName | None":

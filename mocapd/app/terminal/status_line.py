@@ -23,7 +23,9 @@ def status_text(snapshot: Snapshot) -> str:
     parts += [m.lost_reason.what] if m.lost_reason is not None else []
     parts.append(" ".join(_camera(status) for status in snapshot.cameras.values()))
     parts += [f"{name}: {_listeners(status)}" for name, status in snapshot.outputs.items()]
-    if m.effort is not Effort.FULL:
+    if m.slowness is not None:
+        parts.append(m.slowness.what)
+    elif m.effort is not Effort.FULL:
         parts.append(f"{m.effort.value} effort: this machine is too slow")
     if m.sets_dropped:
         parts.append(f"{m.sets_dropped} dropped")

@@ -10,6 +10,7 @@ from mocapd.service.health import effort_text
 _STATES = {
     "tracking": "tracking",
     "nobody": "nobody in view",
+    "slow": "too slow",
     "starting": "starting",
     "blind": "no camera delivers",
 }
@@ -52,6 +53,8 @@ def _state(report: StatusReport) -> str:
     """Somebody who is not taken for a person is in view."""
     if report.state == "nobody" and report.lost_reason:
         return f"nobody is tracked: {report.lost_reason}"
+    if report.state == "slow" and report.slowness:
+        return report.slowness
     return _STATES[report.state]
 
 

@@ -80,7 +80,10 @@ def _as_told(one: InstanceState) -> str:
         f"{health.latency_median_ms:.0f} ms (p95 {health.latency_p95_ms:.0f})",
         f"{live} of {len(used)} cameras",
     ]
-    parts += [f"{health.effort} effort"] if health.effort != "full" else []
+    if health.slowness:
+        parts.append(health.slowness.partition(" -- ")[0])
+    elif health.effort != "full":
+        parts.append(f"{health.effort} effort")
     parts += [f"{c.camera} {c.state}{_why(c)}" for c in used if c.state != "live"]
     parts += [f"{c.camera} bumped" for c in used if c.mounting == "bumped"]
     if _silent_s(one) > SILENT_S:

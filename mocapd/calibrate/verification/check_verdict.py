@@ -47,18 +47,28 @@ class CameraVerdict:
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """What became of a camera's frames meanwhile, its rate and the rate it was asked for."""
+    """What became of a camera's frames meanwhile, its rate and the rate it was asked for.
+
+    lost: before they reached this program; late: here, because their frame set had gone without them;
+    slow: why this machine does not keep up, and what helps; it, and not the camera, is then the cause of both."""
 
     received: int
     lost: int
     rate_hz: float
     asked_hz: float
     width_px: int
+    late: int = 0
+    slow: tuple[str, str] | None = None
 
     @property
     def dropped(self) -> float:
-        """Share that never arrived, or too late."""
+        """Share that never arrived."""
         return self.lost / max(self.received + self.lost, 1)
+
+    @property
+    def too_late(self) -> float:
+        """Share that arrived too late."""
+        return self.late / max(self.received + self.lost, 1)
 
 
 def camera_verdict(
@@ -88,16 +98,7 @@ def camera_verdict(
             if has_shirt
             else "wear what differs from the room behind you, or turn the light up",
         ),
-        (
-            _grade(delivery.dropped, GOOD_DROPPED, BAD_DROPPED),
-            f"{100 * delivery.dropped:.0f} % of its frames are lost",
-            "use another USB port, or close other programs",
-        ),
-        (
-            Grade.GOOD if delivery.rate_hz >= GOOD_RATE * delivery.asked_hz else Grade.DOUBTFUL,
-            f"{delivery.rate_hz:.0f} pictures a second, asked for {delivery.asked_hz:.0f}",
-            "more light, a shorter exposure, or a lower mode in the step Cameras",
-        ),
+        *_of_delivery(delivery),
     ]
     if not own:
         judged = [
@@ -109,6 +110,28 @@ def camera_verdict(
     return CameraVerdict(
         camera, worst, px, cm, match, seen, delivery.dropped, delivery.rate_hz, problem
     )
+
+
+def _of_delivery(delivery: Delivery) -> list[tuple[Grade, str, str]]:
+    """Grade, what and fix of each of its figures. A machine that is too slow reads late what a camera sent in time."""
+    lost = f"{100 * delivery.dropped:.0f} % of its frames are lost"
+    late = f"{100 * delivery.too_late:.0f} % of its frames come too late"
+    rate = f"{delivery.rate_hz:.0f} pictures a second, asked for {delivery.asked_hz:.0f}"
+    lost_fix = "the camera or its USB bus loses them: use another USB port, without a hub"
+    late_fix = (
+        "give all cameras the same frame rate, and a camera in the network a better connection"
+    )
+    rate_fix = "more light, a shorter exposure, or a lower mode in the step Cameras"
+    if delivery.slow is not None:
+        why, fix = delivery.slow
+        lost, late, rate = (f"{one}: this machine is {why}" for one in (lost, late, rate))
+        lost_fix = late_fix = rate_fix = fix
+    is_fast = delivery.rate_hz >= GOOD_RATE * delivery.asked_hz
+    return [
+        (_grade(delivery.dropped, GOOD_DROPPED, BAD_DROPPED), lost, lost_fix),
+        (_grade(delivery.too_late, GOOD_DROPPED, BAD_DROPPED), late, late_fix),
+        (Grade.GOOD if is_fast else Grade.DOUBTFUL, rate, rate_fix),
+    ]
 
 
 # Shifts of an outline that count as those of the shirt's patches do: with the true rig 1 to 4 px and 0.3 to 2.0 cm, with a

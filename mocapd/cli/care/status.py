@@ -17,6 +17,7 @@ ABLE = 0
 NOT_RUNNING = 3
 UNKNOWN = 4
 UNABLE = 150
+SLOW = 151
 
 
 def add_to(app: typer.Typer) -> None:
@@ -40,6 +41,7 @@ def status(
 
     State, tracker, rate, latency, cameras, outputs, calibration, last trouble. Ends with 0 when it tracks or
     could, as soon as somebody comes; 150 when it runs and cannot: it is still starting, or no camera delivers;
+    151 when it is too slow: it skips a large share of the pictures;
     3 when none is running; 4 when one is there and does not answer, or is another user's. Of several that run
     the one of this configuration, else all. With --all the worst of those on the bus counts.
 
@@ -83,6 +85,8 @@ def _print_all(link: "Link", as_json: bool) -> int:
 
 def exit_code(report: "StatusReport") -> int:
     """Of one daemon that answers."""
+    if report.state == "slow":
+        return SLOW
     return ABLE if report.state in ("tracking", "nobody") else UNABLE
 
 

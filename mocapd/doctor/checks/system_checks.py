@@ -13,6 +13,7 @@ from mocapd.doctor.facts import (
     UserFacts,
 )
 from mocapd.doctor.finding import Finding, bad, ok, warn
+from mocapd.extras import reinstall_command
 from mocapd.service.health import EFFORT_TROUBLE
 
 FEWEST_CORES = 2
@@ -35,6 +36,9 @@ def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
         told = f"{one.instance} (pid {one.pid}) is running"
         if one.state == "blind":
             yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
+        elif one.slowness:
+            what, _, fix = one.slowness.partition(" -- ")
+            yield bad("daemon", f"{told}: {what}", fix)
         elif one.effort in EFFORT_TROUBLE:
             what, fix = EFFORT_TROUBLE[one.effort]
             yield warn("daemon", f"{told}: {what}", fix)
@@ -90,7 +94,7 @@ def check_clock(facts: ClockFacts) -> Finding:
 def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
     """Whether everything can be imported."""
     for name, why in facts.broken.items():
-        yield bad("library", f"{name}: {why}", "install mocapd anew: pipx reinstall mocapd")
+        yield bad("library", f"{name}: {why}", f"install it anew: {reinstall_command()}")
     versions = ", ".join(f"{name} {version}" for name, version in facts.versions.items())
     yield ok("python", f"{facts.python}; {versions}")
     if facts.wants_vrchat and facts.vrchat_fix:

@@ -1,7 +1,8 @@
 """The WebSocket `/frames`, for games in the browser: the wire's own messages as JSON, of each the `schema` says which.
 
 First `mocapd.Skeleton.Rest.v1`, and again when it changes noticeably; then `mocapd.Skeleton.v1` as often as the
-body changes. Both without the names of this machine and its cameras, which are no site's business.
+body changes, and `mocapd.Health.v1` when its `slowness` changes. All without the names of this machine, its cameras
+and outputs, which are no site's business.
 
 The page answers each frame with its number, {seen}: a page that is too slow for all of them skips some, and none waits
 for it in the sockets' buffers.
@@ -21,6 +22,7 @@ from mocapd.outputs.from_skeleton import is_noticeable, rest_skeleton
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.pipeline.body_hub import BodySample
+from mocapd.service.health import health_message, slowness_text
 from mocapd.types import BodyState, Skeleton
 from mocapd.web.host import Host
 from mocapd.web.links.socket_link import send_json, serve, understood
@@ -29,6 +31,7 @@ MOST_GAMES = 4  # of these WebSockets at once
 UNREAD = 2  # frames that are on their way to a page at once
 NOBODY = ""  # in place of the instance
 _LOOK_EVERY_S = 0.008
+_LOOK_AT_HEALTH_S = 1.0
 _LONGEST_ANSWER = 100  # [bytes]
 
 
@@ -47,12 +50,22 @@ class FramesLink:
 
     async def run(self) -> None:
         """Until it leaves, or says what is not understood."""
-        await serve(self._socket, self._send(), self._listen())
+        await serve(self._socket, self._send(), self._healths(), self._listen())
 
     async def _listen(self) -> None:
         while True:
             answer = await understood(self._socket, Seen, _LONGEST_ANSWER)
             self._read = max(self._read, min(answer.seen + 1, self._sent))
+
+    async def _healths(self) -> None:
+        said = ""
+        while True:
+            snapshot = self._host.snapshot()
+            if snapshot is not None and slowness_text(snapshot.metrics.slowness) != said:
+                health = health_message(NOBODY, 0, 0, snapshot.metrics, {})
+                said = health.slowness
+                await send_json(self._socket, msgspec.structs.replace(health, pid=0))
+            await asyncio.sleep(_LOOK_AT_HEALTH_S)
 
     async def _send(self) -> None:
         newest: BodyState | None = None

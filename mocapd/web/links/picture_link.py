@@ -24,9 +24,6 @@ from mocapd.wizard.step import Shape
 from mocapd.wizard.step_names import StepName
 
 DEFAULT_WIDTH_PX = 480
-BODY_WAIT_S = 0.08  # the pose of a frame comes a little after the frame [s]
-SAME_MOMENT_NS = 8_000_000  # a body this close to a frame is the frame's
-_LOOK_EVERY_S = 0.008
 MOST_UNDER_WAY = 32  # of one page
 LONGEST_NAME = 4096  # of a camera; the longest that anybody has tried has 3000 characters
 MOST_FRAMES = 2**63 - 1
@@ -65,7 +62,8 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
 async def _answer(
     socket: WebSocket, host: Host, encoder: PictureEncoder, request: PictureRequest
 ) -> None:
-    picture = await encoder.picture(request.camera, request.width, request.after)
+    with_body = shows_body(host, request.over)
+    picture = await encoder.picture(request.camera, request.width, request.after, with_body)
     if picture is None:
         hub = host.hub
         why = "no new picture" if hub and request.camera in hub.names else "no such camera now"
@@ -76,32 +74,28 @@ async def _answer(
         "seq": picture.seq,
         "t_ns": picture.t_ns,
         "size_px": picture.size_px,
-        "shapes": shapes_json(await shapes_over(host, picture, request.over)),
+        "shapes": shapes_json(shapes_over(host, picture, with_body)),
     }
     await send_bytes(socket, message(header, picture.jpeg))
 
 
-async def shapes_over(host: Host, picture: Picture, over: str) -> tuple[Shape, ...]:
-    """The setup's overlays where they are asked for and one is on; else, and in its step Check, the body
-    at the moment of the picture."""
+def shows_body(host: Host, over: str) -> bool:
+    """Whether the body is drawn: in the live view, and in the setup's step Check."""
     wizard = host.wizard if over == "setup" else None
-    if wizard is not None:
-        shown = wizard.view()
-        if shown.step is not StepName.CHECK:
-            return shown.view.overlays.get(picture.camera, ())
-    rig = host.rig
+    return wizard is None or wizard.view().step is StepName.CHECK
+
+
+def shapes_over(host: Host, picture: Picture, with_body: bool) -> tuple[Shape, ...]:
+    """The body as it was tracked in this picture, nothing where it was not; without the body what the setup's step draws."""
+    wizard = host.wizard
+    if not with_body:
+        view = None if wizard is None else wizard.view().view
+        return () if view is None else view.overlays.get(picture.camera, ())
+    rig, found = host.rig, picture.body
     cameras = {camera.name: camera for camera in rig.cameras} if rig is not None else {}
-    if picture.camera not in cameras:
+    if found is None or picture.camera not in cameras:
         return ()
-    loop = asyncio.get_running_loop()
-    until_s = loop.time() + BODY_WAIT_S
-    while True:
-        found = host.body()
-        if found is None:
-            return ()
-        if found.body.t_ns >= picture.t_ns - SAME_MOMENT_NS or loop.time() > until_s:
-            return bone_shapes(cameras[picture.camera], found.body, found.skeleton)
-        await asyncio.sleep(_LOOK_EVERY_S)
+    return bone_shapes(cameras[picture.camera], found.body, found.skeleton)
 
 
 def message(header: object, jpeg: bytes) -> bytes:

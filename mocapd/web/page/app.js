@@ -2,6 +2,7 @@
 
 import { connect } from "./link.js";
 import "./pictures.js";
+import { finishedPage } from "./finished.js";
 import { Live } from "./live.js";
 import { Setup } from "./setup.js";
 
@@ -50,6 +51,7 @@ class Page {
   }
 
   connection(state) {
+    if (this.finished) return; // whether somebody still serves it does not matter any more
     const [text, look] = CONNECTION[state];
     const shown = document.getElementById("connection");
     shown.textContent = text;
@@ -74,6 +76,10 @@ class Page {
 
   /** A setup is going on: its frame is made once, and follows the link by itself. */
   seated(view) {
+    if (view.saved && view.view.details.saved) {
+      this.finish(view);
+      return;
+    }
     this.choose("setup");
     if (!this.setup) {
       delete this.views.setup.dataset.idle;
@@ -88,8 +94,30 @@ class Page {
     }
   }
 
+  /** Everything is saved: the last page, which stays. */
+  finish(view) {
+    if (this.finished) return;
+    const details = view.view.details;
+    this.notice("");
+    this.setup?.destroy();
+    this.setup = null;
+    this.views.setup.replaceChildren(finishedPage(details, view.cameras));
+    if (details.next_command) {
+      this.finished = true; // this process ends: nothing is left to press or to wait for
+      this.link.close();
+      document.querySelector(".top nav").hidden = true;
+      const shown = document.getElementById("connection");
+      shown.textContent = "Saved";
+      shown.className = "state done";
+      history.replaceState(null, "", "#setup");
+      this.route();
+    }
+    document.getElementById("finished").focus({ preventScroll: true });
+  }
+
   /** No setup is going on. */
   idle(message) {
+    if (document.getElementById("finished") && !message.refused) return;
     this.choose("live");
     this.notice("");
     this.setup?.destroy();

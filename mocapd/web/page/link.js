@@ -109,6 +109,10 @@ class Link {
     return this.socket.send({ verb, args });
   }
 
+  close() {
+    this.socket.close();
+  }
+
   pictureUrl(key) {
     const path = key.split("/").map(encodeURIComponent).join("/");
     return new URL(`picture/${path}`, PLACE).href;

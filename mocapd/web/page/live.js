@@ -2,6 +2,8 @@
 
 import { Socket } from "./link.js";
 import { Plot } from "./plots.js";
+import { RecordingsPart, post } from "./recordings.js";
+import { button } from "./setup.js";
 import { StickFigure } from "./stick_figure.js";
 
 const TRACKING = {
@@ -12,6 +14,7 @@ const TRACKING = {
 const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
 
 function tracking(figures) {
+  if (figures.slowness) return [capital(figures.slowness.replace(" -- ", ". Mend: ")), "failed"];
   if (figures.tracking === "lost" && figures.lost_reason) {
     return [`Nobody is tracked: ${figures.lost_reason}`, "working"];
   }
@@ -29,6 +32,13 @@ export class Live {
     this.tracking.setAttribute("role", "status");
     this.tracking.id = "tracking";
     this.summary = make(head, "span", "summary");
+    this.trouble = make(root, "p", "problem bad");
+    this.trouble.setAttribute("role", "alert");
+    this.trouble.hidden = true;
+    this.moved = make(root, "div", "problem bad");
+    this.moved.id = "camera-moved";
+    this.moved.hidden = true;
+    const controls = make(root, "div", "row controls");
     const stage = make(root, "div", "stage");
     this.pictures = make(stage, "div", "cameras");
     this.figure = new StickFigure(make(stage, "div", "figure-3d"));
@@ -52,8 +62,16 @@ export class Live {
     ]);
     this.cameras.id = "live-cameras";
     make(root, "h2", "", "Who listens");
-    this.outputs = table(root, ["Output", "Listeners", "Sent", "Refused", "Details"]);
+    this.outputs = table(root, ["Output", "Listeners", "Sent", "Not sent", "Details"]);
     this.outputs.id = "live-outputs";
+    this.recordings = new RecordingsPart(root, (text) => this.say(text));
+    this.mirrored = button("mirror", "Mirror", () => this.mirror(), { id: "mirror", "aria-pressed": "false" });
+    controls.append(
+      ...this.recordings.buttons,
+      button("recenter", "Recenter", () => this.recenter(), { id: "recenter", title: "What you face now is forward" }),
+      this.mirrored,
+      button("full-screen", "Full screen", () => fullScreen(stage), { id: "full-screen" }),
+    );
     this.socket = new Socket(
       "live",
       (event) => this.take(JSON.parse(event.data)),
@@ -67,6 +85,43 @@ export class Live {
     if (message.kind === "scene") this.scene(message);
     else if (message.kind === "body") this.figure.setBody(message);
     else this.figures(message.figures);
+  }
+
+  /** Trouble with what was pressed, until something else is. */
+  say(text) {
+    this.trouble.hidden = !text;
+    this.trouble.textContent = text;
+  }
+
+  async recenter() {
+    const answer = await post("recenter");
+    const told = answer?.ok === false ? await answer.json() : null;
+    this.say(told ? `${told.where}: ${told.what}. ${told.fix}` : "");
+  }
+
+  /** As in a mirror: who moves to the left sees that on the left. */
+  mirror() {
+    const on = this.mirrored.getAttribute("aria-pressed") !== "true";
+    this.mirrored.setAttribute("aria-pressed", String(on));
+    this.pictures.classList.toggle("mirrored", on);
+  }
+
+  /** Cameras that were turned or exchanged, with the way to mend it. */
+  drawMoved(cameras) {
+    const moved = cameras.filter((one) => one.bumped || one.swapped);
+    this.moved.hidden = moved.length === 0;
+    const words = moved.map((one) => `${one.name} ${one.swapped ? "shows what another camera should" : "was moved"}`);
+    const text = `${words.join(", ")}. Put it back, or measure the room anew. `;
+    if (moved.length === 0 || this.moved.dataset.text === text) return;
+    this.moved.dataset.text = text;
+    this.moved.replaceChildren(text, button("room-anew", "Measure the room", () => this.roomAnew(), { id: "room-anew" }));
+  }
+
+  async roomAnew() {
+    const answer = await post("setup", { step: "room" });
+    const told = answer ? await answer.json() : { what: "" };
+    if (told.what) this.say(`${told.where}: ${told.what}. ${told.fix}`);
+    else location.hash = "#setup";
   }
 
   scene(scene) {
@@ -101,6 +156,7 @@ export class Live {
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);
     this.plots[1].add(now_s, [latency.median, latency.p95]);
+    this.drawMoved(figures.cameras);
     rows(
       this.cameras,
       figures.cameras.map((one) => [
@@ -141,9 +197,19 @@ export class Live {
     document.removeEventListener("visibilitychange", this.watch);
     this.socket.close();
     this.figure.destroy();
+    this.recordings.destroy();
     for (const plot of this.plots) plot.destroy();
     this.root.replaceChildren();
   }
+}
+
+function capital(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+function fullScreen(stage) {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else stage.requestFullscreen();
 }
 
 function number(value) {

@@ -1,5 +1,7 @@
 // The frame of the setup: the list of steps, what to do next, trouble, and the step's own part.
 
+import { Sound } from "./sound.js";
+
 const TITLES = {
   cameras: "Cameras",
   lens: "Lens",
@@ -10,7 +12,7 @@ const TITLES = {
 };
 const NO_SHIRT =
   "Two cameras or more follow you in any clothes: leave the room empty for a second when tracking begins, then stand " +
-  "upright and face them. It is some 5 to 12 cm off, where the shirt is 2 to 4.";
+  "upright and face them. Expect errors of 5 to 12 cm; with the shirt they are 2 to 4 cm.";
 const STATES = {
   waiting: "Your turn",
   working: "Working",
@@ -81,20 +83,28 @@ export class Setup {
       this.link.send("wear", { shirt: !this.without });
     });
     this.shirtNote = element("p", { id: "no-shirt-note", class: "hint-text" });
-    this.saved = element("p", { id: "saved", class: "good", role: "status", hidden: true });
-    this.saved.textContent = "The calibration is saved.";
+    this.sound = new Sound();
+    this.loud = button("sound", "Sound", () => {
+      this.sound.switch();
+      this.loud.setAttribute("aria-pressed", String(this.sound.on));
+    }, { id: "sound", "aria-pressed": String(this.sound.on), title: "A chime and a voice say what to do" });
+    this.back = button("back", "Back", () => this.link.send("go", { step: this.before }), { id: "back" });
+    this.lead = element("span", { id: "lead", class: "lead-buttons" }); // the step's own, where it has one
     this.root.replaceChildren(
       element("nav", { "aria-label": "Steps of the setup" }, this.steps),
-      element("div", { class: "step-head" }, this.heading, this.state),
-      this.sentence,
-      this.progress,
+      element("div", { class: "step-head" }, this.heading, this.state, this.loud),
+      element(
+        "div",
+        { class: "lead" },
+        this.sentence,
+        this.progress,
+        element("div", { class: "step-buttons" }, this.back, this.again, this.lead, this.next),
+      ),
       this.refused,
       this.problems,
       this.cameras,
       this.place,
-      element("div", { class: "step-buttons" }, this.again, this.next),
       element("div", { class: "no-shirt" }, element("label", {}, this.shirt, "I have no shirt"), this.shirtNote),
-      this.saved,
     );
   }
 
@@ -112,17 +122,27 @@ export class Setup {
     this.drawProblems(view.problems);
     this.drawRefused(wizard.refused);
     const last = wizard.step === wizard.steps[wizard.steps.length - 1];
-    this.next.hidden = last;
+    this.isLast = last;
     this.next.disabled = view.state !== "done" || !wizard.driver;
     this.again.disabled = !wizard.driver;
+    this.before = wizard.steps[wizard.steps.indexOf(wizard.step) - 1];
+    this.back.hidden = this.before === undefined;
+    this.back.disabled = !wizard.driver;
+    this.sound.hear(wizard.step, view);
     if (this.without === !wizard.shirt || wizard.refused) this.without = null;
     this.shirt.checked = this.without ?? !wizard.shirt;
     this.shirt.disabled = !wizard.driver;
     setText(this.shirtNote, wizard.shirt ? "" : NO_SHIRT);
-    this.saved.hidden = !wizard.saved;
     this.root.classList.toggle("watching", !wizard.driver);
     if (wizard.step !== this.step) this.open(wizard.step);
     else if (this.part) this.part.update(wizard.view);
+    this.oneButton();
+  }
+
+  /** While a step is not done its own button is the one to press. */
+  oneButton() {
+    const own = [...this.lead.querySelectorAll("button")].some((one) => !one.closest("[hidden]"));
+    this.next.hidden = this.isLast || (own && this.newest.view.state !== "done");
   }
 
   drawSteps(wizard) {
@@ -203,19 +223,23 @@ export class Setup {
     const place = element("div", { class: `part-${name}` });
     this.place.replaceChildren(place);
     this.part = new module.StepPart(place, this.link, this.cameras);
+    this.lead.replaceChildren(...(this.part.lead ?? []));
     if (this.newest.step === name) this.part.update(this.newest.view);
+    this.oneButton();
     if (this.opened) this.heading.focus({ preventScroll: false });
     this.opened = true; // on the first step the focus stays where the browser put it
   }
 
   close() {
     if (this.part) this.part.destroy();
+    this.lead.replaceChildren();
     this.part = null;
     this.step = null;
   }
 
   destroy() {
     this.close();
+    this.sound.destroy();
     if (this.stopListening) this.stopListening();
     this.root.replaceChildren();
   }

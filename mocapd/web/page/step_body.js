@@ -52,9 +52,9 @@ export class StepPart {
     this.table = element("table", { id: "lengths", class: "lengths" });
     this.pictures = element("div", { class: "body-pictures" });
     this.measuring = element("div", { class: "measure" }, this.measure, this.skip);
+    this.lead = [this.measuring];
     root.replaceChildren(
       form,
-      this.measuring,
       this.table,
       this.pictures,
     );

@@ -3,6 +3,7 @@
 import { KeptSetup } from "./kept_setup.js";
 import { PortQuestions } from "./same_port.js";
 import { button, element, setText } from "./setup.js";
+import { boardPicture } from "./step_lens.js";
 
 export const title = "Cameras";
 
@@ -14,6 +15,9 @@ const PHASES = {
   lost: "No picture",
 };
 
+const WHERE =
+  "Two cameras 2.5 to 3.5 m from the middle of the play area, 1.2 to 2 m high, 60 to 100 degrees apart, both turned to its " +
+  "middle: each sees you whole, with your arms up, wherever you play.";
 const CONTROLS = [
   ["exposure", "exposure", (value) => `${value / 10} ms`],
   ["gain", "gain", String],
@@ -38,7 +42,13 @@ export class StepPart {
     this.ports = new PortQuestions(questions, link);
     const kept = element("div", { id: "kept-setup", hidden: true });
     this.kept = new KeptSetup(kept, link);
-    root.replaceChildren(kept, questions, this.list, this.others);
+    const where = element(
+      "details",
+      { id: "where-cameras-go", class: "panel", open: true },
+      element("summary", {}, "Where cameras go"),
+      boardPicture("camera_places.svg", WHERE),
+    );
+    root.replaceChildren(kept, questions, this.list, where, this.others);
   }
 
   update(view) {

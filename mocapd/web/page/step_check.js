@@ -9,8 +9,8 @@ const TRACKING = { live: "tracking", coasting: "lost from sight for a moment", l
 const COLUMNS = [
   ["Camera", "", (one) => one.camera],
   ["Verdict", "", (one) => GRADES[one.grade] ?? one.grade],
-  ["Off in the picture", "how far the wearer is seen from where all cameras together have them", (one) => unit(one.reprojection_px, "px")],
-  ["Off in the room", "the same where the person stands", (one) => unit(one.cm, "cm")],
+  ["Disagrees in the picture", "how far this camera sees the wearer from where all cameras together have them; no error of the pose", (one) => unit(one.reprojection_px, "px")],
+  ["Disagrees in the room", "the same where the person stands", (one) => unit(one.cm, "cm")],
   ["Recognised", "share of the visible shirt, or without one of the body, that is seen where it is drawn", (one) => percent(one.match)],
   ["Saw the person", "share of the pictures with the person in view", (one) => percent(one.seen)],
   ["Pictures lost", "", (one) => percent(one.dropped)],
@@ -30,23 +30,19 @@ export class StepPart {
       id: "measure",
     });
     this.save = button("save", "Save", () => link.send("save"), { id: "save", class: "primary" });
-    this.saved = element("p", { id: "saved-to", class: "good" });
     root.replaceChildren(
       this.tracking,
       element("div", { class: "verdicts-scroll" }, this.table),
-      element("div", { class: "check-buttons" }, this.save, this.measure),
-      this.saved,
     );
+    this.lead = [this.measure, this.save];
   }
 
   update(view) {
-    const { phase, tracking, rate_hz, verdicts, saved } = view.details;
+    const { phase, tracking, rate_hz, verdicts } = view.details;
     const rate = rate_hz ? `, ${rate_hz} times a second` : "";
     setText(this.tracking, tracking ? `The tracker: ${TRACKING[tracking] ?? tracking}${rate}.` : "");
     this.save.disabled = phase !== "judged";
     this.measure.disabled = phase !== "judged";
-    setText(this.save, saved ? "Save again" : "Save");
-    setText(this.saved, saved ? `Saved in ${saved}` : "");
     this.drawVerdicts(verdicts ?? []);
   }
 

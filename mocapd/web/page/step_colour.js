@@ -66,12 +66,12 @@ export class StepPart {
       ),
     );
     this.drawing.hidden = true;
+    this.lead = [this.freeze];
     this.root.replaceChildren(
       element(
         "div",
         { class: "take-pictures" },
         element("label", {}, "After", this.wait),
-        this.freeze,
         this.propose,
       ),
       this.count,

@@ -19,6 +19,7 @@ export class StepPart {
     this.useAll = button("use-saved-all", "Use all saved lenses", () => link.send("use_saved"), {
       id: "use-saved-all",
     });
+    this.lead = [this.finish];
     root.append(
       element(
         "div",
@@ -31,8 +32,9 @@ export class StepPart {
           this.body,
         ),
       ),
-      element("div", { class: "row" }, this.finish, this.useAll),
+      element("div", { class: "row" }, this.useAll),
       this.note,
+      boardPicture("board_views.svg", "How to hold the board: turned to one camera at a time, near and far, in the middle and at every edge, tilted to each side"),
       this.board.root,
     );
     this.cameras = cameras;
@@ -217,6 +219,12 @@ class BoardForm {
     if (Number(this.marker.value) !== shown.marker_mm) args.marker_mm = Number(this.marker.value);
     this.link.send("board", args);
   }
+}
+
+/** A drawing of what to do, one of the page's files. */
+export function boardPicture(file, words) {
+  const src = new URL(file, import.meta.url).href;
+  return element("figure", { class: "how" }, element("img", { src, alt: words }), element("figcaption", {}, words));
 }
 
 function headings(...texts) {

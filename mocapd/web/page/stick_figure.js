@@ -1,10 +1,13 @@
 // The body in 3D on the floor of the play area, with the cameras. World: +Y up, metres.
-// Turned by dragging (mouse, pen, one finger) and by the arrow keys; nearer by wheel, two fingers, + and -.
+// Framed on the body where there is one, else on the cameras. Turned by dragging (mouse, pen, one finger) and by the arrow keys; nearer by wheel, two fingers, + and -.
 
 import { drawHalo } from "./halo.js";
 
 const FLOOR_M = 2; // half of the grid
-const LOOK_AT_M = [0, 0.9, 0];
+const LOOK_AT_M = [0, 0.9, 0]; // without a body
+const BODY_DISTANCE_M = 3.4; // from which somebody who reaches up fills the picture
+const DRIFT_M = 0.3; // so far from the middle of the picture a body may be
+const FOLLOW = 0.08; // share of what it is farther, a picture
 const FIELD_OF_VIEW = 0.75; // rad
 const KEY_TURN = 0.12; // rad
 const NEAREST_M = 1.5;
@@ -30,6 +33,7 @@ export class StickFigure {
     this.moved = false; // by a person
     this.scene = { cameras: [], parents: [] };
     this.body = null;
+    this.centre_m = null; // what is looked at; null: no body yet
     this.pointers = new Map();
     for (const type of ["pointerdown", "pointermove", "pointerup", "pointercancel"]) {
       this.canvas.addEventListener(type, (event) => this.pointer(event));
@@ -42,7 +46,7 @@ export class StickFigure {
 
   setScene(scene) {
     this.scene = scene;
-    if (!this.moved) this.distance_m = this.distanceToSeeAll();
+    if (!this.moved && !this.centre_m) this.distance_m = this.distanceToSeeAll();
     this.draw();
   }
 
@@ -54,7 +58,20 @@ export class StickFigure {
 
   setBody(body) {
     this.body = body;
+    if (body?.joints_m) this.follow(body.joints_m[0]);
     this.draw();
+  }
+
+  /** Keeps the hips near the middle of the picture; their height is that of somebody who stands. */
+  follow([x, , z]) {
+    if (!this.centre_m) {
+      this.centre_m = [x, LOOK_AT_M[1], z];
+      if (!this.moved) this.distance_m = BODY_DISTANCE_M;
+      return;
+    }
+    const off = [x - this.centre_m[0], z - this.centre_m[2]];
+    const share = FOLLOW * Math.max(0, 1 - DRIFT_M / Math.max(1e-6, Math.hypot(...off)));
+    this.centre_m = [this.centre_m[0] + share * off[0], LOOK_AT_M[1], this.centre_m[2] + share * off[1]];
   }
 
   pointer(event) {
@@ -124,6 +141,7 @@ export class StickFigure {
     const colour = (name) => css.getPropertyValue(`--${name}`).trim();
     const pen = { context, unit, see: this.eye(width, height) };
     drawFloor(pen, colour("line"));
+    if (this.centre_m) drawScale(pen, this.centre_m, colour("text-soft"));
     for (const camera of this.scene.cameras) drawCamera(pen, camera, colour("text-soft"));
     if (this.body?.joints_m) drawBody(pen, this.body, this.scene.parents, colour);
   }
@@ -133,8 +151,9 @@ export class StickFigure {
     const focal = height / 2 / Math.tan(FIELD_OF_VIEW / 2);
     const [cosTurn, sinTurn] = [Math.cos(this.turn), Math.sin(this.turn)];
     const [cosTilt, sinTilt] = [Math.cos(this.tilt), Math.sin(this.tilt)];
+    const at_m = this.centre_m ?? LOOK_AT_M;
     return ([px, py, pz]) => {
-      const [x, y, z] = [px - LOOK_AT_M[0], py - LOOK_AT_M[1], pz - LOOK_AT_M[2]];
+      const [x, y, z] = [px - at_m[0], py - at_m[1], pz - at_m[2]];
       const right = x * cosTurn - z * sinTurn;
       const towards = x * sinTurn + z * cosTurn;
       const up = y * cosTilt - towards * sinTilt;
@@ -170,11 +189,29 @@ function drawCamera(pen, camera, colour) {
     line(pen, camera.centre_m, corner, colour, 1.5);
     line(pen, corner, camera.corners_m[(i + 1) % 4], colour, 1.5);
   });
-  const at = pen.see(camera.centre_m);
-  if (!at) return;
+  const ends = [camera.centre_m, ...camera.corners_m].map(pen.see);
+  if (ends.includes(null)) return;
+  const [left, right] = [Math.min, Math.max].map((which) => which(...ends.map(([x]) => x)));
+  label(pen, camera.name, (left + right) / 2, Math.min(...ends.map(([, y]) => y)), colour);
+}
+
+/** A metre on the floor before the body. */
+function drawScale(pen, [x, , z], colour) {
+  const [from, to] = [[x - 0.5, 0, z + 0.7], [x + 0.5, 0, z + 0.7]];
+  line(pen, from, to, colour, 3);
+  for (const [end_x, , end_z] of [from, to]) line(pen, [end_x, 0, end_z - 0.05], [end_x, 0, end_z + 0.05], colour, 3);
+  const at = pen.see([x, 0, z + 0.82]);
+  if (at) label(pen, "1 m", at[0], at[1] + 16 * pen.unit, colour);
+}
+
+/** A text whose bottom is above a place. */
+function label(pen, text, x, y, colour) {
   pen.context.fillStyle = colour;
-  pen.context.font = `${13 * pen.unit}px system-ui, sans-serif`;
-  pen.context.fillText(camera.name, at[0] + 6 * pen.unit, at[1] - 6 * pen.unit);
+  pen.context.font = `600 ${13 * pen.unit}px system-ui, sans-serif`;
+  pen.context.textAlign = "left";
+  const across = pen.context.measureText(text).width;
+  const left = Math.min(Math.max(4 * pen.unit, x - across / 2), pen.context.canvas.width - across - 4 * pen.unit);
+  pen.context.fillText(text, left, y - 6 * pen.unit);
 }
 
 function drawBody(pen, body, parents, colour) {

@@ -28,6 +28,10 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
+OLDEST_NS = (
+    200_000_000  # of a body that is drawn over the newest picture: arms move 20 cm in that time
+)
+
 
 class BodyStep:
     """See the module."""
@@ -50,6 +54,7 @@ class BodyStep:
         self._times = 0  # measured
         self._pictures: dict[str, bytes] = {}
         self._troubles: tuple[Problem, ...] = ()
+        self._now_ns = 0
 
     # -- Step ------------------------------------------------------------------------------------
 
@@ -59,7 +64,7 @@ class BodyStep:
 
     def tick(self, now_ns: int) -> None:
         """Start the job that waits."""
-        del now_ns
+        self._now_ns = now_ns
         if self._measure_next and self._context.job is None:
             self._measure_next = False
             self._start()
@@ -197,10 +202,10 @@ class BodyStep:
         return self._watched is not None or self._measure_next
 
     def _overlays(self) -> Mapping[str, tuple[Shape, ...]]:
-        """The bones as they are tracked while it is measured."""
+        """The bones as they are tracked while it is measured, unless they are older than what the pictures show."""
         rig = self._context.draft.rig
         shown = self._watched.body if self._watched is not None else None
-        if rig is None or shown is None:
+        if rig is None or shown is None or self._now_ns - shown[0].t_ns > OLDEST_NS:
             return {}
         return {camera.name: bone_shapes(camera, *shown) for camera in rig.cameras}
 

@@ -13,9 +13,19 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, moved
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.garment import shirt_labels
-from mocapd.types import Bytes, Camera, Pose
+from mocapd.types import Bytes, Camera, Pose, Skeleton
 
 _OUTLINE_BGR, _BONE_BGR, _UNDER_BGR = (138, 240, 93), (255, 216, 79), (0, 0, 0)
+_LEG_ENDS = ("Leg", "Foot", "Toes")  # the shirt's body has none: they are a guess from the stature
+
+
+def measured_bones(skeleton: Skeleton) -> list[tuple[int, int]]:
+    """Joints at the ends, parent first, of the bones that the shirt measures."""
+    return [
+        (parent, child)
+        for child, parent in enumerate(skeleton.parents.tolist())
+        if parent >= 0 and not skeleton.names[child].endswith(_LEG_ENDS)
+    ]
 
 
 def body_picture(
@@ -26,7 +36,7 @@ def body_picture(
     observation: BodyObservation,
     index: int,
 ) -> Bytes:
-    """The picture (h,w,3) BGR with outlines of the shirt's patches and the bones, as the body in `state`
+    """The picture (h,w,3) BGR with outlines of the shirt's patches and the bones that it measures, as the body in `state`
     has them at this camera's own instant. index: of the camera in the observation's views."""
     out = pixels.copy()
     view = next((view for view in observation.views if view.index == index), None)
@@ -49,9 +59,9 @@ def body_picture(
     joints = joint_positions(skeleton, Pose(root, global_from_local(skeleton, local)))
     at_px = np.rint(project(camera, joints))
     for colour_bgr, width in ((_UNDER_BGR, 5), (_BONE_BGR, 2)):
-        for child, parent in enumerate(skeleton.parents):
-            ends = at_px[[parent, child]]
-            if parent >= 0 and np.isfinite(ends).all() and (np.abs(ends) < 1e4).all():
+        for bone in measured_bones(skeleton):
+            ends = at_px[list(bone)]
+            if np.isfinite(ends).all() and (np.abs(ends) < 1e4).all():
                 a, b = ends.astype(int).tolist()
                 cv2.line(out, a, b, colour_bgr, width, cv2.LINE_AA)
     return out

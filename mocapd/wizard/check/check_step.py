@@ -2,7 +2,8 @@
 
 Its commands are `check_verbs.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
-`lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before).
+`lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before), next_command (see
+CheckSettings), has_shirt.
 """
 
 from collections.abc import Mapping
@@ -24,6 +25,7 @@ from mocapd.clock import NS_PER_S, seconds
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.loop import OnDeath
+from mocapd.pipeline.slowness import Slowness
 from mocapd.types import Tracking
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
@@ -45,7 +47,6 @@ LEAVE_S, LEARN_S = (
 SEEK_S = 12.0  # without anybody found, after which the reasons are told
 LEAST_MEASURES = 8  # of which a verdict is made
 LONGEST_S = 25.0  # of moving, on a machine that is busy
-SLOW_HZ = 12.0
 _NOBODY = Problem(
     "nobody in the shirt is found",
     "all cameras",
@@ -125,7 +126,7 @@ class CheckStep:
             if self._tracking.metrics().tracking is Tracking.LIVE:
                 self._move(now_ns)
             elif elapsed_ns > SEEK_S * NS_PER_S:
-                self._problems = (self._nobody, *self._slowness())
+                self._problems = self._slowness() or (self._nobody,)
         elif self._phase is Phase.MOVING:
             self._seen += fresh
             enough = len(self._seen) >= LEAST_MEASURES
@@ -133,7 +134,7 @@ class CheckStep:
                 self._judge()
             elif elapsed_ns > LONGEST_S * NS_PER_S:
                 self._seek()
-                self._problems = (self._nobody, *self._slowness())
+                self._problems = self._slowness() or (self._nobody,)
 
     def command(self, command: Command) -> None:
         """See Step."""
@@ -165,6 +166,8 @@ class CheckStep:
                 "rate_hz": None if metrics is None else round(metrics.rate_hz, 1),
                 "verdicts": [verdict_json(one) for one in self._verdicts],
                 "saved": self._saved or None,
+                "next_command": self._settings.next_command,
+                "has_shirt": self._context.draft.has_shirt,
             },
         )
 
@@ -222,15 +225,18 @@ class CheckStep:
         assert self._tracking is not None
         draft, statuses = self._context.draft, self._context.statuses()
         counts, asked_hz = self._tracking.counts(), {c.id: c.fps_hz for c in draft.cameras}
+        slowness = self._tracking.metrics().slowness
         self._verdicts = tuple(
             camera_verdict(
                 camera.name,
                 self._seen,
-                Delivery(
-                    *_since(self._counts[camera.name], counts[camera.name]),
+                _delivery(
+                    self._counts[camera.name],
+                    counts[camera.name],
                     statuses[camera.name].fps_hz if camera.name in statuses else 0.0,
                     asked_hz.get(camera.name, 30.0),
                     camera.size_px[0],
+                    slowness,
                 ),
                 draft.has_shirt,
             )
@@ -239,21 +245,13 @@ class CheckStep:
         stature_m = draft.stature_m or self._settings.tracker.stature_m
         hips_m = float(standard_skeleton(stature_m).rest_m[INDEX["hips"], 1])
         of_room = room_problems(self._seen, hips_m, draft.floor_known)
-        self._problems = (*of_room, *self._slowness())
+        self._problems = (*self._slowness(), *of_room)
         self._phase = Phase.JUDGED
 
     def _slowness(self) -> tuple[Problem, ...]:
         """Whether the machine keeps up."""
-        rate_hz = self._tracking.metrics().rate_hz if self._tracking is not None else SLOW_HZ
-        if rate_hz >= SLOW_HZ:
-            return ()
-        return (
-            Problem(
-                f"only {rate_hz:.0f} poses a second are worked out",
-                "this machine",
-                "end what else keeps it busy, or use fewer cameras or smaller pictures",
-            ),
-        )
+        slowness = self._tracking.metrics().slowness if self._tracking is not None else None
+        return () if slowness is None else (Problem(slowness.what, "this machine", slowness.fix),)
 
     def _save(self) -> None:
         if self._phase is not Phase.JUDGED:
@@ -327,7 +325,21 @@ def missing(draft: Draft) -> tuple[Problem, ...]:
     return tuple(problems)
 
 
-def _since(before: CameraCounts, now: CameraCounts) -> tuple[int, int]:
-    """Frames received and lost meanwhile; one that came too late is lost too."""
-    late = now.late - before.late
-    return now.received - before.received - late, now.lost - before.lost + late
+def _delivery(
+    before: CameraCounts,
+    now: CameraCounts,
+    rate_hz: float,
+    asked_hz: float,
+    width_px: int,
+    slowness: Slowness | None,
+) -> Delivery:
+    """What became of a camera's frames between two counts."""
+    return Delivery(
+        now.received - before.received,
+        now.lost - before.lost,
+        rate_hz,
+        asked_hz,
+        width_px,
+        late=now.late - before.late,
+        slow=None if slowness is None else (slowness.what, slowness.fix),
+    )

@@ -8,13 +8,15 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Protocol
 
-from mocapd.errors import InputError, MocapdError
+from mocapd.errors import InputError, MocapdError, Problem
+from mocapd.types import Rig
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
 from mocapd.wizard.extrinsics.extrinsics_verbs import ROOM, Method
 from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
-from mocapd.wizard.step import StepView
+from mocapd.wizard.extrinsics.rig_plan import advice_of, area_shapes
+from mocapd.wizard.step import Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 
@@ -55,6 +57,9 @@ class ExtrinsicsStep:
         self._context = context
         self._method_name = "board"
         self._method: ExtrinsicsMethod = METHODS["board"](context)
+        self._advised_rig: Rig | None = None
+        self._advised: tuple[Problem, ...] = ()
+        self._area: Mapping[str, tuple[Shape, ...]] = {}
 
     def enter(self) -> None:
         """See Step."""
@@ -87,7 +92,18 @@ class ExtrinsicsStep:
         view = self._method.view()
         methods = list(METHODS) if self._context.draft.has_shirt else ["board"]
         details = {**view.details, "method": self._method_name, "methods": methods}
-        return replace(view, details=details)
+        if view.state is not StepState.DONE:
+            return replace(view, details=details)
+        self._advise()
+        problems = (*view.problems, *self._advised)
+        return replace(view, details=details, problems=problems, overlays=self._area)
+
+    def _advise(self) -> None:
+        """What would make the rig better, and the play area in the pictures; it is worked out once a rig."""
+        rig = self._context.draft.rig
+        if rig is not self._advised_rig:
+            self._advised_rig, self._advised = rig, advice_of(rig)
+            self._area = area_shapes(rig)
 
     def leave(self) -> None:
         """See Step."""

@@ -1,12 +1,17 @@
 """The rig for the page: from above, cameras, where they look and where the board was; how well it fits."""
 
+from collections.abc import Mapping
+
+import cv2
 import numpy as np
 
 from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, WorldExtrinsics
+from mocapd.calibrate.extrinsics.seen_floor import CELL_M, LOWEST_M, rig_advice, seen_floor
 from mocapd.calibration.board_spec import centre_m
-from mocapd.geometry.camera_model import camera_from_world, centre
+from mocapd.errors import Problem
+from mocapd.geometry.camera_model import camera_from_world, centre, project
 from mocapd.types import Rig
-from mocapd.wizard.step import Json
+from mocapd.wizard.step import Json, Shape
 
 
 def plan_of(extrinsics: SceneExtrinsics, made: WorldExtrinsics) -> dict[str, Json]:
@@ -20,8 +25,15 @@ def plan_of(extrinsics: SceneExtrinsics, made: WorldExtrinsics) -> dict[str, Jso
 
 
 def plan_of_cameras(rig: Rig) -> dict[str, Json]:
-    """The cameras alone."""
+    """The cameras, and the floor that two of them see a person on: cells by their middle x, z [m]."""
+    seen = seen_floor(rig)
     return {
+        "cell_m": CELL_M,
+        "seen_m": np.round(seen.cells_m, 2).tolist(),
+        "size_m": [round(one, 1) for one in seen.size_m],
+        "area_m2": round(seen.area_m2, 1),
+        "baseline_m": round(seen.baseline_m, 2),
+        "angle_deg": round(seen.angle_deg) if np.isfinite(seen.angle_deg) else None,
         "cameras": [
             {
                 "id": camera.name,
@@ -32,8 +44,34 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
                 ),
             }
             for camera in rig.cameras
-        ]
+        ],
     }
+
+
+def advice_of(rig: Rig | None) -> tuple[Problem, ...]:
+    """What would make the rig better."""
+    return () if rig is None else rig_advice(seen_floor(rig), len(rig.cameras))
+
+
+def area_shapes(rig: Rig | None) -> Mapping[str, tuple[Shape, ...]]:
+    """By camera the outline of the floor on which two cameras see a person whole, with its size; nothing where there is
+    none."""
+    seen = None if rig is None else seen_floor(rig)
+    if rig is None or seen is None or len(seen.cells_m) == 0:
+        return {}
+    # without the corners of cells, which no camera need see
+    hull_m = cv2.convexHull(seen.cells_m.astype(np.float32))[:, 0]
+    corners_m = np.stack([hull_m[:, 0], np.full(len(hull_m), LOWEST_M), hull_m[:, 1]], axis=1)
+    middle_m = np.array([[*seen.cells_m.mean(axis=0)]])[:, [0, 0, 1]] * [1.0, 0.0, 1.0]
+    text = f"{seen.size_m[0]:.1f} x {seen.size_m[1]:.1f} m"
+    found: dict[str, tuple[Shape, ...]] = {}
+    for camera in rig.cameras:
+        at_px, (middle_px,) = project(camera, corners_m), project(camera, middle_m)
+        if np.isfinite(at_px).all() and np.isfinite(middle_px).all():
+            outline = tuple((float(x), float(y)) for x, y in at_px)
+            place = ((float(middle_px[0]), float(middle_px[1])),)
+            found[camera.name] = (Shape("polygon", outline), Shape("text", place, text=text))
+    return found
 
 
 def quality_of(made: WorldExtrinsics) -> dict[str, Json]:

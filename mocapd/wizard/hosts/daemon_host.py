@@ -16,6 +16,8 @@ from mocapd.config.sections import Config
 from mocapd.errors import MocapdError, UnavailableError
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service.body_recorder import BodyRecorder
+from mocapd.service.recordings import Recordings
 from mocapd.service.service import Service, Snapshot
 from mocapd.session.session import Session
 from mocapd.types import Rig
@@ -50,6 +52,7 @@ class DaemonHost:
         self._locks: CameraLocks | None = None
         self._checked = NewestBody()  # by the setup's own tracker, while its step Check runs one
         self._looked_s = 0.0
+        self.recordings = Recordings(service.config.state_dir / "recordings", self._recorder)
 
     # -- the owner's -----------------------------------------------------------------------------
 
@@ -63,6 +66,13 @@ class DaemonHost:
         """One runs that stays."""
         with self._lock:
             self._resting = False
+
+    def close(self) -> None:
+        """The service is about to end: a recording that is being made is completed."""
+        try:
+            self.recordings.close()
+        except MocapdError as error:
+            _log.warning("the page's recording: %s", error)
 
     def beat(self) -> None:
         """About once a second: a setup that was left behind gives the cameras back what it took."""
@@ -108,6 +118,14 @@ class DaemonHost:
                 self._looked_s = time.monotonic()
                 self._wizard = self._begun()
             return self._wizard
+
+    def _recorder(self, path: Path) -> BodyRecorder:
+        """Of the service, whatever its session. Raises CannotCreateError."""
+        return BodyRecorder(self._service.bodies, path, self.known(), self._service.instance)
+
+    def recenter(self) -> None:
+        """See Host."""
+        self._service.recenter()
 
     def body(self) -> BodySample | None:
         """See Host."""

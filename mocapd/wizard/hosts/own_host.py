@@ -8,7 +8,7 @@ from pathlib import Path
 from mocapd.capture.base import Source
 from mocapd.capture.recording.recorded_known import RecordedKnown
 from mocapd.capture.webcam.webcam_listing import CameraInfo
-from mocapd.errors import MocapdError
+from mocapd.errors import MocapdError, UnavailableError
 from mocapd.latch import Latch
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
@@ -129,6 +129,15 @@ class OwnHost:
     def body(self) -> BodySample | None:
         """See Host."""
         return self._shown.bodies.newest()
+
+    @property
+    def recordings(self) -> None:
+        """See Host: what is tracked here is a check of a few seconds."""
+        return
+
+    def recenter(self) -> None:
+        """See Host."""
+        raise UnavailableError("no output runs here", "the setup", "start `mocapd run`")
 
     def snapshot(self) -> Snapshot | None:
         """See Host."""

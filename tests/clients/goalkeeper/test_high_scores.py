@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from goalkeeper.app.high_scores import KEPT, keep_round, read_high_scores
+from goalkeeper.app.high_scores import KEPT, Placed, keep_name, keep_round, read_high_scores
 from goalkeeper.core.scoring import Score
 
 DAY = "2026-01-02"
@@ -19,6 +19,22 @@ def test_they_are_kept_best_first(tmp_path: Path) -> None:
         assert placed.place == place
         assert placed.trouble == ""
     assert [one.points for one in read_high_scores(path)] == [500, 400, 300]
+
+
+def test_a_name_is_kept_also_one_that_is_typed_later(tmp_path: Path) -> None:
+    path = tmp_path / "high_scores.json"
+    keep_round(path, _score(500), DAY, "Noor")
+    placed = keep_round(path, _score(400), DAY)
+    keep_name(path, placed, "Kim")
+    assert [one.name for one in read_high_scores(path)] == ["Noor", "Kim"]
+    assert keep_name(path, Placed((), None), "Kim").scores == ()
+
+
+def test_a_table_of_an_earlier_version_has_no_names(tmp_path: Path) -> None:
+    path = tmp_path / "high_scores.json"
+    row = '{"points": 5, "saves": 1, "goals": 0, "best_streak": 1, "date": "2026-01-01"}'
+    path.write_text(f'{{"scores": [{row}]}}')
+    assert [one.name for one in read_high_scores(path)] == [""]
 
 
 def test_the_eleventh_best_is_forgotten(tmp_path: Path) -> None:

@@ -11,11 +11,13 @@ from goalkeeper.streams.sighting import Sighting
 from mocapd.client import Link
 from mocapd.clock import monotonic_ns
 from mocapd.outputs import wire
+from mocapd.outputs.messages import Health
 from tests.clients.goalkeeper.session import session_frames
 from tests.outputs.frames import eventually, free_port
 from tests.outputs.zenoh_pair import Running, running_sink
 
 FRAME = session_frames(0.1)[0]
+HEALTH = Health("pc", "1", 1, 0, 1, "auto", "live", 30.0, 21.0, 30.5, 100, 2)
 
 
 @pytest.fixture
@@ -94,6 +96,22 @@ def test_a_stream_that_stops_is_said(running: Running, stream: LiveStream) -> No
     now_s = time.monotonic()
     stream.poll(now_s + 5.0)
     assert "the stream has stopped" in stream.state().trouble
+
+
+def test_a_daemon_that_is_too_slow_is_said(running: Running, stream: LiveStream) -> None:
+    running.sink.tell(
+        msgspec.structs.replace(HEALTH, slowness="too slow: 95 % -- close other programs")
+    )
+    running.sink.send(_seen_now())
+    _next(stream)
+
+    def said() -> bool:
+        stream.poll(time.monotonic())
+        return stream.state().slow.startswith("too slow")
+
+    assert eventually(said)
+    running.sink.tell(HEALTH)
+    assert eventually(lambda: not said())
 
 
 @pytest.mark.parametrize(

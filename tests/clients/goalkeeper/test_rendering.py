@@ -56,8 +56,19 @@ def test_the_stadium_has_grass_below_and_people_above(drawn: dict[str, Bytes]) -
     blue, green, red = (drawn["empty"][..., k].astype(int) for k in range(3))
     grass = (green > blue + 20) & (green > red + 20)
     assert grass[200:].mean() > 0.5
-    assert grass[20:80].mean() < 0.1
-    assert drawn["empty"][60:120].std() > 15
+    assert grass[:28].mean() < 0.1
+    assert drawn["empty"][5:30].std() > 15
+
+
+def test_from_behind_the_shooter_is_not_hidden_by_the_keeper(drawn: dict[str, Bytes]) -> None:
+    """He wears blue, and is seen above the keeper's head."""
+    blue, green, red = (drawn["behind"][..., k].astype(int) for k in range(3))
+    shooter = (blue > 110) & (green < 70) & (red < 70)
+    rows, columns = np.nonzero(shooter[:, 200:280])
+    keeper_rows, _ = np.nonzero(_changed(drawn, "behind")[:, 200:280])
+    assert len(rows) > 15
+    assert rows.max() < np.percentile(keeper_rows, 90)
+    assert len(columns) > 15
 
 
 def test_in_first_person_ones_own_head_is_not_in_the_way(drawn: dict[str, Bytes]) -> None:

@@ -8,15 +8,20 @@ import wave
 import numpy as np
 import pytest
 
-from goalkeeper.app.hud_text import Popups, hud_text
+from goalkeeper.app.high_scores import HighScore, Placed
+from goalkeeper.app.hud_text import PlayerSettings, Popups, hud_text, level_of, next_difficulty
 from goalkeeper.app.latency import Latency
 from goalkeeper.core.ball import Outcome
 from goalkeeper.core.events import Saved
 from goalkeeper.core.match import Match, MatchRules, Phase
+from goalkeeper.core.scoring import Score
 from goalkeeper.render import pictures
 from goalkeeper.render.panda_space import PANDA_FROM_GOAL, to_panda
 from goalkeeper.sound import synth
+from goalkeeper.streams.sighting import StreamState
 from tests.clients.goalkeeper.test_match import AT_HAND, AimedShooter, play, playing, t_pose
+
+OK = StreamState()
 
 
 def test_the_goals_frame_is_turned_and_not_mirrored() -> None:
@@ -33,17 +38,58 @@ def test_the_goals_frame_is_turned_and_not_mirrored() -> None:
 def test_words_follow_the_match() -> None:
     match = Match(MatchRules(), AimedShooter(AT_HAND))
     match.tick(None)
-    assert "stretch both arms" in hud_text(match, "", "", "", None).message
-    assert hud_text(match, "", "no mocapd there", "", None).message == "no mocapd there"
+    start = hud_text(match, "", OK, "", None).table
+    assert "Stand three big steps from your cameras" in start, "before anybody is seen"
+    absent = hud_text(match, "", StreamState("no mocapd there"), "", None)
+    assert absent.table.endswith("no mocapd there")
+    match.tick(t_pose())
+    assert "Stretch both arms" in hud_text(match, "", OK, "", None).message
     play(match, t_pose(), 0.7)
-    assert hud_text(match, "", "", "", None).big == "3"
+    assert hud_text(match, "", OK, "", None).big == "3"
     match = playing(AT_HAND)
-    text = hud_text(match, "60 Hz", "", "SAVED", None)
+    text = hud_text(match, "60 Hz", OK, "SAVED", None)
     assert (text.clock, text.score, text.streak, text.popup) == ("2:00", "0", "0 : 0", "SAVED")
     play(match, None, 1.0)
-    text = hud_text(match, "", "", "", None)
+    text = hud_text(match, "", OK, "", None)
     assert (match.phase, text.big) == (Phase.PAUSED, "PAUSE")
     assert "tracking lost" in text.message
+
+
+def test_the_end_of_a_round_says_how_it_went_and_who_is_best() -> None:
+    match = playing(AT_HAND)
+    match.score = Score(points=960, saves=6, goals=2, streak=0, best_streak=4)
+    match.phase = Phase.OVER
+    best = (HighScore(2140, 12, 3, 7, "2026-01-01", "Noor"), HighScore(960, 6, 2, 4, "2026-01-02"))
+    settings = PlayerSettings(name="Kim", types=True)
+    table = hud_text(match, "", OK, "", Placed(best, 1), settings).table
+    for told in ("960 points", "6 saves   2 goals   75 % kept out", "longest streak 4"):
+        assert told in table
+    assert "1.  2140  Noor  12:3" in table
+    assert "2.  960  Kim  6:2  2026-01-02  (you)" in table
+    assert "Your name: Kim_" in table
+
+
+def test_difficulty_goes_round_and_is_the_level_of_the_next_shots() -> None:
+    names = ["easy"]
+    for _ in range(3):
+        names.append(next_difficulty(names[-1]))
+    assert names == ["easy", "normal", "hard", "easy"]
+    levels = [level_of(name) for name in names[:3]]
+    assert levels == sorted(levels)
+    match = playing(AT_HAND)
+    match.set_level(level_of("hard"))
+    assert match.difficulty.level == level_of("hard")
+    match.recalibrate()
+    assert match.difficulty.level == level_of("hard")
+
+
+def test_a_slow_machine_is_not_blamed_on_the_player() -> None:
+    slow = StreamState(slow="too slow: 95 % of the frame sets are skipped -- close other programs")
+    match = playing(AT_HAND)
+    assert "tracking is slow" in hud_text(match, "60 Hz", slow, "", None).foot
+    play(match, None, 1.0)
+    text = hud_text(match, "", slow, "", None)
+    assert text.message == "tracking is slow: close other programs"
 
 
 def test_a_save_is_shown_for_a_moment() -> None:

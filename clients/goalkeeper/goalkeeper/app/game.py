@@ -2,15 +2,22 @@
 
 import datetime
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from goalkeeper.app.fixed_steps import FixedSteps
-from goalkeeper.app.high_scores import Placed, keep_round
-from goalkeeper.app.hud_text import Popups, hud_text
+from goalkeeper.app.high_scores import Placed, keep_name, keep_round
+from goalkeeper.app.hud_text import (
+    MOST_NAME,
+    PlayerSettings,
+    Popups,
+    hud_text,
+    level_of,
+    next_difficulty,
+)
 from goalkeeper.app.latency import Latency
 from goalkeeper.core.events import RoundOver
-from goalkeeper.core.match import Match
+from goalkeeper.core.match import Match, Phase
 from goalkeeper.render.cameras import View
 from goalkeeper.render.game_view import GameView, Moving
 from goalkeeper.render.stage import Stage
@@ -29,6 +36,7 @@ class GameParts:
     stream: PoseStream
     sound: Loudspeaker | None
     scores: Path
+    settings: PlayerSettings = field(default_factory=PlayerSettings)
 
 
 class Game:
@@ -40,6 +48,8 @@ class Game:
         self._steps = FixedSteps(parts.match, parts.stream)
         self._seen = GameView(parts.stage.base)
         self._popups, self._latency = Popups(), Latency()
+        self.settings = parts.settings
+        self._set_volume()
         self._placed: Placed | None = None
         self._last_s = time.monotonic()
         self._steps.begin(self._last_s)
@@ -70,10 +80,16 @@ class Game:
             self._parts.sound.heard(events)
         if any(isinstance(event, RoundOver) for event in events):
             today = datetime.date.today().isoformat()
-            self._placed = keep_round(self._parts.scores, self.match.score, today)
-        trouble = self._parts.stream.state().trouble
+            name = self.settings.name
+            self._placed = keep_round(self._parts.scores, self.match.score, today, name)
+        state = self._parts.stream.state()
         text = hud_text(
-            self.match, self._foot(now_s), trouble, self._popups.text(now_s), self._placed
+            self.match,
+            self._foot(now_s),
+            state,
+            self._popups.text(now_s),
+            self._placed,
+            self.settings,
         )
         self._seen.update(self.match, Moving(now_s, now_s - self._last_s, self.view), text)
         self._last_s = now_s
@@ -83,6 +99,40 @@ class Game:
     def switch_view(self) -> None:
         """From behind the goal to the keeper's eyes, and back."""
         self.view = View.FIRST if self.view is View.BEHIND else View.BEHIND
+
+    def harder(self) -> None:
+        """The next difficulty, from the next shot on."""
+        difficulty = next_difficulty(self.settings.difficulty)
+        self.settings = replace(self.settings, difficulty=difficulty)
+        self.match.set_level(level_of(difficulty))
+
+    def louder(self, by: float) -> None:
+        """By that share of all."""
+        volume = min(1.0, max(0.0, round(self.settings.volume + by, 2)))
+        self.settings = replace(self.settings, volume=volume)
+        self._set_volume()
+
+    def type_name(self) -> None:
+        """Keys are a name from now on, until Return; at the end of a round that is in the table."""
+        is_placed = self._placed is not None and self._placed.place is not None
+        if self.match.phase is Phase.OVER and is_placed:
+            self.settings = replace(self.settings, types=True, name="")
+
+    def typed(self, key: str) -> None:
+        """One character, or `enter` or `backspace`."""
+        settings = self.settings
+        if key == "enter":
+            self.settings = replace(settings, types=False)
+            if self._placed is not None:
+                self._placed = keep_name(self._parts.scores, self._placed, settings.name)
+        elif key == "backspace":
+            self.settings = replace(settings, name=settings.name[:-1])
+        elif len(key) == 1 and key.isprintable() and len(settings.name) < MOST_NAME:
+            self.settings = replace(settings, name=settings.name + key)
+
+    def _set_volume(self) -> None:
+        if self._parts.sound is not None:
+            self._parts.sound.set_volume(self.settings.volume)
 
     def _foot(self, now_s: float) -> str:
         self._frames += 1

@@ -19,13 +19,14 @@ _Count = Annotated[int, msgspec.Meta(ge=0, le=10**9)]
 
 
 class HighScore(msgspec.Struct, frozen=True):
-    """One round: date as YYYY-MM-DD."""
+    """One round: date as YYYY-MM-DD; name: the player's, empty where none was typed."""
 
     points: _Count
     saves: _Count
     goals: _Count
     best_streak: _Count
     date: Annotated[str, msgspec.Meta(pattern=r"^\d{4}-\d{2}-\d{2}$")]
+    name: Annotated[str, msgspec.Meta(max_length=40)] = ""
 
 
 class _File(msgspec.Struct, frozen=True):
@@ -59,21 +60,34 @@ def read_high_scores(path: Path) -> tuple[HighScore, ...]:
     return tuple(sorted(found.scores, key=lambda one: -one.points)[:KEPT])
 
 
-def with_round(scores: tuple[HighScore, ...], score: Score, date: str) -> Placed:
+def with_round(scores: tuple[HighScore, ...], score: Score, date: str, name: str = "") -> Placed:
     """The table with a round in it; a round without points is in none."""
-    new = HighScore(score.points, score.saves, score.goals, score.best_streak, date)
+    new = HighScore(score.points, score.saves, score.goals, score.best_streak, date, name)
     place = sum(one.points >= new.points for one in scores)
     if new.points == 0 or place >= KEPT:
         return Placed(scores, None)
     return Placed((*scores[:place], new, *scores[place:])[:KEPT], place)
 
 
-def keep_round(path: Path, score: Score, date: str) -> Placed:
+def keep_name(path: Path, placed: Placed, name: str) -> Placed:
+    """The same table with another name in its new row, which is written."""
+    if placed.place is None:
+        return placed
+    scores = list(placed.scores)
+    scores[placed.place] = msgspec.structs.replace(scores[placed.place], name=name)
+    try:
+        _write(path, tuple(scores))
+    except MocapdError as error:
+        return Placed(tuple(scores), placed.place, str(error))
+    return Placed(tuple(scores), placed.place, placed.trouble)
+
+
+def keep_round(path: Path, score: Score, date: str, name: str = "") -> Placed:
     """Read, add, write. A damaged file is left as it is, and said."""
     try:
-        placed = with_round(read_high_scores(path), score, date)
+        placed = with_round(read_high_scores(path), score, date, name)
     except InputError as error:
-        alone = with_round((), score, date)
+        alone = with_round((), score, date, name)
         return Placed(alone.scores, alone.place, str(error))
     if placed.place is None:
         return placed

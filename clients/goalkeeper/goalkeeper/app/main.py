@@ -50,8 +50,3 @@ def _print(report: Report) -> None:
         f"score {score.points}: {score.saves} saves, {score.goals} goals, longest streak"
         f" {score.best_streak}, level {report.level:.2f} after {report.played_s:.1f} s"
     )
-
-
-def script() -> None:
-    """What is installed as `goalkeeper`."""
-    sys.exit(main())

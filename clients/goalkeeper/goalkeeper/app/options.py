@@ -27,6 +27,10 @@ def parse_options(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--headless", action="store_true", help="play --recording without a window, print the score"
     )
+    parser.add_argument(
+        "--difficulty", choices=("easy", "normal", "hard"), default="normal", help="[%(default)s]"
+    )
+    parser.add_argument("--name", default="", help="yours, for the high scores")
     seen = parser.add_argument_group("picture and sound")
     seen.add_argument("--view", choices=("behind", "first"), default="behind")
     seen.add_argument("--size", type=_size, default=_SIZE, metavar="WxH", help="[1280x720]")
@@ -36,6 +40,7 @@ def parse_options(arguments: list[str] | None = None) -> argparse.Namespace:
         help="software: Panda3D's own, for machines without a graphics card",
     )  # fmt: skip
     seen.add_argument("--mute", action="store_true")
+    seen.add_argument("--volume", type=_whole(0, 100), default=100, help="[%(default)s]")
     options = parser.parse_args(arguments)
     if options.headless and options.recording is None:
         parser.error("--headless needs --recording FILE")

@@ -11,8 +11,8 @@ from pathlib import Path
 from panda3d.core import Filename
 
 from goalkeeper.app.fixed_steps import FixedSteps
-from goalkeeper.app.high_scores import with_round
-from goalkeeper.app.hud_text import Popups, hud_text
+from goalkeeper.app.high_scores import HighScore, with_round
+from goalkeeper.app.hud_text import PlayerSettings, Popups, hud_text
 from goalkeeper.core.events import Event, Saved
 from goalkeeper.core.match import Match, MatchRules, Phase
 from goalkeeper.core.pitch import TICK_S
@@ -22,11 +22,13 @@ from goalkeeper.render.stage import Renderer, Stage, StageParams, open_stage
 from goalkeeper.streams.demo_script import demo_scenario
 from goalkeeper.streams.person_stream import PersonStream
 from goalkeeper.streams.scripted_shooter import ScriptedShooter
+from goalkeeper.streams.sighting import StreamState
 from mocapd.errors import CannotCreateError, MocapdError
 
 _TICKS_A_PICTURE = 2
 _DATE = "2026-01-01"
-_FOOT = ""
+_FOOT = "60 Hz"
+_EARLIER = (HighScore(2140, 12, 3, 7, _DATE, "Noor"), HighScore(960, 7, 6, 3, _DATE, "Kim"))
 Wanted = Callable[[Match, list[Event]], bool]
 
 
@@ -52,6 +54,11 @@ class _Session:
             left = left - 1 if left is not None else (after if wanted(self.match, events) else None)
             # the trail and the camera need the pictures before
             self._update(view)
+        self.shoot(view, name)
+
+    def shoot(self, view: View, name: str) -> None:
+        """Keep a picture of now."""
+        self._update(view)
         self._stage.base.graphicsEngine.renderFrame()
         self._stage.base.graphicsEngine.renderFrame()
         path = self._folder / name
@@ -62,9 +69,9 @@ class _Session:
     def _update(self, view: View) -> None:
         placed = None
         if self.match.phase is Phase.OVER:
-            placed = with_round((), self.match.score, _DATE)
+            placed = with_round(_EARLIER, self.match.score, _DATE, "Kim")
         popup = self._popups.text(self._now_s)
-        text = hud_text(self.match, _FOOT, "", popup, placed)
+        text = hud_text(self.match, _FOOT, StreamState(), popup, placed, PlayerSettings(name="Kim"))
         dt_s = _TICKS_A_PICTURE * TICK_S
         self._seen.update(self.match, Moving(self._now_s, dt_s, view), text)
 
@@ -96,6 +103,7 @@ def main(arguments: list[str] | None = None) -> int:
         )
         options.folder.mkdir(parents=True, exist_ok=True)
         session = _Session(stage, options.folder)
+        session.shoot(View.BEHIND, "start.png")
         session.until(lambda m, _: m.finder.progress > 0.6, View.BEHIND, "calibration.png")
         session.until(_coming(2.2, 1), View.BEHIND, "coming.png")
         session.until(_saved, View.BEHIND, "save.png", after=5)

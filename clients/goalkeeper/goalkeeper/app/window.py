@@ -3,6 +3,7 @@
 import gc
 import time
 from argparse import Namespace
+from collections.abc import Callable
 from contextlib import closing
 
 import platformdirs
@@ -11,6 +12,7 @@ from panda3d.core import WindowProperties
 from goalkeeper.app.end_signals import end_on_signals
 from goalkeeper.app.game import Game, GameParts
 from goalkeeper.app.high_scores import high_score_path
+from goalkeeper.app.hud_text import PlayerSettings, level_of
 from goalkeeper.core.match import Match, MatchRules
 from goalkeeper.core.shots import RandomShooter, Shooter
 from goalkeeper.render.cameras import View
@@ -26,6 +28,7 @@ from mocapd.client import Link
 
 SOFTWARE_HZ = 75.0  # the processor's time belongs to the tracker too
 WAITING_HZ = 15.0  # while there is nobody to be seen
+_LOUDER = 0.1  # a press of + or -
 _CALIBRATE_S = 8.0  # of a recording, in which nobody answers
 
 
@@ -40,7 +43,9 @@ def run_window(options: Namespace) -> int:
     with closing(open_stream(options)) as stream:
         match = Match(match_rules(options), open_shooter(options))
         sound = None if options.mute else Loudspeaker(stage.base)
-        game = Game(GameParts(stage, match, stream, sound, high_score_path()), View(options.view))
+        settings = PlayerSettings(options.difficulty, options.volume / 100.0, options.name)
+        parts = GameParts(stage, match, stream, sound, high_score_path(), settings)
+        game = Game(parts, View(options.view))
         play(game, stage)
     return 0
 
@@ -77,7 +82,10 @@ def open_shooter(options: Namespace) -> Shooter:
 def match_rules(options: Namespace) -> MatchRules:
     """Of the options."""
     calibrate_s = _CALIBRATE_S if options.recording is not None else None
-    return MatchRules(round_s=options.round, calibrate_s=calibrate_s, shots=options.shots)
+    level = level_of(options.difficulty)
+    return MatchRules(
+        round_s=options.round, calibrate_s=calibrate_s, shots=options.shots, level=level
+    )
 
 
 def calm_collector() -> None:
@@ -105,23 +113,51 @@ class _Window:
     def __init__(self, game: Game, stage: Stage) -> None:
         self.open = True
         self._stage = stage
+        self._game, self._size_px = game, (1280, 720)
         base, match = stage.base, game.match
         for key, act in (
-            ("escape", self._leave),
             ("v", game.switch_view),
             ("p", match.toggle_pause),
             ("c", match.recalibrate),
+            ("d", game.harder),
+            ("n", game.type_name),
+            ("+", lambda: game.louder(_LOUDER)),
+            ("=", lambda: game.louder(_LOUDER)),
+            ("-", lambda: game.louder(-_LOUDER)),
             ("space", match.next_round),
             ("f", self._fill_screen),
         ):
-            base.accept(key, act)
+            base.accept(key, self._unless_typed, [act])
+        base.accept("escape", self._leave)
+        for key in ("enter", "backspace"):
+            base.accept(key, self._key, [key])
+        base.buttonThrowers[0].node().setKeystrokeEvent("keystroke")
+        base.accept("keystroke", self._key)
         base.win.setCloseRequestEvent("leave")
         base.accept("leave", self._leave)
 
     def _leave(self) -> None:
         self.open = False
 
+    def _unless_typed(self, act: Callable[[], object]) -> None:
+        """A name has these letters, too."""
+        if not self._game.settings.types:
+            act()
+
+    def _key(self, key: str) -> None:
+        if self._game.settings.types:
+            self._game.typed(key)
+
     def _fill_screen(self) -> None:
+        """The whole screen in its own size, and back to the window as it was."""
+        window, pipe = self._stage.base.win, self._stage.base.pipe
         wanted = WindowProperties()
-        wanted.setFullscreen(not self._stage.base.win.isFullscreen())
-        self._stage.base.win.requestProperties(wanted)
+        if window.isFullscreen():
+            wanted.setFullscreen(False)
+            wanted.setSize(*self._size_px)
+        else:
+            self._size_px = window.getXSize(), window.getYSize()
+            wanted.setFullscreen(True)
+            if pipe.getDisplayWidth() > 0:
+                wanted.setSize(pipe.getDisplayWidth(), pipe.getDisplayHeight())
+        window.requestProperties(wanted)

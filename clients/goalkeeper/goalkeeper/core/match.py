@@ -1,6 +1,6 @@
 """One match: phases, clock, shots and score, a tick at a time. Pure: the same poses give the same match."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -88,6 +88,11 @@ class Match:
         return self._ticks * TICK_S
 
     @property
+    def is_seen(self) -> bool:
+        """Whether somebody is seen at this tick."""
+        return self._seen_ticks > 0
+
+    @property
     def left_s(self) -> float:
         """Of the round [s]."""
         return max(0.0, self.rules.round_s - self._play_ticks * TICK_S)
@@ -132,6 +137,11 @@ class Match:
             self._pause(ASKED)
         elif self.phase is Phase.PAUSED:
             self._enter(Phase.COUNTDOWN)
+
+    def set_level(self, level: float) -> None:
+        """From the next shot on; 0..1."""
+        self.rules = replace(self.rules, level=level)
+        self.difficulty = Difficulty(level)
 
     def recalibrate(self) -> None:
         """Measure the reach anew, and begin a round."""

@@ -37,8 +37,9 @@ def keeper_camera(view: View, pose: LimbPose | None) -> Framing:
         eyes_m = pose.point("head") if pose is not None and pose.knows("head") else chest_m
         return Framing(eyes_m + [0.0, 0.16, -0.30], eyes_m + [0.0, -0.85, 9.0], 84.0)
     x_m = float(np.clip(chest_m[0], -1.0, 1.0))
+    # higher than the keeper's head, so that shooter and ball are seen above it
     return Framing(
-        np.array([0.55 * x_m, 2.0, GOAL_LINE_Z_M - 3.3]), np.array([0.30 * x_m, 0.78, 4.0]), 67.0
+        np.array([0.55 * x_m, 2.75, GOAL_LINE_Z_M - 3.7]), np.array([0.30 * x_m, 0.22, 4.0]), 67.0
     )
 
 

@@ -35,6 +35,11 @@ class Loudspeaker:
         self._sounds["murmur"].setLoop(True)
         self._sounds["murmur"].play()
 
+    def set_volume(self, volume: float) -> None:
+        """Of everything, 0..1."""
+        for sound in self._sounds.values():
+            sound.setVolume(volume)
+
     def heard(self, events: list[Event]) -> None:
         """What happened since the last picture."""
         for event in events:

@@ -1,8 +1,10 @@
 """The demo: a daemon of its own on simulated cameras, and its stream."""
 
+import shutil
 import socket
 import subprocess
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 from goalkeeper.streams.daemon_progress import DaemonProgress
@@ -11,21 +13,40 @@ from goalkeeper.streams.live_stream import LiveStream
 from goalkeeper.streams.sighting import Sighting, StreamState
 from mocapd.child_process import child_command
 from mocapd.client import Link
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, UnavailableError
 from mocapd.whole_file import whole_file
 
 _INSTANCE = "goalkeeper-demo"
 _END_S = 5.0  # a daemon ends within two
 DAEMON = "from mocapd.cli.main import main; main()"
+_OTHER = (
+    "import os; os.execv({0!r}, [{0!r}, *sys.argv[1:]])"  # it keeps the signal of its parent's end
+)
+
+
+def daemon_program() -> str:
+    """Python statements that run `mocapd`: of this environment, else the command that is on the PATH. Raises
+    UnavailableError where there is none."""
+    if find_spec("mocapd.cli") is not None:
+        return DAEMON
+    command = shutil.which("mocapd")
+    if command is None:
+        raise UnavailableError(
+            "the demo needs mocapd itself, and the small install is here alone",
+            "goalkeeper --demo",
+            "install mocapd (its README says how), or start `goalkeeper` while a daemon runs",
+        )
+    return _OTHER.format(command)
 
 
 class DemoStream:
     """Starts the daemon, and ends it with `close`; it also ends when this process ends. The first start draws what
     the cameras see and compiles the tracker: a minute or two, of which `state` gives the share and the time."""
 
-    def __init__(self, folder: Path, daemon: str = DAEMON) -> None:
+    def __init__(self, folder: Path, daemon: str | None = None) -> None:
         """folder: where the scenario is written; daemon: Python statements that run `mocapd`. Called by the main
-        thread. Raises CannotCreateError."""
+        thread. Raises CannotCreateError, UnavailableError."""
+        program = daemon_program() if daemon is None else daemon
         scenario = folder / "goalkeeper.toml"
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -39,7 +60,7 @@ class DemoStream:
         self._began_s = time.monotonic()
         self.process = subprocess.Popen(
             child_command(
-                daemon,
+                program,
                 "run",
                 *("--capture", f"sim:{scenario}", "--instance", _INSTANCE),
                 *("--set", f"zenoh.port={port}", "--set", "zenoh.enabled=true"),

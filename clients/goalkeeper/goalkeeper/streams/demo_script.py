@@ -12,10 +12,11 @@ import numpy as np
 import tomli_w
 
 from mocapd.assets import asset_path
+from mocapd.body.shape import skeleton_of
 from mocapd.body.skeleton import INDEX
 from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
 from mocapd.sim.scenario import Scenario, load_scenario
-from mocapd.sim.world import World
+from mocapd.sim.world import body_shape
 from mocapd.types import Skeleton
 
 LOOP_S = 24.0
@@ -61,7 +62,7 @@ def demo_scenario() -> Scenario:
         name="goalkeeper",
         loop_s=LOOP_S,
         fps_hz=FPS_HZ,
-        motion=MotionSpec(keyframes=_keyframes(World(room).skeleton), sway_deg=1.0),
+        motion=MotionSpec(keyframes=_keyframes(skeleton_of(body_shape(room))), sway_deg=1.0),
         lights=tuple(replace(light, events=()) for light in room.lights),
     )
 

@@ -23,6 +23,7 @@ class LiveStream:
         self._closed = threading.Event()
         self._heard_s: float | None = None
         self._now_s = 0.0
+        self._slow = ""
         self._thread = threading.Thread(target=self._connect, name="connect", daemon=True)
         self._thread.start()
 
@@ -54,10 +55,18 @@ class LiveStream:
             self._trouble = str(error)
             self._heard_s = now_s
             return []
+        self._look_at_health(client)
         if body is None:
             return []
         self._trouble, self._heard_s = "", now_s
         return [Sighting(_captured_s(body, now_s), pose_of_frame(body.frame))]
+
+    def _look_at_health(self, client: Client) -> None:
+        try:
+            health = client.health()
+        except (InputError, UnavailableError):
+            return  # of another version: the frames say so
+        self._slow = "" if health is None else health.slowness
 
     @property
     def has_heard(self) -> bool:
@@ -72,7 +81,7 @@ class LiveStream:
             return StreamState("mocapd is there: waiting for its first frame")
         if self._now_s - self._heard_s > _SILENT_S:
             return StreamState("the stream has stopped: is mocapd still running?")
-        return StreamState()
+        return StreamState(slow=self._slow)
 
     def close(self) -> None:
         """Disconnect."""

@@ -18,10 +18,12 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class StreamState:
-    """trouble: one line for the player, empty when all is well; ended: nothing comes any more."""
+    """trouble: one line for the player, empty when all is well; ended: nothing comes any more; slow: why the poses are too
+    few, and what helps."""
 
     trouble: str = ""
     ended: bool = False
+    slow: str = ""
 
 
 class PoseStream(Protocol):

@@ -19,6 +19,7 @@ from mocapd.tracking.cues.clothes.appearance_kernels import (
 )
 from mocapd.tracking.cues.clothes.look import ALL_DIFFER, DressedFitters, look_of
 from mocapd.tracking.cues.clothes.regions import Band, Region
+from mocapd.types import Bytes, Singles
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, SHADOW
 from tests.geometry.rigs import ring
 

@@ -1,0 +1,83 @@
+"""Verdict "too slow": the tracker skips a large share of the frame sets, with the cause and what helps."""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from itertools import pairwise
+
+from mocapd.clock import nanoseconds, seconds
+
+
+@dataclass(frozen=True, slots=True)
+class SlownessParams:
+    """window_s: over which skipped frame sets are counted; fewest: tracked frame sets that a verdict needs, also older ones;
+    begin, end: share of skipped frame sets at which the verdict begins and ends; others: share of the processors from
+    which other programs count as the cause."""
+
+    window_s: float = 6.0
+    fewest: int = 4
+    begin: float = 0.34
+    end: float = 0.2
+    others: float = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class Slowness:
+    """skipped: share of the frame sets, 0..1; tracked_hz, made_hz: frame sets a second; busy_ms: time a frame set takes,
+    median; others: share of the machine's processors that other programs use, NaN where unknown."""
+
+    skipped: float
+    tracked_hz: float
+    made_hz: float
+    busy_ms: float
+    others: float = math.nan
+    params: SlownessParams = SlownessParams()
+
+    @property
+    def what(self) -> str:
+        """The verdict and its cause, for people."""
+        verdict = (
+            f"too slow: {100.0 * self.skipped:.0f} % of the frame sets are skipped "
+            f"({self.tracked_hz:.1f} of {self.made_hz:.0f} a second are tracked)"
+        )
+        if self.others >= self.params.others:
+            return f"{verdict}, other programs use {100.0 * self.others:.0f} % of this machine"
+        return f"{verdict}, a frame set takes {self.busy_ms:.0f} ms"
+
+    @property
+    def fix(self) -> str:
+        """What helps, for people."""
+        less = "lower fps_hz of the cameras, take smaller pictures or fewer cameras"
+        if self.others >= self.params.others:
+            return f"close other programs, or {less}"
+        return f"{less}, or use a faster machine"
+
+
+class SlownessWatch:
+    """Judges the last seconds after each frame set; its times are the caller's, so that it needs no clock."""
+
+    def __init__(self, params: SlownessParams | None = None) -> None:
+        self._params = params if params is not None else SlownessParams()
+        self._sets: deque[tuple[int, int, int]] = deque()  # end [ns], number, busy [ns]
+        self._is_slow = False
+
+    def tracked(self, number: int, busy_ns: int, now_ns: int, others: float) -> Slowness | None:
+        """The verdict after the number-th frame set, which took busy_ns until now_ns; None: it keeps up. others: see
+        Slowness."""
+        p, sets = self._params, self._sets
+        sets.append((now_ns, number, busy_ns))
+        while len(sets) > p.fewest and now_ns - sets[0][0] > nanoseconds(p.window_s):
+            sets.popleft()
+        if len(sets) < p.fewest:
+            return None
+        numbers = [one[1] for one in sets]
+        gaps = [later - before for before, later in pairwise(numbers)]
+        # without the longest gap: a single pause, as for a kernel that compiles, is no slow machine
+        made, kept = sum(gaps) - max(gaps), len(gaps) - 1
+        skipped = 1.0 - kept / max(made, kept)
+        self._is_slow = skipped > (p.end if self._is_slow else p.begin)
+        if not self._is_slow:
+            return None
+        span_s = max(seconds(now_ns - sets[0][0]), 1e-3)
+        busy_ms = sorted(one[2] for one in sets)[len(sets) // 2] / 1e6
+        return Slowness(skipped, len(gaps) / span_s, sum(gaps) / span_s, busy_ms, others, p)

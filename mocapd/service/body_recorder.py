@@ -1,0 +1,98 @@
+"""Records the bodies of a running service into a file, for the page's button; `mocapd record` is a program of its own."""
+
+import contextlib
+import queue
+import threading
+import time
+from pathlib import Path
+from typing import Self
+
+from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
+from mocapd.errors import CannotCreateError
+from mocapd.outputs.from_body import skeleton_frame
+from mocapd.outputs.from_skeleton import is_noticeable, rest_skeleton
+from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
+from mocapd.pipeline.body_hub import BodyHub, BodySample
+from mocapd.types import Skeleton
+
+_MOST_WAITING = 600  # bodies, of ten seconds at 60 Hz: a disk that is slower loses the newest
+_LOOK_S = 0.1
+
+
+class BodyRecorder:
+    """Records from `__enter__` to `__exit__`; the rest may be asked from any thread."""
+
+    def __init__(self, bodies: BodyHub, path: Path, known: RecordedKnown, instance: str) -> None:
+        """Make the file, which only its owner may read. Raises CannotCreateError."""
+        self._bodies, self._known, self._instance = bodies, known, instance
+        self._writer = RecordingWriter(path, RecordingParams(private=True), monotonic_ns())
+        self._waiting: queue.Queue[BodySample] = queue.Queue(_MOST_WAITING)
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="page-recording", daemon=True)
+        self._began_s = time.monotonic()
+        self._skeleton: Skeleton | None = None  # as it was told last
+        self._seq = 0
+        self.lost = 0  # bodies that the disk was too slow for
+        self.trouble = ""  # why nothing is written any more
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        self._bodies.join(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bodies.leave(self)
+        self._over.set()
+        self._thread.join()
+
+    def put(self, sample: BodySample) -> None:
+        """See TakesBodies."""
+        try:
+            self._waiting.put_nowait(sample)
+        except queue.Full:
+            self.lost += 1
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self._writer.path
+
+    @property
+    def frames(self) -> int:
+        """Written so far."""
+        return self._writer.frames
+
+    @property
+    def length_s(self) -> float:
+        """Since it began [s]."""
+        return time.monotonic() - self._began_s
+
+    def _run(self) -> None:
+        try:
+            with self._writer:
+                self._writer.attach(self._known, time.time_ns())
+                while not (self._over.is_set() and self._waiting.empty()):
+                    with contextlib.suppress(queue.Empty):
+                        self._write(self._waiting.get(timeout=_LOOK_S))
+                    self._writer.beat(monotonic_ns())
+        except CannotCreateError as error:
+            self.trouble = str(error)
+
+    def _write(self, sample: BodySample) -> None:
+        now_ns, unix_ns = monotonic_ns(), unix_from_monotonic_ns()
+        if self._skeleton is None or is_noticeable(self._skeleton, sample.skeleton):
+            self._skeleton = sample.skeleton
+            stature_m = sample.track.shape.stature_m
+            rest = rest_skeleton(sample.skeleton, instance=self._instance, stature_m=stature_m)
+            self._writer.tell(rest, sample.body.t_ns + unix_ns)
+        frame = skeleton_frame(
+            sample.body,
+            sample.skeleton,
+            instance=self._instance,
+            seq=self._seq,
+            publish_monotonic_ns=now_ns,
+            unix_from_monotonic_ns=unix_ns,
+        )
+        self._seq += 1
+        self._writer.frame(frame)

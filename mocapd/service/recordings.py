@@ -1,0 +1,191 @@
+"""The folder of recordings that the page makes, and the one that is being made."""
+
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from mocapd.boundary.files import read_text
+from mocapd.boundary.folders import private_folder
+from mocapd.boundary.parsing import decode_json
+from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
+from mocapd.service.body_recorder import BodyRecorder
+from mocapd.whole_file import whole_file
+
+MOST_LISTED = 200
+FORMATS = ("bvh", "glb", "vrma", "csv", "trc", "c3d")
+_ID = re.compile(r"\d{8}-\d{6}")
+_MOST_NOTE_BYTES = 1 << 14
+_EXPORT_S = 300.0
+
+Name = Annotated[str, Meta(max_length=80)]
+Notes = Annotated[str, Meta(max_length=2000)]
+
+
+class Note(msgspec.Struct, frozen=True):
+    """What is written beside a recording: its name and notes, and how long it is [s]."""
+
+    name: Name = ""
+    notes: Notes = ""
+    length_s: float | None = None
+    schema: str = "mocapd.RecordingNote.v1"
+
+
+class RecordingRow(msgspec.Struct, frozen=True):
+    """One recording as the page lists it. length_s: null where its process was killed."""
+
+    id: str
+    name: str
+    notes: str
+    length_s: float | None
+    size_bytes: int
+
+
+class NowRecording(msgspec.Struct, frozen=True):
+    """The one that is being made."""
+
+    id: str
+    length_s: float
+    frames: int
+    trouble: str
+
+
+class RecordingList(msgspec.Struct, frozen=True):
+    """All of them, the newest first."""
+
+    folder: str
+    now: NowRecording | None
+    recordings: tuple[RecordingRow, ...]
+    formats: tuple[str, ...] = FORMATS
+
+
+class Recordings:
+    """Used by the page's threads; `close` ends what is being recorded."""
+
+    def __init__(self, folder: Path, begin: Callable[[Path], BodyRecorder]) -> None:
+        """begin: a recorder into that file, which this class enters and leaves; it raises MocapdError."""
+        self.folder, self._begin = folder, begin
+        self._lock = threading.Lock()  # guards what follows
+        self._recorder: BodyRecorder | None = None
+
+    def start(self) -> None:
+        """Begin one. Raises UnavailableError while one is made, CannotCreateError."""
+        with self._lock:
+            if self._recorder is not None:
+                raise UnavailableError("a recording is being made", "recordings", "stop it first")
+            try:
+                private_folder(self.folder)
+            except OSError as error:
+                raise CannotCreateError(
+                    f"cannot be made ({error.strerror})",
+                    str(self.folder),
+                    mend_of(error, "make room there"),
+                ) from None
+            path = self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}.mcap"
+            self._recorder = self._begin(path).__enter__()
+
+    def stop(self) -> None:
+        """End it; nothing happens where none is made. Raises CannotCreateError."""
+        with self._lock:
+            recorder, self._recorder = self._recorder, None
+            if recorder is None:
+                return
+            length_s = recorder.length_s
+            recorder.__exit__()
+            self._write(recorder.path.stem, Note(length_s=round(length_s, 1)))
+
+    close = stop
+
+    def note(self, id_: str, name: str, notes: str) -> None:
+        """Write name and notes of one. Raises InputError where there is none, CannotCreateError."""
+        self.file(id_)
+        before = self._read(id_)
+        self._write(id_, msgspec.structs.replace(before, name=name, notes=notes))
+
+    def list(self) -> RecordingList:
+        """What there is; a folder that is not there has none."""
+        recorder = self._recorder
+        now = None
+        if recorder is not None:
+            now = NowRecording(
+                recorder.path.stem, recorder.length_s, recorder.frames, recorder.trouble
+            )
+        found = sorted(self.folder.glob("*.mcap"), reverse=True)[:MOST_LISTED]
+        rows = []
+        for path in found:
+            if _ID.fullmatch(path.stem) and (now is None or path.stem != now.id):
+                note = self._read(path.stem)
+                with suppress(OSError):
+                    size_bytes = path.stat().st_size
+                    rows.append(
+                        RecordingRow(path.stem, note.name, note.notes, note.length_s, size_bytes)
+                    )
+        return RecordingList(str(self.folder), now, tuple(rows))
+
+    def file(self, id_: str) -> Path:
+        """Raises InputError where there is no such recording."""
+        path = self.folder / f"{id_}.mcap"
+        if not _ID.fullmatch(id_) or not path.is_file():
+            raise InputError("there is no such recording", "recordings", "reload the page")
+        return path
+
+    def file_name(self, id_: str, suffix: str) -> str:
+        """What the browser shall call it: its name where it has one."""
+        name = re.sub(r"[^A-Za-z0-9._-]+", "-", self._read(id_).name).strip("-.")
+        return f"{name or f'mocapd-{id_}'}.{suffix}"
+
+    def exported(self, id_: str, format_: str) -> bytes:
+        """The recording in another format, made by a process of its own, so that tracking goes on. Raises InputError."""
+        path = self.file(id_)
+        if format_ not in FORMATS:
+            raise InputError("there is no such format", "recordings", "reload the page")
+        with TemporaryDirectory(prefix="mocapd-export-") as folder:
+            out = Path(folder) / f"{id_}.{format_}"
+            command = [sys.executable, "-m", "mocapd.cli.main", "export", str(path)]
+            command += ["--to", format_, "--out", str(out)]
+            # an export has no use for the daemon's configuration
+            env = {name: value for name, value in os.environ.items() if name[:7] != "MOCAPD_"}
+            try:
+                done = subprocess.run(
+                    command, capture_output=True, text=True, check=False, timeout=_EXPORT_S, env=env
+                )
+            except subprocess.TimeoutExpired:
+                raise InputError(
+                    f"takes more than {_EXPORT_S:.0f} s", id_, "use `mocapd export`"
+                ) from None
+            if done.returncode != 0 or not out.is_file():
+                lines = done.stderr.strip().splitlines()
+                raise InputError(
+                    lines[-1][:300] if lines else "the export failed", id_, "use `mocapd export`"
+                )
+            return out.read_bytes()
+
+    def _read(self, id_: str) -> Note:
+        """Empty where none is written, or it cannot be read: the recording itself is worth more."""
+        try:
+            text = read_text(self.folder / f"{id_}.json", _MOST_NOTE_BYTES)
+            return decode_json(text.encode(), Note)
+        except (InputError, MalformedError):
+            return Note()
+
+    def _write(self, id_: str, note: Note) -> None:
+        path = self.folder / f"{id_}.json"
+        try:
+            with whole_file(path, private=True) as partial:
+                partial.write_bytes(msgspec.json.encode(note))
+        except OSError as error:
+            raise CannotCreateError(
+                f"cannot be written ({error.strerror})",
+                str(path),
+                mend_of(error, "make room there"),
+            ) from None

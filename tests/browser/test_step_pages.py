@@ -1,0 +1,206 @@
+"""Every step's page at a desk and on a phone, its sound, and the last page; in a real browser, without cameras."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, ViewportSize, expect
+
+from mocapd.config.web_params import Params
+from mocapd.web.server import WebServer
+from mocapd.wizard.step import StepState
+from mocapd.wizard.step_names import StepName
+from tests.browser.conftest import problems_of
+from tests.browser.step_views import PAGES, SAVED, ShownWizard, check, lens
+from tests.web.tiny_host import TinyHost
+
+WAIT_MS = 120_000
+SIZES: dict[str, ViewportSize] = {
+    "desk": {"width": 1280, "height": 657},
+    "phone": {"width": 390, "height": 844},
+}
+# The buttons that lead on from each page.
+ONE_BUTTON = {
+    "cameras": "#next",
+    "lens": "#finish",
+    "room": "#floor",
+    "room_done": "#next",
+    "colour": "#freeze",
+    "body": "#measure",
+    "check": "#save",
+}
+# Counts what is played and said: a headless browser has no loudspeaker.
+LISTEN = """() => {
+    window.heard = { words: [], tones: 0 };
+    window.SpeechSynthesisUtterance = class { constructor(text) { this.text = text; } };
+    const voice = { speak: ({ text }) => window.heard.words.push(text), cancel: () => {} };
+    Object.defineProperty(window, "speechSynthesis", { value: voice });
+    const start = OscillatorNode.prototype.start;
+    OscillatorNode.prototype.start = function (at) { window.heard.tones += 1; start.call(this, at); };
+}"""
+
+
+class Shown:
+    """A page with a setup that a test leads."""
+
+    def __init__(self, host: TinyHost, page: Page) -> None:
+        self.host, self.page = host, page
+        self.wizard = ShownWizard()
+        host.wizard = self.wizard  # type: ignore[assignment]
+
+    def show(self, step: StepName, view: Any, **changes: object) -> None:
+        self.wizard.show(step, view, **changes)
+        expect(self.page.locator("#sentence")).to_have_text(view.sentence, timeout=WAIT_MS)
+        self.page.locator(f"#part > .part-{step.value}").wait_for(timeout=WAIT_MS)
+
+    def wait_for(self, word: str) -> None:
+        """Until it is said; the page's policy allows no predicate there."""
+        for _ in range(WAIT_MS // 100):
+            if word in self.words():
+                return
+            self.page.wait_for_timeout(100)
+        pytest.fail(f"{word} is not said: {self.words()}")
+
+    def words(self) -> list[str]:
+        found: list[str] = self.page.evaluate("heard.words")
+        return found
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> TinyHost:
+    return TinyHost(tmp_path_factory.mktemp("state"))
+
+
+@pytest.fixture(scope="module")
+def server(host: TinyHost) -> Iterator[WebServer]:
+    died: list[BaseException] = []
+    with WebServer(host, Params(), died.append) as one:
+        yield one
+    assert died == []
+
+
+@pytest.fixture
+def shown(browser: Browser, server: WebServer, host: TinyHost) -> Iterator[Shown]:
+    with browser.new_context(viewport=SIZES["desk"]) as context:
+        page = context.new_page()
+        page.add_init_script(f"({LISTEN})()")
+        heard = problems_of(page)
+        one = Shown(host, page)
+        for camera in ("cam0", "cam1"):
+            host.show(camera, 110)
+        page.goto(server.url)
+        page.locator("#part > .part-cameras").wait_for(timeout=WAIT_MS)
+        yield one
+        host.wizard = None
+        assert heard == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_instruction_and_its_one_button_are_in_sight_at_every_size(
+    shown: Shown, pictures: Path, name: str
+) -> None:
+    step, view = PAGES[name]
+    shown.show(step, view)
+    for size_name, size in SIZES.items():
+        shown.page.set_viewport_size(size)
+        shown.page.wait_for_timeout(200)
+        for scrolled in (0, 100_000):
+            shown.page.evaluate(f"scrollTo(0, {scrolled})")
+            expect(shown.page.locator(ONE_BUTTON[name])).to_be_in_viewport(ratio=1)
+            expect(shown.page.locator("#sentence")).to_be_in_viewport(ratio=1)
+        across = shown.page.evaluate("document.documentElement.scrollWidth")
+        assert across <= size["width"], "nothing is cut off at the side"
+        shown.page.evaluate("scrollTo(0, 0)")
+        shown.page.wait_for_timeout(200)
+        shown.page.screenshot(path=pictures / f"step-{name}-{size_name}.png", full_page=True)
+
+
+def test_back_leads_to_the_step_before(shown: Shown) -> None:
+    expect(shown.page.locator("#back")).to_be_hidden()
+    shown.show(*PAGES["lens"])
+    shown.page.click("#back")
+    shown.page.wait_for_timeout(300)
+    assert shown.wizard.heard == [("go", {"step": "cameras"})]
+
+
+def test_drawings_say_how_to_hold_the_board_and_where_cameras_go(shown: Shown) -> None:
+    for name, file in (
+        ("cameras", "camera_places"),
+        ("lens", "board_views"),
+        ("room", "board_floor"),
+    ):
+        shown.show(*PAGES[name])
+        drawing = shown.page.locator(f'img[src$="{file}.svg"]')
+        expect(drawing).to_be_visible(timeout=WAIT_MS)
+        assert drawing.evaluate("image => image.decode().then(() => image.naturalWidth)") > 0
+
+
+def test_how_far_cameras_disagree_is_not_given_as_an_error_of_the_pose(shown: Shown) -> None:
+    """It is 1 cm where the pose may be off by 5 to 12."""
+    shown.show(*PAGES["check"])
+    expect(shown.page.locator("#verdicts")).to_contain_text("Disagrees in the room")
+    expect(shown.page.locator("#verdicts")).not_to_contain_text("Off in the")
+
+
+def test_the_plan_has_a_scale_and_says_how_large_the_play_area_is(shown: Shown) -> None:
+    shown.show(*PAGES["room_done"])
+    caption = shown.page.locator("figure:has(canvas.plan) figcaption")
+    expect(caption).to_contain_text("You are seen whole on")
+    expect(caption).to_contain_text("cameras 3.1 m apart")
+
+
+def test_it_is_said_aloud_what_to_do_until_it_is_switched_off(shown: Shown) -> None:
+    shown.page.click("h1")  # browsers are silent before
+    shown.show(StepName.LENS, lens(7))
+    shown.page.wait_for_timeout(1300)
+    shown.wizard.show(StepName.LENS, lens(8))
+    shown.wait_for("Next.")
+    for phase in ("leaving", "seeking", "judged"):
+        shown.page.wait_for_timeout(1300)
+        shown.show(StepName.CHECK, check(phase))
+    shown.wait_for("Done.")
+    words = shown.words()
+    assert "Step out of every camera's picture." in words
+    assert "Come back, stand upright, and face the cameras." in words
+    assert shown.page.evaluate("heard.tones") >= len(words)
+    shown.page.click("#sound")
+    expect(shown.page.locator("#sound")).to_have_attribute("aria-pressed", "false")
+    shown.page.wait_for_timeout(1300)
+    shown.show(StepName.LENS, lens(3, StepState.FAILED))
+    shown.page.wait_for_timeout(400)
+    assert shown.words() == words, "it is silent now"
+
+
+def test_the_last_page_says_what_is_saved_and_what_to_run(
+    shown: Shown, host: TinyHost, pictures: Path
+) -> None:
+    """Also after the process that served it has ended."""
+    page = shown.page
+    shown.show(StepName.CHECK, check())
+    shown.wizard.show(StepName.CHECK, check(saved=SAVED), saved=True)
+    expect(page.locator("#finished")).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator("#saved-to")).to_have_text(SAVED)
+    expect(page.locator("#next-command")).to_have_text("mocapd run")
+    for name, size in SIZES.items():
+        page.set_viewport_size(size)
+        page.screenshot(path=pictures / f"step-finished-{name}.png")
+    host.wizard = None
+    page.wait_for_timeout(1000)
+    expect(page.locator("#finished")).to_be_visible()
+    expect(page.locator("#connection")).to_have_text("Saved")
+    expect(page.locator(".state.failed")).to_have_count(0)
+    assert [one.inner_text() for one in page.locator("button:visible").all()] == ["Copy"]
+    page.click('[data-action="copy"]')
+    expect(page.locator("#next-command ~ .good")).not_to_be_empty(timeout=WAIT_MS)
+
+
+def test_where_a_daemon_runs_the_last_page_leads_to_its_live_view(
+    shown: Shown, host: TinyHost
+) -> None:
+    shown.wizard.show(StepName.CHECK, check(saved=SAVED, following=""), saved=True)
+    expect(shown.page.locator("#finished")).to_be_visible(timeout=WAIT_MS)
+    host.wizard = None
+    shown.page.wait_for_timeout(500)
+    shown.page.get_by_role("link", name="live view", exact=True).click()
+    expect(shown.page.locator("#live-title")).to_be_visible(timeout=WAIT_MS)
