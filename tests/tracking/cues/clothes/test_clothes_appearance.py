@@ -52,11 +52,16 @@ def learned() -> tuple[Appearance, np.ndarray, np.ndarray]:
     return appearance, picture, drawn
 
 
+def unlooked(drawn: Bytes) -> Singles:
+    """The odds of a picture that the network did not look at."""
+    return np.zeros(drawn.shape, np.float32)
+
+
 def test_a_region_is_known_by_its_colour_where_it_was_not_expected() -> None:
     appearance, picture, drawn = learned()
     elsewhere = np.roll(drawn, 12, axis=1)
     ids = appearance.classify(
-        picture, before_of(drawn), region_distances(elsewhere), np.ones_like(drawn)
+        picture, before_of(drawn), region_distances(elsewhere), np.ones_like(drawn), unlooked(drawn)
     )
     for region in (Region.LEG, Region.FOOT, Region.HAIR):
         assert np.mean(ids[drawn == region] == region) > 0.95
@@ -127,11 +132,6 @@ def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
         .labels
     )
     assert worn.label.max() <= max(Region)
-
-
-def unlooked(drawn: Bytes) -> Singles:
-    """The odds of a picture that the network did not look at."""
-    return np.zeros(drawn.shape, np.float32)
 
 
 def test_colours_are_expected_as_dim_as_the_background_became() -> None:
