@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from mocapd.body.joint_limit_kernels import JointLimits
 from mocapd.body.posing_kernels import difference
-from mocapd.fit.terms.held_pose_kernels import pull_back
-from mocapd.fit.terms.joint_limit_term_kernels import keep_in_limits
-from mocapd.fit.terms.tilt_kernels import set_upright
+from mocapd.fit.priors.held_pose_kernels import pull_back
+from mocapd.fit.priors.joint_limit_term_kernels import keep_in_limits
+from mocapd.fit.priors.tilt_kernels import set_upright
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, stepped
-from mocapd.fit.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.priors.pose_prior import narrow_prior, wide_prior
 from mocapd.fit.solve_kernels import gauss_newton_system
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm

@@ -3,7 +3,7 @@
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import TICK_S, MotionPriorParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.motion_prior import predicted_information
+from mocapd.fit.priors.motion_prior import predicted_information
 from mocapd.fit.solver import Fitter
 from mocapd.types import Floats
 

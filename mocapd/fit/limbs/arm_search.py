@@ -16,7 +16,7 @@ from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import know_depths, score_arm_poses, score_hand_places
 from mocapd.fit.limbs.reaching import reaching_poses
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.pose_prior import arm_motions, unusualness
+from mocapd.fit.priors.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View

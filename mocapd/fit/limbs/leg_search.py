@@ -18,7 +18,7 @@ from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, sprea
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.pose_prior import seldom, unusual_leg, usual_leg
+from mocapd.fit.priors.pose_prior import seldom, unusual_leg, usual_leg
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View

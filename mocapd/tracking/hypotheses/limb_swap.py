@@ -9,7 +9,7 @@ from mocapd.body.skeleton import INDEX, PARENTS
 from mocapd.fit.limbs.limb_fits import cheapest_fit
 from mocapd.fit.limbs.mirroring_kernels import shortest_turn
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.pose_prior import unusual_legs
+from mocapd.fit.priors.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.base import Judged, Situation

@@ -11,7 +11,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
 from mocapd.fit.limbs.leg_search import LegSearch, confirmed
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.pose_prior import seldom
+from mocapd.fit.priors.pose_prior import seldom
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry import rotations

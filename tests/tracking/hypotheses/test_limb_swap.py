@@ -11,7 +11,7 @@ from mocapd.body.pose_space import full_body
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.pose_prior import unusual_legs
+from mocapd.fit.priors.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels

@@ -11,8 +11,8 @@ from mocapd.each import Each, in_turn
 from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.motion_prior import predicted_information
 from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.priors.motion_prior import predicted_information
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.planted_term import PlantedTerm

@@ -13,8 +13,8 @@ import numpy as np
 from mocapd.body.arrays import plain
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.arm_motion import ArmMotion, load_arm_motion
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.priors.arm_motion import ArmMotion, load_arm_motion
 from mocapd.fit.solve_kernels import PosePriors
 from mocapd.geometry import rotations
 from mocapd.geometry.rotations import IDENTITY_XYZW
