@@ -24,6 +24,7 @@ from mocapd.errors import ConfigError, MalformedError
 
 COMMAND_LINE = "command line"  # the place of a value that an option gave
 _MOST_SECTIONS = 100  # of one list; a calibration has at most 100 cameras
+_LARGEST_BITS = 64  # of a whole number
 _LONGEST_SHOWN = 200  # characters of a value in an error
 
 
@@ -218,9 +219,10 @@ def _list_example(annotation: Any, value: Any, path: str, where: str) -> str:
         return ""
     count = 2 if args[-1] is Ellipsis else len(args)
     example: Any = [{str: "one", float: 0.5, bool: True}.get(_bare(args[0]), 1)] * count
-    if isinstance(value, str | int | float):
+    is_huge = isinstance(value, int) and value.bit_length() > _LARGEST_BITS
+    if isinstance(value, str | int | float) and not is_huge:
         parts = [part.strip() for part in str(value).strip("[]").split(",")]
-        for items in (parts, [int(part) if part.isdecimal() else part for part in parts]):
+        for items in (parts, [_whole_number(part) for part in parts]):
             with suppress(MalformedError):
                 example = convert(items, annotation)
     written = shown(example)[:_LONGEST_SHOWN]
@@ -228,6 +230,11 @@ def _list_example(annotation: Any, value: Any, path: str, where: str) -> str:
     return (
         f", such as --set '{path}={written}'" if where == COMMAND_LINE else f", such as {written}"
     )
+
+
+def _whole_number(text: str) -> int | str:
+    """The number, or the text where it is none that a key could have."""
+    return int(text) if text.isdecimal() and len(text) < _LARGEST_BITS // 4 else text
 
 
 def _limits(meta: Meta) -> str:

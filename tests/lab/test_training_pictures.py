@@ -43,8 +43,11 @@ def test_joints_are_on_somebody_who_was_not_in_the_empty_picture(tmp_path: Path)
         pictures, uv, farther = data["pictures"], data["uv"], data["farther"]
     assert len(pictures) > 200
     assert farther.shape == (len(pictures), len(JOINTS))
-    off = np.abs(pictures[..., :3].astype(int) - pictures[..., 3:]).max(axis=-1)
+    off = np.abs(pictures[..., :3].astype(int) - pictures[..., 3:6]).max(axis=-1)
     at = np.rint(uv[:, [JOINTS.index("hips"), JOINTS.index("neck")]]).astype(int).clip(0, 127)
     on_body = off[np.arange(len(off))[:, None], at[..., 1], at[..., 0]]
     assert np.median(on_body) > 2.0 * np.median(off)
     assert (on_body > 8).mean() > 0.8
+    mask = pictures[..., 6] > 127
+    assert mask[np.arange(len(off))[:, None], at[..., 1], at[..., 0]].mean() > 0.9
+    assert np.median(off[mask]) > 2.0 * np.median(off[~mask])

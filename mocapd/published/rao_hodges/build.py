@@ -1,4 +1,4 @@
-"""Make the published tracker from what is known of rig and person."""
+"""Make the tracker of Rao and Hodges from what is known of rig and person."""
 
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.rao_hodges.params import Params
