@@ -78,7 +78,8 @@ def test_the_real_daemon_and_what_it_started_end_with_the_game(
     tmp_path: Path, number: signal.Signals
 ) -> None:
     """In its first start, with processes that compile and render."""
-    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    env = {name: value for name, value in os.environ.items() if not name.startswith("MOCAPD_")}
+    env |= {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen(
         [sys.executable, "-c", _PLAYER, str(tmp_path)],
         env=env,
