@@ -33,7 +33,7 @@ class RecordingRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     notes: Notes = ""
 
 
-class Refused(msgspec.Struct, frozen=True):
+class RefusedRecording(msgspec.Struct, frozen=True):
     """Why something cannot be done now."""
 
     what: str
@@ -122,7 +122,7 @@ async def _answer(work: Callable[[], Response]) -> Response:
     try:
         return await run_in_threadpool(work)
     except MocapdError as error:
-        return _json(Refused(error.what, error.where, error.fix), 503)
+        return _json(RefusedRecording(error.what, error.where, error.fix), 503)
 
 
 def _download(data: bytes, name: str, media_type: str) -> Response:

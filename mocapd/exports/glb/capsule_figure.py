@@ -24,7 +24,7 @@ _WARM, _COLD, _GREY = (226, 139, 88), (88, 142, 226), (205, 205, 198)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Figure:
+class CapsuleFigure:
     """V vertices in the world of the T-pose, T triangles.
 
     places_m, normals (V,3); joints (V,): that the vertex is fixed to; colours (V,4): 0..255; triangles (T,3): corners,
@@ -38,7 +38,7 @@ class Figure:
     triangles: Ints
 
 
-def capsule_figure(skeleton: Skeleton) -> Figure:
+def capsule_figure(skeleton: Skeleton) -> CapsuleFigure:
     """The figure of this skeleton."""
     places: list[Floats] = []
     normals: list[Floats] = []
@@ -57,7 +57,7 @@ def capsule_figure(skeleton: Skeleton) -> Figure:
             normals.append(out)
             joints.append(np.full(len(at), joint))
             colours.append(np.tile(np.array([*_colour(name), 255], np.uint8), (len(at), 1)))
-    return Figure(
+    return CapsuleFigure(
         np.concatenate(places),
         np.concatenate(normals),
         np.concatenate(joints),

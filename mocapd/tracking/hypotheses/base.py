@@ -17,7 +17,7 @@ WHOLE = "whole"  # as a part that changed: all of the body
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class PoseEvidence:
     """What a pose is judged by that is far from the predicted one: views of it, which draws it, and then its terms."""
 
     classified: Callable[[MotionState], list[View]]
@@ -37,7 +37,7 @@ class Situation:
     frames: FrameSet
     ticks: Ticks
     joints: Sequence[JointTerm]
-    evidence: Evidence
+    evidence: PoseEvidence
     held: Floats | None = None
 
 
@@ -52,7 +52,7 @@ class Judged:
     tried: bool = False
 
 
-class Hypothesis(Protocol):
+class PoseHypothesis(Protocol):
     """May remember what spoke for it in frame sets before."""
 
     def reset(self) -> None:

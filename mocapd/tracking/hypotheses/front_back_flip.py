@@ -26,7 +26,7 @@ class FlipParams:
 
 
 class FrontBackFlip:
-    """Where no trunk leads that knows the way; see Hypothesis. Remembers what faces and fits said of the way."""
+    """Where no trunk leads that knows the way; see PoseHypothesis. Remembers what faces and fits said of the way."""
 
     def __init__(self, params: FlipParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
@@ -35,16 +35,16 @@ class FrontBackFlip:
         self._facing = FaceWatch(cascade, stature_m, params.facing)
 
     def reset(self) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         self._facing.reset()
         self._turning.reset()
 
     def rehearse(self, _now: Judged, _at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         self._facing.rehearse()
 
     def test(self, now: Judged, at: Situation) -> Judged:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         if at.held is not None:
             return now
         found: Fit | None = None

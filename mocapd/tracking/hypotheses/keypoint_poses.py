@@ -19,16 +19,16 @@ _LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper,
 
 
 class KeypointPoses:
-    """See Hypothesis."""
+    """See PoseHypothesis."""
 
     def __init__(self, params: SeenPoseParams) -> None:
         self._params = params
 
     def reset(self) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
 
     def rehearse(self, now: Judged, at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         for joints in at.joints:
             seen_pose(at.dressed.fitter, now.fit.state, joints, (), self._params)
 

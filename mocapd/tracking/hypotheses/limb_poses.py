@@ -9,20 +9,20 @@ from mocapd.tracking.hypotheses.base import Judged, Situation
 
 
 class ArmPoses:
-    """Other arms, where no trunk leads that knows them; see Hypothesis."""
+    """Other arms, where no trunk leads that knows them; see PoseHypothesis."""
 
     def __init__(self, params: LimbSearchParams) -> None:
         self._params = params
 
     def reset(self) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
 
     def rehearse(self, now: Judged, at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         at.dressed.arms.rehearse(now.fit.state, now.views)
 
     def test(self, now: Judged, at: Situation) -> Judged:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         if at.held is not None:
             return now
         tried = now.tried or any(is_uncertain(side, now.fit, self._params) for side in SIDES)
@@ -32,17 +32,17 @@ class ArmPoses:
 
 
 class LegPoses:
-    """Other legs; see Hypothesis."""
+    """Other legs; see PoseHypothesis."""
 
     def reset(self) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
 
     def rehearse(self, now: Judged, at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         at.dressed.legs.rehearse(now.fit.state, now.views)
 
     def test(self, now: Judged, at: Situation) -> Judged:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         fit, sides = at.dressed.legs.improve(
             now.fit, now.views, at.dt_s, at.ticks.turn, now.terms, at.held
         )

@@ -32,18 +32,18 @@ class LimbSwapParams:
 
 
 class LimbSwap:
-    """See Hypothesis. Remembers for how many looks the legs were crossed."""
+    """See PoseHypothesis. Remembers for how many looks the legs were crossed."""
 
     def __init__(self, params: LimbSwapParams) -> None:
         self._params = params
         self.reset()
 
     def reset(self) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         self._crossed_looks = 0
 
     def rehearse(self, now: Judged, at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         with_legs_exchanged(at.dressed.fitter, now.fit.state)
 
     def test(self, now: Judged, at: Situation) -> Judged:

@@ -2,7 +2,7 @@
 
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.hypotheses.base import Hypothesis, Judged, Situation
+from mocapd.tracking.hypotheses.base import Judged, PoseHypothesis, Situation
 from mocapd.tracking.hypotheses.front_back_flip import FrontBackFlip
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
@@ -15,8 +15,10 @@ class OtherPoses:
 
     def __init__(self, params: ClothesParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
-        self._always: dict[str, Hypothesis] = {"keypoint_poses": KeypointPoses(params.seen_pose)}
-        self._searched: dict[str, Hypothesis] = {
+        self._always: dict[str, PoseHypothesis] = {
+            "keypoint_poses": KeypointPoses(params.seen_pose)
+        }
+        self._searched: dict[str, PoseHypothesis] = {
             "arm_poses": ArmPoses(params.limbs),
             "front_back_flip": FrontBackFlip(params.flip, stature_m, cascade),
             "leg_poses": LegPoses(),
@@ -29,7 +31,7 @@ class OtherPoses:
             one.reset()
 
     def rehearse(self, now: Judged, at: Situation, /) -> None:
-        """See Hypothesis."""
+        """See PoseHypothesis."""
         for one in (self._always | self._searched).values():
             one.rehearse(now, at)
 

@@ -17,7 +17,7 @@ from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.tracking.cues.clothes.look import Dressed
-from mocapd.tracking.hypotheses.base import Evidence, Judged, Situation
+from mocapd.tracking.hypotheses.base import Judged, PoseEvidence, Situation
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
 from mocapd.tracking.ticks import Ticks
@@ -74,7 +74,7 @@ def drawn(state: MotionState) -> list[View]:
     return views
 
 
-def situation(joints: JointTerm, evidence: Evidence) -> Situation:
+def situation(joints: JointTerm, evidence: PoseEvidence) -> Situation:
     dressed = Dressed(
         FITTER, ArmSearch(FITTER, LimbSearchParams()), LegSearch(FITTER, LegSearchParams())
     )
@@ -99,7 +99,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         return (joints,)
 
     now = Judged(fit, views, (joints,))
-    found = KeypointPoses(PARAMS).test(now, situation(joints, Evidence(shown, measured)))
+    found = KeypointPoses(PARAMS).test(now, situation(joints, PoseEvidence(shown, measured)))
     assert found.tried
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
     if shown is drawn:
@@ -116,7 +116,7 @@ def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
     now = Judged(fit, drawn(here), ())
     seen = seen_at(FITTER.joints(fit.state)[0])
-    at = situation(seen, Evidence(drawn, lambda _, __: ()))
+    at = situation(seen, PoseEvidence(drawn, lambda _, __: ()))
     assert KeypointPoses(PARAMS).test(now, at) is now
     assert not now.tried
 

@@ -28,7 +28,7 @@ from mocapd.tracking.cues.clothes.wardrobe import Wardrobe
 from mocapd.tracking.cues.keypoints.joint_views import unwatched
 from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.tracking.effort import OptionalWork
-from mocapd.tracking.hypotheses.base import WHOLE, Evidence, Judged, Situation
+from mocapd.tracking.hypotheses.base import WHOLE, Judged, PoseEvidence, Situation
 from mocapd.tracking.hypotheses.other_poses import OtherPoses
 from mocapd.tracking.planted_feet import PlantedFeet
 from mocapd.tracking.prediction_prior import prediction_prior
@@ -141,7 +141,7 @@ class ClothesFits:
         )
         cameras.learn(somebody, views)
         _velocity_of(model, self.params, fit, somebody, TICK_S, ())
-        evidence = Evidence(cameras.classified, lambda _, __: terms)
+        evidence = PoseEvidence(cameras.classified, lambda _, __: terms)
         at = Situation(self.wardrobe.dressed, TICK_S, frames, Ticks(1, 1, 1), seen, evidence)
         self._others.rehearse(Judged(fit, views, terms), at)
 
@@ -184,7 +184,7 @@ class ClothesFits:
         probe("clothes.fit")
         at = Situation(
             self.wardrobe.dressed, dt_s, frames, ticks, seen.joints,
-            Evidence(self.cameras.classified, terms_of),
+            PoseEvidence(self.cameras.classified, terms_of),
         )  # fmt: skip
         found = self._others.improve(Judged(fit, views, terms), at, self._searches(ticks), probe)
         return self._found(found, known.motion, dt_s, frames.t_ns)
@@ -237,7 +237,7 @@ class ClothesFits:
         probe("clothes.fit")
         at = Situation(
             self.wardrobe.dressed, dt_s, frames, ticks, seen.joints,
-            Evidence(cameras.classified, terms_of), held,
+            PoseEvidence(cameras.classified, terms_of), held,
         )  # fmt: skip
         found = self._others.improve(
             Judged(fit, seen.views, terms), at, self._searches(ticks), probe
