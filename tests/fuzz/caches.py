@@ -6,9 +6,8 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.app.daemon.cache_warmup import prepare_apart
 from mocapd.config.sections import Config
-from mocapd.session.prepared_marker import MARKER
+from mocapd.session.prepared_marker import MARKER, is_prepared, remember
 from mocapd.shirt.pose_database import database_file
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
@@ -125,16 +124,17 @@ def _must_be_equal(found: Mapping[str, object], wanted: Mapping[str, object], wh
 
 
 def markers(place: Place) -> Attempt:
-    """The list of what was prepared: what it says is believed or not, and no trouble."""
+    """The list of prepared code: a damaged one is read, added to, and read again without trouble."""
     config = Config(cache_dir=place.folder, state_dir=place.folder / "state")
     path = place.folder / MARKER
     good = b"".join(b"%064x\n" % (1 << 200 | n) for n in range(4))
-    path.write_bytes(good)
-    prepare_apart(config)  # without a camera, so that its processes end at once
 
     def attempt(random: Random, number: int) -> bool:
         path.write_bytes(damaged(random, good))
-        prepare_apart(config)
-        return True
+        was_prepared = is_prepared(config)
+        remember(config)
+        if was_prepared:
+            raise WrongError("code that was never prepared")
+        return is_prepared(config)
 
     return attempt

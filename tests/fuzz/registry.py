@@ -70,7 +70,7 @@ ROWS = (
     Row("vrchat-host-info", 1000, announcements.host_infos),
     Row("film-cache", 5002, caches.films),
     Row("pose-database", 5001, caches.databases),
-    Row("prepared", 500, caches.markers, is_slow=True),
+    Row("prepared", 500, caches.markers),
     Row("rooms-of-twins", 4000, twin_files.rooms),
     Row("sockets", 2000, twin_files.sockets),
     Row("password-file", 3000, wires.users),
