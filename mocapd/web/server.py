@@ -138,15 +138,15 @@ class WebServer:
         self._thread.start()
 
     def let_go(self) -> None:
-        """First pass of stopping: no new page, the open ones are told; never blocks."""
+        """First pass of stopping: the page is no longer announced, and open ones end; never blocks."""
+        if self._place is not None:
+            withdraw(self._place.folder)
         if self._server is not None:
             self._server.should_exit = True
 
     def stop(self, timeout_s: float = STOP_S) -> bool:
         """Let go and join; False when something still blocks the thread after `timeout_s` [s]."""
         self.let_go()
-        if self._place is not None:
-            withdraw(self._place.folder)
         if self._thread is None:
             return True
         self._thread.join(timeout_s)

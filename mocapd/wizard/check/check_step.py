@@ -40,10 +40,8 @@ from mocapd.wizard.step import Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0
-LEAVE_S, LEARN_S = (
-    5.0,
-    2.0,
-)  # without a shirt: to leave the pictures, and for the room to be learned
+# Without a shirt: time to leave the pictures, and, for the room to be learned, time and frame sets: a slow machine tracks few
+LEAVE_S, LEARN_S, LEARN_SETS = 5.0, 2.0, 30
 SEEK_S = 12.0  # without anybody found, after which the reasons are told
 LEAST_MEASURES = 8  # of which a verdict is made
 LONGEST_S = 25.0  # of moving, on a machine that is busy
@@ -200,9 +198,12 @@ class CheckStep:
             self._track(self._prepared)
             self._prepared = None
             self._phase, self._began_ns = Phase.EMPTY, now_ns
-        elif self._phase is Phase.EMPTY and elapsed_s >= LEARN_S:
+        elif self._phase is Phase.EMPTY and elapsed_s >= LEARN_S and self._has_learned_room():
             self._context.scene(Scene.MOVING)
             self._seek()
+
+    def _has_learned_room(self) -> bool:
+        return self._tracking is not None and self._tracking.metrics().published >= LEARN_SETS
 
     def _seek(self) -> None:
         self._phase, self._began_ns = Phase.SEEKING, None
