@@ -92,13 +92,8 @@ def _hold_whole(model: BodyModel, rest: Floats, information: Floats) -> None:
 
 def _hold_feet(model: BodyModel, information: Floats) -> None:
     """Feet do not roll or turn far below their shins, and bend as they like: what shows of a shoe says little of it."""
-    import os
-
-    e = [float(x) for x in os.environ.get("LEGTW", "1,1,1,1,.25,.2").split(",")]
     for side in ("left", "right"):
-        _hold(model, information, side + "UpperLeg", (1.0, e[0], e[1]))
-        _hold(model, information, side + "LowerLeg", (1.0, e[2], e[3]))
-        _hold(model, information, side + "Foot", (1.0, e[4], e[5]))
+        _hold(model, information, side + "Foot", (1.0, *_LEG_SD_RAD["Foot"][1:]))
 
 
 def _hold_legs(model: BodyModel, rest: Floats, information: Floats, bones: tuple[str, ...]) -> None:

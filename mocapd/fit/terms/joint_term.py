@@ -94,6 +94,23 @@ class JointTerm:
         )
         return out
 
+    def triangulated(self, joint: int) -> tuple[Floats, Floats]:
+        """Where a joint is by the rays of all cameras: its place (3,) [m, world] and covariance (3,3) [m^2], by weighted
+        linear least squares; NaN and inf where fewer than two cameras saw it."""
+        A, b, cameras = np.zeros((3, 3)), np.zeros(3), 0
+        for one in self.seen:
+            for n in np.flatnonzero(one.joints == joint):
+                R, t_m, (xx, xy, yy) = one.camera.R, one.camera.t_m, one.information[n]
+                rows = R[:2] - one.xy[n, :, None] * R[2]
+                weighted = rows.T @ np.array([[xx, xy], [xy, yy]])
+                A += weighted @ rows
+                b += weighted @ (one.xy[n] * t_m[2] - t_m[:2])
+                cameras += 1
+        if cameras < 2:
+            return np.full(3, np.nan), np.full((3, 3), np.inf)
+        covariance = np.asarray(np.linalg.inv(A))
+        return covariance @ b, covariance
+
     def turn_rad(self, joints_m: Floats) -> float:
         """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too
         little of its trunk was."""

@@ -4,6 +4,7 @@ Of regions that look alike only what is drawn tells which pixel is whose, so in 
 predicted pose any other one loses: an arm before a trunk of its colour could not come loose.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.tracking.hypotheses.base import WHOLE, Judged, Situation
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, seen_pose, starts_as_seen
@@ -43,13 +45,30 @@ def tried_as_seen(now: Judged, at: Situation, joints: JointTerm, params: SeenPos
     """The cheapest of the present fit and those that begin where the joints were seen."""
     fitter = at.dressed.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
-    gained = params.gain
+    starts = starts_as_seen(fitter, now.fit, joints, held, params, legs_alone=at.held is not None)
+    return best_start(now, at, joints, starts, params.fit_iterations, params.gain, params.farther)
+
+
+def best_start(
+    now: Judged,
+    at: Situation,
+    joints: JointTerm,
+    starts: Sequence[tuple[MotionState, tuple[str, ...]]],
+    iterations: int,
+    gained: float,
+    farther: float,
+) -> Judged:
+    """The cheapest of the present fit and those that begin at `starts`, each with the parts that it changes.
+
+    gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
+    farther away [disagreeing pixels/rad^2].
+    """
+    fitter = at.dressed.fitter
+    here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
 
     def cost_of(fit: Fit) -> float:
         return float(joints.costs(fitter.joints(fit.state)[0]).sum())
 
-    here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
-    starts = starts_as_seen(fitter, now.fit, joints, held, params, legs_alone=at.held is not None)
     best = replace(now, tried=True) if starts else now
     for start, changed in starts:
         views = at.evidence.classified(start)
@@ -57,10 +76,10 @@ def tried_as_seen(now: Judged, at: Situation, joints: JointTerm, params: SeenPos
             continue
         terms = at.evidence.measured(start, views)
         fit = fitter.fit(
-            start, views, at.dt_s, params.fit_iterations, rendered=True, fine=1, motion=at.held, terms=terms
+            start, views, at.dt_s, iterations, rendered=True, fine=1, motion=at.held, terms=terms
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
-        gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - params.farther * away_rad2
+        gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
         if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:

@@ -3,6 +3,7 @@
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.hypotheses.base import Judged, PoseHypothesis, Situation
+from mocapd.tracking.hypotheses.foot_heading import FootHeading
 from mocapd.tracking.hypotheses.front_back_flip import FrontBackFlip
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
@@ -16,7 +17,8 @@ class OtherPoses:
     def __init__(self, params: ClothesParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
         self._always: dict[str, PoseHypothesis] = {
-            "keypoint_poses": KeypointPoses(params.seen_pose)
+            "keypoint_poses": KeypointPoses(params.seen_pose),
+            "foot_heading": FootHeading(params.foot_heading),
         }
         self._searched: dict[str, PoseHypothesis] = {
             "arm_poses": ArmPoses(params.limbs),

@@ -31,6 +31,7 @@ from mocapd.tracking.initialisers.stance import (
 )
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Camera, Floats
+from mocapd.vision.foreground_kernels import BACKGROUND
 
 Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
 
@@ -203,11 +204,18 @@ class PersonSearch:
     def _standing(self, shadows: bool) -> list[_Seen]:
         """The likeliest people before the background; shadows: with what may be one."""
         p, views = self._params, self._views
-        blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in views.present}
+        blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in self._clear_cameras()}
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
         people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
         return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
+
+    def _clear_cameras(self) -> list[int]:
+        """Without those whose picture hardly shows its background, as in another light or with somebody close to the lens:
+        a silhouette that fills the picture says nothing. All where fewer than two would be left."""
+        views, most = self._views, self._params.most_share
+        clear = [i for i in views.present if np.mean(views.each[i].before != BACKGROUND) <= most]
+        return clear if len(clear) > 1 else list(views.present)
 
     def _is_likely(self, fit: Fit) -> bool:
         return fit.explained >= self._params.likely_explained and is_standing(

@@ -9,6 +9,7 @@ from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.front_back_flip import FlipParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
@@ -23,6 +24,7 @@ class StartParams:
 
     least_px: int = 400  # of a blob, in work pixels
     least_height_px: int = 50
+    most_share: float = 0.6  # of a picture that is not its background, in a camera that counts
     nearest_m: float = 1.2
     farthest_m: float = 6.0
     step_m: float = 0.05
@@ -117,6 +119,7 @@ class ClothesParams:
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     joints: JointViewParams = field(default_factory=JointViewParams)
     seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
+    foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     distances: MeasuringParams = field(
         default_factory=lambda: MeasuringParams(points=10, leg_points=24)
     )

@@ -1,0 +1,101 @@
+"""A foot that points where its toes were not seen: the leg is turned about its length until they point there.
+
+A straight leg looks the same however it is turned about its length. Only the shoe tells, and toe and heel look alike: the fit
+finds the nearer of two headings. Where the rays of two cameras or more cross at ankle and toes, the network knows which.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX, PARENTS
+from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.geometry import rotations
+from mocapd.tracking.hypotheses.base import Judged, Situation
+from mocapd.tracking.hypotheses.keypoint_poses import best_start
+from mocapd.types import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class FootHeadingParams:
+    """When a leg is turned about its length."""
+
+    away_rad: float = 0.9  # from where the toes were seen to point
+    # of ankle and toes: cameras side by side hardly know how deep these are
+    most_sd_m: float = 0.12
+    shortest_m: float = 0.06  # from ankle to toes, across the leg
+    iterations: int = 4
+    gain: float = 5.0  # by how much the cost must fall [disagreeing pixels]
+    pause_ticks: int = 10  # after a try that failed
+
+
+class FootHeading:
+    """See PoseHypothesis. Remembers when it failed last."""
+
+    def __init__(self, params: FootHeadingParams) -> None:
+        self._params = params
+        self.reset()
+
+    def reset(self) -> None:
+        """See PoseHypothesis."""
+        self._next_tick = 0
+
+    def rehearse(self, now: Judged, at: Situation, /) -> None:
+        """See PoseHypothesis: it has no kernels of its own."""
+
+    def test(self, now: Judged, at: Situation) -> Judged:
+        """See PoseHypothesis; as it is in frames that saw no joints."""
+        p = self._params
+        if at.ticks.last < self._next_tick:
+            return now
+        for joints in at.joints:
+            starts = list(turned_legs(at.dressed.fitter, now.fit.state, joints, p))
+            if starts:
+                better = best_start(now, at, joints, starts, p.iterations, p.gain, farther=0.0)
+                if better.fit is now.fit:
+                    self._next_tick = at.ticks.last + p.pause_ticks
+                now = better
+        return now
+
+
+def turned_legs(
+    fitter: Fitter, state: MotionState, joints: JointTerm, params: FootHeadingParams
+) -> Iterator[tuple[MotionState, tuple[str, ...]]]:
+    """For each foot that points elsewhere than its toes were seen: the body with that leg turned about its length, and the
+    part that changes."""
+    joints_m, globals_xyzw = fitter.joints(state)
+    for side in SIDES:
+        leg, toes = LIMBS[f"{side}_leg"], INDEX[side + "Toes"]
+        seen_m = _seen_foot_m(joints, leg.end, toes, params)
+        along = joints_m[leg.end] - joints_m[leg.upper]
+        along /= max(float(np.linalg.norm(along)), 1e-9)
+        turn_rad = _turn_about(along, joints_m[toes] - joints_m[leg.end], seen_m, params.shortest_m)
+        if abs(turn_rad) <= params.away_rad:
+            continue
+        turn = rotations.multiply(rotations.exp(turn_rad * along), globals_xyzw[leg.upper])
+        local = state.local_xyzw.copy()
+        parent = globals_xyzw[PARENTS[leg.upper]]
+        local[leg.upper] = rotations.multiply(rotations.inverse(parent), turn)
+        yield replace(state, local_xyzw=rotations.canonical(local)), (f"{side}_leg",)
+
+
+def _seen_foot_m(joints: JointTerm, ankle: int, toes: int, params: FootHeadingParams) -> Floats:
+    """From ankle to toes (3,), as the cameras' rays cross there; 0 where they do not tell."""
+    (ankle_m, of_ankle), (toes_m, of_toes) = joints.triangulated(ankle), joints.triangulated(toes)
+    if not (np.isfinite(of_ankle).all() and np.isfinite(of_toes).all()):
+        return np.zeros(3)
+    variance = max(np.linalg.eigvalsh(of_ankle)[-1], np.linalg.eigvalsh(of_toes)[-1])
+    return toes_m - ankle_m if variance <= params.most_sd_m**2 else np.zeros(3)
+
+
+def _turn_about(axis: Floats, one: Floats, other: Floats, shortest: float) -> float:
+    """The angle about the axis (3,) from one vector (3,) to the other [rad]; 0 where one of them is too short across it."""
+    a, b = one - (one @ axis) * axis, other - (other @ axis) * axis
+    if min(np.linalg.norm(a), np.linalg.norm(b)) < shortest:
+        return 0.0
+    return float(np.arctan2(axis @ np.cross(a, b), a @ b))
