@@ -8,7 +8,6 @@ from playwright.sync_api import Browser, Page, ViewportSize, expect
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.clock import monotonic_ns
-from mocapd.config.web_params import Params
 from mocapd.pipeline.slowness import Slowness
 from mocapd.web.server import WebServer
 from tests.browser.conftest import problems_of
@@ -20,20 +19,6 @@ SIZES: dict[str, ViewportSize] = {
     "desk": {"width": 1280, "height": 657},
     "phone": {"width": 390, "height": 844},
 }
-
-
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> TinyHost:
-    return TinyHost(tmp_path_factory.mktemp("state"))
-
-
-@pytest.fixture(scope="module")
-def server(host: TinyHost) -> Iterator[WebServer]:
-    died: list[BaseException] = []
-    with WebServer(host, Params(), died.append) as one:
-        yield one
-    host.stop()
-    assert died == []
 
 
 @pytest.fixture

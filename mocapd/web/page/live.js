@@ -14,11 +14,15 @@ const TRACKING = {
 const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
 
 function tracking(figures) {
-  if (figures.slowness) return [capital(figures.slowness.replace(" -- ", ". Mend: ")), "failed"];
+  if (figures.slowness) return [capital(mended(figures.slowness)), "failed"];
   if (figures.tracking === "lost" && figures.lost_reason) {
     return [`Nobody is tracked: ${figures.lost_reason}`, "working"];
   }
   return TRACKING[figures.tracking] ?? [figures.tracking, "waiting"];
+}
+
+function mended(text) {
+  return text.replace(" -- ", ". Mend: ");
 }
 
 export class Live {
@@ -151,7 +155,7 @@ export class Live {
         `${number(latency.median)} ms from light to output and ` +
         `${number(figures.lag_ms.median)} ms of smoothing, step ${number(figures.step_ms.median)} ms, ` +
         `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped` +
-        (figures.effort ? `; ${figures.effort}` : ""),
+        (figures.effort ? `; ${mended(figures.effort)}` : ""),
     );
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);
