@@ -64,6 +64,19 @@ def test_a_machine_that_is_too_slow_is_said_with_what_helps(
         host.slowness = None
 
 
+def test_what_a_first_start_still_prepares_is_said_until_it_is_done(
+    page: Page, host: TinyHost
+) -> None:
+    line = page.locator("#preparing")
+    expect(line).to_be_hidden()
+    host.preparing = "once on this machine: compiling 34 %; about 20 s left"
+    try:
+        expect(line).to_contain_text("compiling 34 %; about 20 s left", timeout=WAIT_MS)
+    finally:
+        host.preparing = ""
+    expect(line).to_be_hidden(timeout=WAIT_MS)
+
+
 def test_record_and_stop_and_what_was_recorded(page: Page, host: TinyHost, pictures: Path) -> None:
     show_pictures(host)
     page.click("#record")

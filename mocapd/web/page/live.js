@@ -36,6 +36,9 @@ export class Live {
     this.tracking.setAttribute("role", "status");
     this.tracking.id = "tracking";
     this.summary = make(head, "span", "summary");
+    this.preparing = make(root, "p", "soft");
+    this.preparing.id = "preparing";
+    this.preparing.hidden = true;
     this.trouble = make(root, "p", "problem bad");
     this.trouble.setAttribute("role", "alert");
     this.trouble.hidden = true;
@@ -143,6 +146,10 @@ export class Live {
   }
 
   figures(figures) {
+    this.preparing.hidden = !figures?.preparing;
+    this.preparing.textContent = figures?.preparing
+      ? `Tracking gets better when all is prepared: ${figures.preparing}.`
+      : "";
     if (figures === null) {
       this.state("Nothing is tracked now", "waiting", "");
       this.figure.setBody(null);
