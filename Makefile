@@ -78,12 +78,13 @@ test-clients: export PYTHONDONTWRITEBYTECODE :=
 test-clients: clients ## run the tests of clients/
 	$(BIN)/python -m pytest --numprocesses 4 --dist loadfile tests/clients
 
-check: dev ## lint, format, types, import contract, dead code
+check: dev ## lint, format, types, import contract, dead code, structure
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/vulture
+	$(BIN)/python -m tests.code_structure
 
 bench: env ## time every tracker, stage by stage
 	@$(BIN)/mocapd bench

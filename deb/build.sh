@@ -47,6 +47,11 @@ if [ -n "$site" ]; then
 else
     "${install[@]}" --require-hashes --only-binary :all: --requirement "$root/locks/run.txt"
 fi
+# the libraries' own tests, 5 % of it; nothing imports them
+if [ -z "$site" ]; then
+    find "$libraries" -type d -name tests -prune -exec rm -r {} +
+    find "$libraries" -name RECORD -exec sed -i '\#/tests/#d' {} +
+fi
 "${install[@]}" --no-deps --no-index "$wheel"
 # of the commands only ours; pip's note of where the wheel lay is of no use elsewhere, nor are its digests of both
 find "$env/bin" -mindepth 1 ! -name 'python*' -delete

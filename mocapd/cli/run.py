@@ -111,7 +111,12 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             with (
                 DecoderWarnings()
             ):  # a thread, so not before whatever is forked for the first start
-                early = EarlyStart(first.preparation, change, control.preparing)
+
+                def tell(text: str) -> None:
+                    control.preparing(text)
+                    service.preparing = text
+
+                early = EarlyStart(first.preparation, change, tell)
                 hooks = (change, early, control, Supervision(notifier))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
     except SystemExit as end:  # told to end while the first session was still prepared

@@ -32,12 +32,13 @@ class ThreadDiedError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """How everything fares, for the status line."""
+    """How everything fares, for status line and page. `preparing`: what a first start still prepares, in words."""
 
     metrics: Metrics
     cameras: dict[str, CaptureStatus]
     outputs: dict[str, SinkStatus]
     mountings: Mapping[str, Mounting] = field(default_factory=dict)
+    preparing: str = ""
 
 
 class Service:
@@ -58,6 +59,7 @@ class Service:
         self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
         self._running = RunningSession(config, session, self.bodies, self.died)
         self._earlier: Metrics | None = None  # of all sessions before
+        self.preparing = ""  # see Snapshot; its owner knows
         self._ended = Latch()
         self._death: BaseException | None = None
         self._started_unix_ns = 0
@@ -142,6 +144,7 @@ class Service:
             running.statuses(),
             {sink.name: sink.status() for sink in self._sinks},
             running.mountings(),
+            self.preparing,
         )
 
     # -- its end ---------------------------------------------------------------------------------

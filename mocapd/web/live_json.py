@@ -66,6 +66,7 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
         "lost_reason": lost_reason_text(metrics.lost_reason),
         "effort": effort_text(metrics.effort.value),
         "slowness": slowness_text(metrics.slowness),
+        "preparing": snapshot.preparing,
         "rate_hz": metrics.rate_hz,
         "published": metrics.published,
         "sets_made": metrics.sets_made,

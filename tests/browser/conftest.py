@@ -12,7 +12,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from mocapd.config.web_params import Params
+from mocapd.web.server import WebServer
 from tests.conftest import environment
+from tests.web.tiny_host import TinyHost
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 FOR_THE_DOCS = "MOCAPD_SCREENSHOTS" in os.environ  # pictures show what users see, and take time
@@ -79,6 +82,22 @@ def pictures(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     folder = Path(given) if given else tmp_path_factory.mktemp("screenshots")
     folder.mkdir(parents=True, exist_ok=True)
     return folder
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> TinyHost:
+    """Of a whole file."""
+    return TinyHost(tmp_path_factory.mktemp("state"))
+
+
+@pytest.fixture(scope="module")
+def server(host: TinyHost) -> Iterator[WebServer]:
+    """The page of `host`."""
+    died: list[BaseException] = []
+    with WebServer(host, Params(), died.append) as one:
+        yield one
+    host.stop()
+    assert died == []
 
 
 def problems_of(page: Page) -> list[str]:

@@ -8,7 +8,6 @@ from playwright.sync_api import Browser, Page, ViewportSize, expect
 
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.clock import monotonic_ns
-from mocapd.config.web_params import Params
 from mocapd.pipeline.slowness import Slowness
 from mocapd.web.server import WebServer
 from tests.browser.conftest import problems_of
@@ -20,20 +19,6 @@ SIZES: dict[str, ViewportSize] = {
     "desk": {"width": 1280, "height": 657},
     "phone": {"width": 390, "height": 844},
 }
-
-
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> TinyHost:
-    return TinyHost(tmp_path_factory.mktemp("state"))
-
-
-@pytest.fixture(scope="module")
-def server(host: TinyHost) -> Iterator[WebServer]:
-    died: list[BaseException] = []
-    with WebServer(host, Params(), died.append) as one:
-        yield one
-    host.stop()
-    assert died == []
 
 
 @pytest.fixture
@@ -77,6 +62,19 @@ def test_a_machine_that_is_too_slow_is_said_with_what_helps(
         page.screenshot(path=pictures / "live-slow.png")
     finally:
         host.slowness = None
+
+
+def test_what_a_first_start_still_prepares_is_said_until_it_is_done(
+    page: Page, host: TinyHost
+) -> None:
+    line = page.locator("#preparing")
+    expect(line).to_be_hidden()
+    host.preparing = "once on this machine: compiling 34 %; about 20 s left"
+    try:
+        expect(line).to_contain_text("compiling 34 %; about 20 s left", timeout=WAIT_MS)
+    finally:
+        host.preparing = ""
+    expect(line).to_be_hidden(timeout=WAIT_MS)
 
 
 def test_record_and_stop_and_what_was_recorded(page: Page, host: TinyHost, pictures: Path) -> None:

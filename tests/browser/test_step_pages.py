@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, expect
 
-from mocapd.config.web_params import Params
 from mocapd.web.server import WebServer
 from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName
@@ -65,19 +64,6 @@ class Shown:
     def words(self) -> list[str]:
         found: list[str] = self.page.evaluate("heard.words")
         return found
-
-
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> TinyHost:
-    return TinyHost(tmp_path_factory.mktemp("state"))
-
-
-@pytest.fixture(scope="module")
-def server(host: TinyHost) -> Iterator[WebServer]:
-    died: list[BaseException] = []
-    with WebServer(host, Params(), died.append) as one:
-        yield one
-    assert died == []
 
 
 @pytest.fixture

@@ -16,7 +16,14 @@ class FakeMachine:
         (self.sysfs / "class" / "video4linux").mkdir(parents=True)
         self.dev.mkdir()
 
-    def plug(self, identity: WebcamIdentity, name: str, first: int, nodes: int = 2) -> None:
+    def plug(
+        self,
+        identity: WebcamIdentity,
+        name: str,
+        first: int,
+        nodes: int = 2,
+        interface_class: str = "0e",
+    ) -> None:
         """A UVC webcam with nodes /dev/video<first>...: one that captures, then metadata."""
         bus = identity.port_path.split("-")[0]
         device = self.sysfs / HOST / f"usb{bus}" / identity.port_path
@@ -25,7 +32,14 @@ class FakeMachine:
         (device / "idProduct").write_text(f"{identity.pid}\n")
         if identity.serial:
             (device / "serial").write_text(f"{identity.serial}\n")
+        (device / "product").write_text(f"{name}\n")
         interface = device / f"{identity.port_path}:1.0"
+        interface.mkdir()
+        (interface / "bInterfaceClass").write_text(f"{interface_class}\n")
+        bus_devices = self.sysfs / "bus" / "usb" / "devices"
+        bus_devices.mkdir(parents=True, exist_ok=True)
+        for folder in (device, interface):
+            (bus_devices / folder.name).symlink_to(folder)
         for index in range(nodes):
             self._node(interface, first + index, name, index)
 

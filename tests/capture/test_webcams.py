@@ -106,16 +106,29 @@ def test_nobody_is_told_to_join_the_group_of_root() -> None:
 
 
 def test_a_webcam_without_a_driver_is_listed_with_the_mend(machine: FakeMachine) -> None:
-    lone = UsbWebcam(WebcamIdentity("1-5", "0c45", "6366", "SN1"), "USB Camera", True)
-    twice = UsbWebcam(LEFT, "Webcam C270", True)
+    lone = UsbWebcam(WebcamIdentity("1-5", "0c45", "6366", "SN1"), "USB Camera")
+    twice = UsbWebcam(LEFT, "Webcam C270")
     rows = list_cameras(machine.sysfs, machine.dev, usb=lambda: (twice, lone))
     without = [row for row in rows if row.node is None]
     assert [row.spec for row in without] == ["usb:1-5:0c45:6366:SN1"]
     assert "modprobe uvcvideo" in without[0].fix
 
 
-def test_pyusb_lists_what_there_is_and_never_fails() -> None:
-    assert isinstance(usb_webcams(), tuple)
+def test_usb_webcams_are_found_also_where_no_driver_made_a_node(tmp_path: Path) -> None:
+    machine = FakeMachine(tmp_path)
+    machine.plug(LEFT, "Webcam C270", 0)
+    machine.plug(RIGHT, "HD Camera", 2, nodes=0)
+    machine.plug(WebcamIdentity("1-6", "046d", "c077"), "Mouse", 4, nodes=0, interface_class="03")
+    assert usb_webcams(machine.sysfs) == (
+        UsbWebcam(LEFT, "Webcam C270"),
+        UsbWebcam(RIGHT, "HD Camera"),
+    )
+    rows = list_cameras(machine.sysfs, machine.dev, lambda: usb_webcams(machine.sysfs))
+    assert [row.spec for row in rows if row.node is None] == [str(RIGHT)]
+
+
+def test_a_machine_without_usb_has_no_usb_webcams(tmp_path: Path) -> None:
+    assert usb_webcams(tmp_path) == ()
 
 
 def test_who_holds_a_node_is_found_in_proc(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from importlib import metadata
 
 # by wheel, the libraries by the stem of their files' names: both x86_64 and aarch64
 CARRIED: dict[str, tuple[str, ...]] = {
-    "libusb-package": ("libusb",),
     "llvmlite": ("libllvmlite",),
     "numpy": ("libgfortran", "libquadmath", "libscipy_openblas64_"),
     "opencv-python-headless": (
@@ -56,7 +55,6 @@ WORKS: dict[str, tuple[str, str]] = {
     "libswresample": _FFMPEG,
     "libswscale": _FFMPEG,
     "libtiff": ("libtiff", "libtiff"),
-    "libusb": ("libusb", "LGPL-2.1-or-later"),
     "libvpx": ("libvpx", "BSD-3-Clause"),
     "libwebp": _WEBP,
     "libwebpdemux": _WEBP,

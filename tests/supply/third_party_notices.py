@@ -43,9 +43,8 @@ own or beside the package's code, and can be replaced by others of the same inte
 _BESIDES = """
 ## What to know before passing them on
 
-- **FFmpeg** (in opencv-python-headless) and **libusb** (in libusb-package) are under the LGPL 2.1 or later,
-  **libquadmath** (in numpy, scipy and opencv-python-headless for x86_64) likewise: their licence text and an
-  offer of their source go with a bundle. The libusb wheel does not hold that text.
+- **FFmpeg** (in opencv-python-headless) is under the LGPL 2.1 or later, **libquadmath** (in numpy, scipy and
+  opencv-python-headless for x86_64) likewise: their licence text and an offer of their source go with a bundle.
 - **libgfortran** is under the GPL 3 with GCC's runtime exception, which permits its use by works under
   any licence.
 - **OpenSSL 1.1.1k** (in opencv-python-headless; `openssl-libs 1.1.1k-15.el8_6` of AlmaLinux 8 by the wheel's

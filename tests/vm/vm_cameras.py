@@ -1,7 +1,7 @@
 """The step Cameras against a real uvcvideo driver: runs in the guest of ../shared/vm, not under pytest.
 
 Like tests/vm/vm_proof.py (see docs/webcams.md for the machine); needs mocapd's packages capture,
-calibrate, pipeline and wizard beside it, and libusb_package.
+calibrate, pipeline and wizard beside it.
 
     python vm_cameras.py lock | sigterm | replug | yuyv | reasons
 """

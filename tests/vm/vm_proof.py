@@ -139,9 +139,9 @@ def step_list() -> None:
 
 def step_usb() -> None:
     for one in usb_webcams():
-        say("pyusb", one.identity, repr(one.product), "serial known:", one.serial_known)
+        say("USB", one.identity, repr(one.product))
     for identity, node in capture_nodes().items():
-        say("sysfs", identity, node.node)
+        say("node", identity, node.node)
 
 
 def step_live() -> None:

@@ -108,6 +108,7 @@ class TinyHost:
             None  # what the newest body is of; None: the newest pictures
         )
         self.slowness: Slowness | None = None
+        self.preparing = ""
         self.skeleton = standard_skeleton(1.75)
         self._state_dir = state_dir
         self._died: list[BaseException] = []
@@ -211,6 +212,7 @@ class TinyHost:
             status,
             {"osc": SinkStatus(99, 1, 1, "receiver on 127.0.0.1:39541")},
             self.mountings,
+            self.preparing,
         )
 
     def stop(self) -> None:

@@ -1,7 +1,7 @@
 """Which webcam is which: by USB port path and vid:pid:serial, never by /dev number.
 
 /dev/videoN changes with the order of plugging, and identical webcams share one by-id link. The
-port path (`1-3.2`: bus 1, socket 3, hub socket 2; what sysfs and pyusb's `port_numbers` say) tells
+port path (`1-3.2`: bus 1, socket 3, hub socket 2; as in sysfs) tells
 twins apart; vid:pid:serial tells a camera that was moved to another socket.
 """
 

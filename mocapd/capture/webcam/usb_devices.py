@@ -1,56 +1,29 @@
-"""USB devices of the video class through pyusb, also those for which no driver made a node.
-
-`libusb-package` brings libusb itself, so no system library is needed.
-"""
+"""USB devices of the video class from sysfs, also those for which no driver made a node."""
 
 from dataclasses import dataclass
-
-import libusb_package
-import usb.core
+from pathlib import Path
 
 from mocapd.capture.webcam.identity import WebcamIdentity
+from mocapd.capture.webcam.webcams import SYSFS, attribute, usb_identity
 
-VIDEO_CLASS = 14
-"""bInterfaceClass of a webcam; its bDeviceClass is 239 (several interfaces)."""
+VIDEO_CLASS = "0e"
+"""bInterfaceClass of a webcam; its bDeviceClass is ef (several interfaces)."""
 
 
 @dataclass(frozen=True, slots=True)
 class UsbWebcam:
-    """A USB device with a video interface. `serial_known` is False where the right to read it lacks."""
+    """A USB device with a video interface. `product`: its name, empty where it has none."""
 
     identity: WebcamIdentity
     product: str
-    serial_known: bool
 
 
-def usb_webcams() -> tuple[UsbWebcam, ...]:
-    """Every video-class device that libusb sees; empty where there is no USB to be seen."""
-    backend = libusb_package.get_libusb1_backend()
-    if backend is None:
-        return ()
-    try:
-        devices = list(usb.core.find(find_all=True, backend=backend))
-    except usb.core.USBError:  # no bus is mounted here, as in a container
-        return ()
-    found = (_webcam(device) for device in devices if _is_webcam(device))
-    return tuple(sorted(found, key=lambda one: one.identity.port_path))
-
-
-def _is_webcam(device: usb.core.Device) -> bool:
-    try:
-        return any(face.bInterfaceClass == VIDEO_CLASS for setup in device for face in setup)
-    except usb.core.USBError:  # unplugged while we looked
-        return False
-
-
-def _webcam(device: usb.core.Device) -> UsbWebcam:
-    # `address` changes at each plugging; the chain of port numbers belongs to the socket.
-    ports = ".".join(str(port) for port in device.port_numbers or ())
-    try:
-        serial, product, known = device.serial_number or "", device.product or "", True
-    except (ValueError, usb.core.USBError):  # no right to write to the USB node: "no langid"
-        serial, product, known = "", "", False
-    identity = WebcamIdentity(
-        f"{device.bus}-{ports}", f"{device.idVendor:04x}", f"{device.idProduct:04x}", serial
-    )
-    return UsbWebcam(identity, product, known)
+def usb_webcams(sysfs: Path = SYSFS) -> tuple[UsbWebcam, ...]:
+    """Every video-class device on a USB bus; empty where there is no USB, as in a container."""
+    devices = {
+        interface.parent
+        for interface in (sysfs / "bus" / "usb" / "devices").glob("*/*:*")
+        if attribute(interface / "bInterfaceClass") == VIDEO_CLASS
+    }
+    webcams = (UsbWebcam(usb_identity(one), attribute(one / "product")) for one in devices)
+    return tuple(sorted(webcams, key=lambda webcam: webcam.identity.port_path))

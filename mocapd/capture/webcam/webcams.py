@@ -1,8 +1,8 @@
 """The webcams that are plugged in, from sysfs: USB identity, name and /dev nodes.
 
 sysfs is readable by everybody and answers in under a millisecond, so it is read again at each
-reopening. It holds the kernel's copy of the serial, which pyusb can only read with write access to
-the USB node (else it raises `ValueError: The device has no langid`).
+reopening. It holds the kernel's copy of the serial, which libusb can only read with write access to
+the USB node.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class VideoNode:
     identity: WebcamIdentity | None
 
 
-def _text(path: Path) -> str:
+def attribute(path: Path) -> str:
     """The content of a sysfs attribute, empty when it is absent or vanishes with its device."""
     try:
         return path.read_text(encoding="utf-8", errors="replace").strip()
@@ -51,9 +51,9 @@ def usb_identity(folder: Path) -> WebcamIdentity:
     """The identity of the USB device whose sysfs folder (named by its port path) this is."""
     return WebcamIdentity(
         port_path=folder.name,
-        vid=_text(folder / "idVendor").lower(),
-        pid=_text(folder / "idProduct").lower(),
-        serial=_text(folder / "serial"),
+        vid=attribute(folder / "idVendor").lower(),
+        pid=attribute(folder / "idProduct").lower(),
+        serial=attribute(folder / "serial"),
     )
 
 
@@ -65,10 +65,10 @@ def video_nodes(sysfs: Path = SYSFS, dev: Path = DEV) -> tuple[VideoNode, ...]:
         if not number.isdigit():
             continue
         usb = _usb_device((entry / "device").resolve())
-        index = _text(entry / "index")
+        index = attribute(entry / "index")
         node = VideoNode(
             node=dev / entry.name,
-            name=_text(entry / "name"),
+            name=attribute(entry / "name"),
             index=int(index) if index.isdigit() else 0,
             interface=usb[1] if usb else "",
             identity=usb_identity(usb[0]) if usb else None,

@@ -14,11 +14,15 @@ const TRACKING = {
 const CAMERA_STATES = { live: "done", opening: "working", lost: "failed", ended: "waiting" };
 
 function tracking(figures) {
-  if (figures.slowness) return [capital(figures.slowness.replace(" -- ", ". Mend: ")), "failed"];
+  if (figures.slowness) return [capital(mended(figures.slowness)), "failed"];
   if (figures.tracking === "lost" && figures.lost_reason) {
     return [`Nobody is tracked: ${figures.lost_reason}`, "working"];
   }
   return TRACKING[figures.tracking] ?? [figures.tracking, "waiting"];
+}
+
+function mended(text) {
+  return text.replace(" -- ", ". Mend: ");
 }
 
 export class Live {
@@ -32,6 +36,9 @@ export class Live {
     this.tracking.setAttribute("role", "status");
     this.tracking.id = "tracking";
     this.summary = make(head, "span", "summary");
+    this.preparing = make(root, "p", "soft");
+    this.preparing.id = "preparing";
+    this.preparing.hidden = true;
     this.trouble = make(root, "p", "problem bad");
     this.trouble.setAttribute("role", "alert");
     this.trouble.hidden = true;
@@ -139,6 +146,10 @@ export class Live {
   }
 
   figures(figures) {
+    this.preparing.hidden = !figures?.preparing;
+    this.preparing.textContent = figures?.preparing
+      ? `Tracking gets better when all is prepared: ${figures.preparing}.`
+      : "";
     if (figures === null) {
       this.state("Nothing is tracked now", "waiting", "");
       this.figure.setBody(null);
@@ -151,7 +162,7 @@ export class Live {
         `${number(latency.median)} ms from light to output and ` +
         `${number(figures.lag_ms.median)} ms of smoothing, step ${number(figures.step_ms.median)} ms, ` +
         `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped` +
-        (figures.effort ? `; ${figures.effort}` : ""),
+        (figures.effort ? `; ${mended(figures.effort)}` : ""),
     );
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);
