@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from mocapd.boundary.files import is_absent
 from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.calibration.saved_sources import require_password, sources_by_shown
+from mocapd.calibration.saved_sources import require_password, sources_by_masked
 from mocapd.errors import ConfigError
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -62,7 +62,7 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
 
 def _with_passwords(draft: Draft, config: "Config") -> Draft:
     """With those of the configuration, where they are not kept with the calibration."""
-    known = sources_by_shown((one.id, one.source) for one in config.camera)
+    known = sources_by_masked((one.id, one.source) for one in config.camera)
     cameras = (
         replace(one, source=known.get((one.id, one.source), one.source)) for one in draft.cameras
     )

@@ -41,7 +41,7 @@ class BoardCollection:
     @property
     def solvable(self) -> bool:
         """Whether there is anything to solve from."""
-        return self._sightings.linked(FEWEST_SHARED)
+        return self._sightings.all_connected(FEWEST_SHARED)
 
     @property
     def due(self) -> bool:
@@ -49,7 +49,7 @@ class BoardCollection:
         enough = (
             self._own >= _OWN
             and self._sightings.count >= ENOUGH
-            and self._sightings.linked(_SHARED)
+            and self._sightings.all_connected(_SHARED)
         )
         return enough and (not self._tried or self._own >= self._tried + _MORE)
 
@@ -89,9 +89,9 @@ class BoardCollection:
         return [
             name
             for name in self._cameras
-            if not any(self.shared(name, other) for other in self._cameras if other != name)
+            if not any(self.common_count(name, other) for other in self._cameras if other != name)
         ]
 
-    def shared(self, a: str, b: str) -> int:
+    def common_count(self, a: str, b: str) -> int:
         """How many sightings two cameras share."""
-        return self._sightings.shared(a, b)
+        return self._sightings.common_count(a, b)

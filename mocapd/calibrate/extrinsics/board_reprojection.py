@@ -75,7 +75,7 @@ def with_steps(
         _stepped(scene.scene_from_board, boards),
         scene.delay + delay,
         scene.path,
-        scene.back.stepped(back),
+        scene.back.with_step(back),
     )
 
 

@@ -10,14 +10,14 @@ from mocapd.calibrate.board.board_detection import (
     as_grey,
     settle_variant,
 )
+from mocapd.calibrate.board.board_recordings import Recording
 from mocapd.calibrate.board.detection_diagnostics import (
     FIX,
     TELLING,
     diagnose_detection,
+    downscale,
     most_telling,
-    reduced,
 )
-from mocapd.calibrate.board.recordings import Recording
 from mocapd.calibrate.intrinsics.intrinsics import IntrinsicsLimits
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError
@@ -64,7 +64,7 @@ class SpreadSample:
     def offer(self, index: int, pixels: Bytes) -> None:
         """The next picture."""
         if self._came % self._every == 0:
-            grey = reduced(as_grey(pixels), _ASKED_PX)
+            grey = downscale(as_grey(pixels), _ASKED_PX)
             if len(self._kept) >= max(2, min(_ASKED, _ASKED_BYTES // grey.nbytes)):
                 self._kept = self._kept[::2]
                 self._every *= 2

@@ -12,7 +12,7 @@ import scipy  # its parts when they are used: they take long to import
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.back_side import OFFSET, GluingPrior
-from mocapd.calibrate.board.board_motion import board_paths, followed_from_one_side
+from mocapd.calibrate.board.board_motion import board_paths, has_one_neighbour
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
@@ -30,7 +30,7 @@ from mocapd.calibrate.extrinsics.corner_noise import (
 from mocapd.calibrate.extrinsics.lower_triangles import lower_triangle, solved_lower
 from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
 from mocapd.calibrate.extrinsics.sparse_least_squares import least_squares_steps
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Floats, Ints
@@ -174,11 +174,11 @@ def adjust_bundle(
     outliers.
     """
     params = params or BundleParams()
-    one_sided = followed_from_one_side(indices, params.longest_gap)
+    one_sided = has_one_neighbour(indices, params.longest_gap)
     corner_px = np.full(len(seen.camera), params.corner_px)
     if params.longest_gap >= _FOLLOWED:
         corner_px = usual_deviations_px(scene, seen, params.corner_px)
-    gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
+    gentle = params if params.priors.measured else _held_lenses(scene, size_px, params)
     scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
     every = np.ones(len(seen.camera), bool)
     for done in range(params.most_rounds):
@@ -224,7 +224,7 @@ def _moved(
     path = np.zeros_like(scene.path)
     path[placed] = board_paths(boards, numbers, params.longest_gap)
     one_sided = np.ones(len(indices), bool)
-    one_sided[placed] = followed_from_one_side(numbers, params.longest_gap)
+    one_sided[placed] = has_one_neighbour(numbers, params.longest_gap)
     scene = replace(scene, path=path)
     corner_px = _deviation_px(scene, seen, one_sided, params)
     return _solve(
@@ -243,7 +243,7 @@ def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundlePara
     deviation[:, 2:4] = _HELD_MIDDLE * size_px[:, :1]
     deviation[:, 4:] = _HELD_DIST
     return replace(
-        params, priors=replace(params.priors, known=KnownIntrinsics(known.copy(), deviation))
+        params, priors=replace(params.priors, measured=MeasuredIntrinsics(known.copy(), deviation))
     )
 
 

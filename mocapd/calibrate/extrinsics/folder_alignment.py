@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.calibrate.board.back_side import usual_back
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.recordings import RecordingTimes
+from mocapd.calibrate.board.board_recordings import RecordingTimes
 from mocapd.calibrate.extrinsics.pose_graph import camera_from_board, seen_poses
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.time_alignment.board_track import BoardTrack, board_track

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
-from mocapd.calibrate.board.recordings import Recording, RecordingTimes, find_recordings
+from mocapd.calibrate.board.board_recordings import Recording, RecordingTimes, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
@@ -22,7 +22,7 @@ from mocapd.calibrate.extrinsics.folder_alignment import align_views
 from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered_share
 from mocapd.calibrate.time_alignment.instants import Instants
 from mocapd.calibrate.time_alignment.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibration.board_spec import BoardSpec, corners_m
@@ -255,7 +255,7 @@ def _report(
         sum(view.back for view in one.views.values()),
         one.pictures,
         one.pictures - len(one.views),
-        covered(list(one.views.values()), one.recording.size_px),
+        covered_share(list(one.views.values()), one.recording.size_px),
         delay_frames,
         fit.focal_deviation,
         fit.place_cm,

@@ -17,7 +17,7 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import ConfigError
@@ -74,7 +74,7 @@ def _solve(
         name: _chosen(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()
     }
     known = _known(list(intrinsics_of.values()), [_alone(name, views) for name in names])
-    bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(known=known))
+    bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(measured=known))
     extrinsics = solve_extrinsics(
         names, sizes_px, intrinsics_of, chosen, spec, replace(PARAMS, bundle=bundle)
     )
@@ -95,7 +95,9 @@ def _chosen(name: str, size_px: tuple[int, int], views: Views) -> dict[int, Boar
     return {index: view for index, view in views[name].items() if index not in dropped}
 
 
-def _known(measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownIntrinsics:
+def _known(
+    measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]
+) -> MeasuredIntrinsics:
     """Intrinsics without pictures of their own stay near their measured values."""
     rows = np.stack([intrinsics_row(intrinsics.K, intrinsics.dist) for intrinsics in measured])
     deviation = np.full(rows.shape, np.inf)
@@ -108,7 +110,7 @@ def _known(measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]])
         deviation[i, :2] = focal * rows[i, :2]
         deviation[i, 2:4] = _MIDDLE * intrinsics.size_px[0]
         deviation[i, 4:] = _DIST
-    return KnownIntrinsics(rows, deviation)
+    return MeasuredIntrinsics(rows, deviation)
 
 
 def _refused(extrinsics: SceneExtrinsics) -> float:

@@ -106,7 +106,7 @@ def _placed(seen: SeenPose, mirrored: bool, upside_down: bool, board_m: Floats) 
     if not back:
         return pose
     half_turn = np.array([0.0, 0.0, np.pi if upside_down else 0.0, 0.0])
-    return pose @ usual_back(board_m).stepped(half_turn).board_from_back.inverse()
+    return pose @ usual_back(board_m).with_step(half_turn).board_from_back.inverse()
 
 
 def _scatter(a: Sequence[RigidTransform], b: Sequence[RigidTransform]) -> float:

@@ -60,7 +60,7 @@ class BoardAdvice:
 
     def take(self, look: Look) -> None:
         """Note who sees the board."""
-        for name in look.seen:
+        for name in look.observations:
             self._saw_ns[name] = look.t_ns
             self._told.pop(name, None)
 

@@ -198,9 +198,9 @@ class ExtrinsicsWithBoard:
         self._context.scene(Scene.FLOOR)
 
     def _watch_floor(self, look: Look) -> None:
-        still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
+        still = {name: self._seen.still(name, seen) for name, seen in look.observations.items()}
         self._rest.take(look, still)
-        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
+        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.has_enough:
             return
         views = self._rest.views()
         try:
@@ -218,7 +218,7 @@ class ExtrinsicsWithBoard:
             raise InputError(
                 "the cameras' places are not known yet", "room", "hold the board before the cameras"
             )
-        if not self._rest.seen:
+        if not self._rest.has_enough:
             raise InputError(
                 "no camera sees the board lie still",
                 "the floor",
@@ -278,7 +278,7 @@ class ExtrinsicsWithBoard:
         if self._stage is BoardPhase.DONE:
             return "The room is known. Go on."
         if self._stage is BoardPhase.FLOOR:
-            if self._rest.seen:
+            if self._rest.has_enough:
                 return "Leave the board where it lies."
             side = "the side that says FRONT up" if self._spec.two_sided else "printed side up"
             return f"Lay the board on the floor, {side}, in the middle of where players stand."
@@ -345,10 +345,10 @@ class ExtrinsicsWithBoard:
             "moments": self._seen.count,
             "enough": ENOUGH,
             "pairs": [
-                {"a": a, "b": b, "shared": self._seen.shared(a, b)}
+                {"a": a, "b": b, "shared": self._seen.common_count(a, b)}
                 for a, b in combinations(self._names, 2)
             ],
-            "at_rest": self._rest.seen,
+            "at_rest": self._rest.has_enough,
             "can_solve": self._stage is BoardPhase.COLLECT and self._seen.solvable,
             "can_skip_floor": self._stage is BoardPhase.FLOOR and self._made is not None,
             "floor_known": self._stage is BoardPhase.DONE and self._context.draft.floor_known,

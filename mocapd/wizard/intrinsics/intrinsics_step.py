@@ -146,7 +146,7 @@ class IntrinsicsStep:
     def _take(self, look: Look, now_ns: int) -> None:
         self._advice.take(look)
         together = self._sightings.offer(look)
-        for id_, seen in look.seen.items():
+        for id_, seen in look.observations.items():
             one = self._cameras[id_]
             if one.intrinsics is not None or not one.picked.offer(seen.view, seen.motion_px):
                 continue

@@ -82,7 +82,7 @@ class CameraIntrinsics:
         if (
             intrinsics.held_out_px <= good.held_out * self.camera.size_px[0]
             and intrinsics.focal_deviation <= deviation
-            and self.picked.covered >= good.covered
+            and self.picked.covered_share >= good.covered
         ):
             self.intrinsics = intrinsics
 
@@ -119,7 +119,7 @@ class CameraIntrinsics:
             row, column = self.picked.emptiest()
             where = f"{_ROWS[row]} {_COLUMNS[column]}".replace("middle middle", "middle")
             return f"{self.name}: hold the board in the {where} of the picture."
-        if self.usable is not None and self.picked.covered >= self.good.covered:
+        if self.usable is not None and self.picked.covered_share >= self.good.covered:
             return f"{self.name}: show the board nearer, and tilted more."
         return (
             f"Show the board to {self.name}: here and there, tilted, still for a moment each time."
@@ -142,7 +142,7 @@ class CameraIntrinsics:
         told: dict[str, Json] = {
             "name": self.name,
             "views": len(self.picked.views),
-            "covered": round(self.picked.covered, 3),
+            "covered": round(self.picked.covered_share, 3),
             "coverage": self.picked.counts.tolist(),
             "progress": round(self.progress(), 3),
             "lens": _figures(self.intrinsics) if self.intrinsics is not None else None,
