@@ -49,7 +49,7 @@ class FindingStep:
         if isinstance(command, Find):
             self._context.draft = replace(drafted(), cameras=self._context.draft.cameras)
         else:
-            self._context.saved()
+            self._context.on_saved()
 
     def view(self) -> StepView:
         return StepView(StepState.DONE, "Go on.", 1.0)
@@ -149,7 +149,7 @@ def test_after_a_kill_the_next_setup_goes_on_where_it_was(tmp_path: Path) -> Non
     assert {StepName.CAMERAS, StepName.LENS} <= view.done
     assert "kept" not in view.view.details
     assert same(run.wizard.draft, drafted())
-    assert "no setup of before is kept" in run.refused("resume")
+    assert "there is no unfinished setup" in run.refused("resume")
     run.stop()
     again = Run(tmp_path)  # nothing new was found: still the same one
     assert "kept" in again.wizard.newer(0, WAIT_S).view.details

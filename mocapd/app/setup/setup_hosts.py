@@ -21,17 +21,17 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
     """The cameras of the configuration, else all that are plugged in; following: the command to run afterwards. Raises
     MocapdError."""
     from mocapd.capture.webcam.webcam_listing import list_cameras
-    from mocapd.wizard.cameras.found_cameras import (
+    from mocapd.wizard.cameras.initial_cameras import (
         configured_cameras,
         identities,
         plugged_cameras,
         where_now,
     )
     from mocapd.wizard.cameras.same_port import find_port_changes
-    from mocapd.wizard.setup_keeper import kept_cameras
+    from mocapd.wizard.setup_keeper import unfinished_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
-    known = kept_cameras(config.state_dir, before.cameras)
+    known = unfinished_cameras(config.state_dir, before.cameras)
     if step is not None:
         for one in before.cameras:
             require_password(one.id, one.source, str(config.state_dir))

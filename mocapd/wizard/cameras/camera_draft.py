@@ -1,4 +1,4 @@
-"""What stays true of a draft when its cameras change."""
+"""Drops the parts of a draft that a change of cameras makes invalid."""
 
 from dataclasses import replace
 
@@ -6,13 +6,12 @@ from mocapd.wizard.draft import Draft, DraftCamera
 
 
 def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
-    """The draft with these cameras. What belonged to others is dropped: the lens of a camera with
-    another size, colours of one that left or sees them through other controls, the room of a set
-    that is not the same."""
+    """The draft with these cameras, without the data of others: the lens of a camera with another size, colours of
+    one that left or has other controls, the room of another set of cameras."""
     if cameras == draft.cameras:
         return draft
     before = {camera.id: camera for camera in draft.cameras}
-    # without cameras before, what is there was read from the saved calibration of just these
+    # without cameras before, the data come from the saved calibration of just these
     same_size = {one.id for one in cameras if before.get(one.id, one).size_px == one.size_px}
     same_look = {
         one.id

@@ -1,4 +1,4 @@
-"""A webcam in another USB port than when it was calibrated: asked about once, in the step Cameras.
+"""A question in the step Cameras about a webcam in another USB port than when it was calibrated; asked once.
 
 Its command is `cameras_verbs.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
 """
@@ -21,7 +21,7 @@ from mocapd.wizard.wizard import MakeStep
 
 @dataclass(frozen=True, slots=True)
 class PortChange:
-    """A calibrated webcam that is found in another port: what it was called, and is now."""
+    """A calibrated webcam in another port: its old and new address."""
 
     camera: str
     was: str
@@ -31,14 +31,14 @@ class PortChange:
 def find_port_changes(
     saved: Sequence[DraftCamera], present: Sequence[WebcamIdentity]
 ) -> tuple[PortChange, ...]:
-    """Which of the saved webcams sit in another port than they did; the others are left out."""
+    """The saved webcams that are in another port now."""
     identities = identities_of((camera.id, camera.source) for camera in saved)
     moved = []
     for name, wanted in identities.items():
         others = [one for other, one in identities.items() if other != name]
         try:
             found = match_identity(wanted, present, others)
-        except UnavailableError:  # it is not there at all, or twins could be meant
+        except UnavailableError:  # unplugged, or several identical candidates
             continue
         if found.moved:
             moved.append(PortChange(name, str(wanted), str(found.identity)))
@@ -46,7 +46,7 @@ def find_port_changes(
 
 
 def same_camera(draft: Draft, moved: PortChange) -> Draft:
-    """The draft with the camera in its new port."""
+    """The draft with the camera at its new port."""
     return replace(
         draft,
         cameras=tuple(
@@ -57,7 +57,7 @@ def same_camera(draft: Draft, moved: PortChange) -> Draft:
 
 
 def other_camera(draft: Draft, moved: PortChange) -> Draft:
-    """The draft without what is known of the camera that was meant before, and of the room it stood in."""
+    """The draft without the data of the previous camera, and of its room."""
     draft = same_camera(draft, moved)
     return replace(
         draft,
@@ -75,9 +75,9 @@ def _without(values: Mapping[str, T], name: str) -> dict[str, T]:
 
 
 class AsksForPorts:
-    """The step Cameras with the question before it; see the module's docstring, and Step.
+    """Wraps the step Cameras with the question; see the module's docstring, and Step.
 
-    moved: shared by all visits of the step, so that what was answered is not asked again.
+    moved: shared by all visits of the step, so that no question is repeated.
     """
 
     def __init__(self, context: Context, make: MakeStep, moved: list[PortChange]) -> None:
@@ -141,7 +141,7 @@ class AsksForPorts:
         return replace(view, state=StepState.WAITING, sentence=sentence)
 
     def _remember(self, moved: PortChange) -> None:
-        """In the draft and in the saved calibration; a full disk is told, and asked about next time."""
+        """Store in the draft and in the saved calibration; a failed write is shown, and asked about again."""
         self._context.draft = same_camera(self._context.draft, moved)
         try:
             rewrite_sources(calibration_path(self._context.state_dir), {moved.camera: moved.now})

@@ -1,4 +1,4 @@
-"""The step Lens: the board is shown to every camera, whose intrinsics are solved as soon as enough was seen.
+"""The step Lens: collects pictures of the board in every camera, and solves its intrinsics when there are enough.
 
 Its commands are `intrinsics_verbs.LENS`.
 """
@@ -38,11 +38,11 @@ from mocapd.wizard.intrinsics.saved_intrinsics import (
 from mocapd.wizard.step import Scene, Shape, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
-_SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
+_SEEN_NS = 500_000_000  # how long a camera counts as the user's target after a sighting
 
 
 class IntrinsicsStep:
-    """Collects pictures of the board, of all cameras at once, and solves the intrinsics of one after the other."""
+    """Collects pictures of the board in all cameras at once, and solves the intrinsics one after the other."""
 
     name = StepName.LENS
     verbs = LENS
@@ -96,9 +96,9 @@ class IntrinsicsStep:
             case UseSaved(camera=None):
                 self._use_saved(list(self._cameras.values()))
             case UseSaved(camera=str(camera)):
-                self._use_saved([self._named(camera)])
+                self._use_saved([self._require_camera(camera)])
             case MeasureLens():
-                self._named(command.camera).use(None)
+                self._require_camera(command.camera).use(None)
             case Finish():
                 self._finish()
 
@@ -134,24 +134,25 @@ class IntrinsicsStep:
     # -- collecting ------------------------------------------------------------------------------
 
     def _begin(self) -> None:
-        """Collect from nothing."""
+        """Discard all pictures."""
         board_m = corners_m(self._spec)
         cameras = self._context.draft.cameras
         self._cameras = {
             one.id: CameraIntrinsics(one, PickedViews(one.size_px, board_m)) for one in cameras
         }
         self._sightings = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
-        self._round += 1  # a job of the round before is not listened to
+        self._round += 1  # ignores the result of a job of an earlier round
 
     def _take(self, look: Look, now_ns: int) -> None:
         self._advice.take(look)
         together = self._sightings.offer(look)
-        for id_, seen in look.observations.items():
+        for id_, observation in look.observations.items():
             one = self._cameras[id_]
-            if one.intrinsics is not None or not one.picked.offer(seen.view, seen.motion_px):
+            view = observation.view
+            if one.intrinsics is not None or not one.picked.offer(view, observation.motion_px):
                 continue
-            if not (together and self._sightings.still(id_, seen)):
-                one.picked.views[-1] = self._sightings.add_alone(id_, seen.view)
+            if not (together and self._sightings.still(id_, observation)):
+                one.picked.views[-1] = self._sightings.add_alone(id_, view)
         wanted = {
             id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].intrinsics
         }
@@ -173,7 +174,7 @@ class IntrinsicsStep:
             for id_, (offered, taken) in offers.items():
                 self._cameras[id_].offered = offered
                 self._cameras[id_].use(taken)
-        # otherwise corners stay where they are, and intrinsics do not mind the scale of the board
+        # otherwise corners stay valid, and intrinsics do not depend on the scale of the board
         self._watch.change(spec)
         self._advice.forget()
         self._write_when_done()
@@ -189,8 +190,8 @@ class IntrinsicsStep:
         views = tuple(one.picked.views)
         self._solving = one
 
-        def job(tell: Tell) -> Intrinsics:
-            tell(f"the lens of {one.name}", 0.0)
+        def job(report: Tell) -> Intrinsics:
+            report(f"the lens of {one.name}", 0.0)
             return one.solve(views, board_m)
 
         def done(intrinsics: Intrinsics) -> None:
@@ -238,10 +239,10 @@ class IntrinsicsStep:
             intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
-    # -- intrinsics of before --------------------------------------------------------------------
+    # -- earlier intrinsics ----------------------------------------------------------------------
 
     def _offer(self) -> None:
-        """Intrinsics of this setup, else of the file of earlier ones."""
+        """Offer intrinsics of this setup, or else of the file of earlier ones."""
         saved: tuple[SavedIntrinsics, ...] = ()
         try:
             saved = read_intrinsics(self._context.state_dir)
@@ -249,47 +250,47 @@ class IntrinsicsStep:
             self._damaged = (Problem.of(error),)
         for id_, one in self._cameras.items():
             intrinsics = self._context.draft.intrinsics.get(id_)
-            found = find_saved_intrinsics(one.camera, saved)
+            stored = find_saved_intrinsics(one.camera, saved)
             if intrinsics is not None and intrinsics.size_px == one.camera.size_px:
                 one.offered = IntrinsicsOffer(intrinsics, "", from_file=False)
-            elif found is not None:
+            elif stored is not None:
                 one.offered = IntrinsicsOffer(
-                    found.intrinsics(), f"{found.when:%Y-%m-%d}", from_file=True
+                    stored.intrinsics(), f"{stored.when:%Y-%m-%d}", from_file=True
                 )
 
     def _use_saved(self, cameras: Sequence[CameraIntrinsics]) -> None:
         offered = [one for one in cameras if one.offered is not None]
         if not offered:
-            raise InputError("no lens of before is known", cameras[0].name, "show it the board")
+            raise InputError("there is no earlier lens", cameras[0].name, "show it the board")
         for one in offered:
             one.use(one.offered)
         self._write_when_done()
 
-    def _named(self, camera: str) -> CameraIntrinsics:
+    def _require_camera(self, camera: str) -> CameraIntrinsics:
         if camera not in self._cameras:
             raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
         return self._cameras[camera]
 
-    # -- what is told ----------------------------------------------------------------------------
+    # -- messages --------------------------------------------------------------------------------
 
     def _sentence(self) -> str:
         if self._done():
             return "All lenses are known. Go on to the room."
         left = {id_: one for id_, one in self._cameras.items() if one.intrinsics is None}
-        seen = {
-            id_: seen
-            for id_, seen in self._watch.newest.items()
-            if id_ in left and self._now_ns - seen.t_ns <= _SEEN_NS
+        newest = {
+            id_: observation
+            for id_, observation in self._watch.newest.items()
+            if id_ in left and self._now_ns - observation.t_ns <= _SEEN_NS
         }
-        if not seen:
+        if not newest:
             if not any(one.picked.views for one in left.values()):
                 return (
                     "Show the board to the cameras, so near that it fills a third of the picture."
                 )
-            # of those left, the one that is nearest to its end
+            # the unfinished camera with most progress
             return max(left.values(), key=lambda one: one.picked.progress()).sentence()
-        one = max((left[id_] for id_ in seen), key=lambda one: one.picked.progress())
-        if all(not left[id_].picked.still(at.motion_px) for id_, at in seen.items()):
+        one = max((left[id_] for id_ in newest), key=lambda one: one.picked.progress())
+        if all(not left[id_].picked.still(at.motion_px) for id_, at in newest.items()):
             return "Hold the board still for a moment."
         return one.sentence()
 
